@@ -22,7 +22,7 @@ from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
-from aidl_lang.syntax.trouble import Trouble
+from aidl_lang.syntax.trouble import LONGEST, Trouble
 from aidl_lang.syntax.warnings import lines_joined_by_minus
 
 
@@ -179,7 +179,7 @@ class _Reader:
             for token in self.tokens[self.last.position : position]:
                 automaton.feed(token)
             automaton.enter_block()
-            if self._ends_statement(position):
+            if self._ends_statement(position) and not self._open_since(self._statement_begin(position)):
                 automaton.feed(Token(";", "", automaton.end, automaton.end))
         from aidl_lang.syntax.errors import explain  # most programs have no errors of syntax
 
@@ -231,6 +231,13 @@ class _Reader:
         offset = automaton.starts[level + 1]
         return bisect_left(self.tokens, offset, 0, position, key=lambda token: token.start)
 
+    def _open_since(self, begin: int) -> list[str]:
+        """Returns the kinds of the brackets that were opened since a token and are still open, outermost
+        first.
+        """
+        start = self.tokens[begin].start
+        return [t.kind for t in self.automaton.open_brackets() if t.start >= start]
+
     def _ends_passed_block(self) -> bool:
         if self.automaton.open_blocks() == self.passed_braces[-1]:
             self.passed_braces.pop()
@@ -243,38 +250,55 @@ class _Reader:
         The statements of its block are read on as if they stood in the block around it, unless `with_block`.
         """
         tokens, automaton = self.tokens, self.automaton
-        begin = tokens[self._statement_begin(position)].start
-        depth = sum(1 for t in automaton.open_brackets() if t.kind != "{" and t.start >= begin)
+        # How many brackets are open in the statement, and in each of the nested blocks among arguments.
+        depths = [0]
+        for kind in self._open_since(self._statement_begin(position)):
+            _follow(depths, kind)
         dropped = not automaton.between_statements
         automaton.drop_statement()
         begun = position
-        braces = 0
         # A comment that is not closed is reported, however much is left out before it.
         while (kind := tokens[position].kind) != END and (
             position == begun or not is_open_comment(tokens[position])
         ):
-            if kind == "{" and with_block:
-                braces += 1
-            elif kind == "}" and braces:
-                braces -= 1
-                if not braces:
-                    return position + 1
-            elif braces:
-                pass
-            elif kind == "{":
+            depth = depths[-1] + len(depths) - 1
+            if kind == "{" and not (depth and self._begins_arguments(position)):
+                if with_block:
+                    return self._behind_block(position)
                 self.passed_braces.append(automaton.open_blocks())
                 return position + 1
-            elif kind == "}":
+            if kind == "}" and len(depths) == 1:
                 if position > begun or dropped or automaton.open_blocks():
                     return position
             elif (position > begun or dropped) and self._may_begin(position, depth):
+                self.passed_braces += [automaton.open_blocks()] * (len(depths) - 1)
                 return position
-            elif kind in ("(", "[", "CALL"):
-                depth += 1
-            elif kind in (")", "]"):
-                depth = max(0, depth - 1)
+            else:
+                _follow(depths, kind)
             position += 1
         return position
+
+    def _behind_block(self, position: int) -> int:
+        """Returns the position behind the block that begins here, or where the rest cannot be read."""
+        braces = 0
+        while (token := self.tokens[position]).kind != END and not is_open_comment(token):
+            braces += (token.kind == "{") - (token.kind == "}")
+            position += 1
+            if not braces:
+                break
+        return position
+
+    def _begins_arguments(self, position: int) -> bool:
+        """Tells whether a `{` within brackets belongs to a `for` or an `if` that stands in these."""
+        depth = 0
+        for n in range(position - 1, max(-1, position - LONGEST), -1):
+            kind = self.tokens[n].kind
+            if not depth and kind in ("for", "if", "else"):
+                return True
+            depth += (kind in (")", "]", "}")) - (kind in ("(", "[", "{", "CALL"))
+            if depth < 0:
+                break
+        return False
 
     def _may_begin(self, position: int, depth: int) -> bool:
         """Tells whether a token looks like the start of a statement, inside so many open brackets."""
@@ -315,6 +339,18 @@ _CERTAIN_WORDS = frozenset(
     ]
 )
 _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
+
+
+def _follow(depths: list[int], kind: str) -> None:
+    """Counts a bracket in the innermost block; a brace begins or ends one."""
+    if kind == "{":
+        depths.append(0)
+    elif kind == "}":
+        depths.pop()
+    elif kind in ("(", "[", "CALL"):
+        depths[-1] += 1
+    elif kind in (")", "]"):
+        depths[-1] = max(0, depths[-1] - 1)
 
 
 def _depth(root: ast.Node) -> int:

@@ -7,7 +7,7 @@
 /// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain point is a
 /// `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
 /// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
-/// `heading` is the direction before the first step.
+/// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
 ///
 /// ```aidl
 /// solid tag {

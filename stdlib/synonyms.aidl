@@ -52,3 +52,6 @@ alias arcsin = asin
 alias arccos = acos
 alias arctan = atan
 alias arctan2 = atan2
+
+// A path drawn with a pen of a width.
+alias stroke = thick

@@ -17,7 +17,7 @@ PROMISED = {
     """,
     "operations": """
         move rotate scale mirror copy offset shell hull thick intersect clip fillet chamfer
-        linear_array grid polar_array
+        linear_array grid polar_array along
     """,
     "constraints": """
         coincident horizontal vertical parallel perpendicular collinear concentric tangent equal equal_length

@@ -16,7 +16,7 @@ from aidl_lang.building.lists import run
 from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
-from aidl_lang.building.placing import placing, spliced
+from aidl_lang.building.placing import placing
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.turning import ask_to_turn, is_of_directions
@@ -33,6 +33,7 @@ from aidl_lang.building.values import (
     RecordVal,
     Value,
     members,
+    spliced,
 )
 from aidl_lang.checking.builtins import COPYING
 from aidl_lang.checking.types import (

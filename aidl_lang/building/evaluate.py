@@ -12,7 +12,7 @@ from aidl_lang.building.coerce import as_point, as_written, constant, coordinate
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
-from aidl_lang.building.scopes import Scope
+from aidl_lang.building.scopes import LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
@@ -27,6 +27,7 @@ from aidl_lang.building.values import (
     Value,
     members,
     number,
+    spliced,
     type_of,
 )
 from aidl_lang.checking import rules, units
@@ -89,6 +90,40 @@ def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
         if node.condition is None or truth(it, evaluate(it, node.condition, inner), node.condition):
             found.append(evaluate(it, node.element, inner))
     return NOTHING if turns is None or any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+
+
+def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
+    """Returns the arguments of all turns, one after the other."""
+    turns = iterate(it, node.iterable, env)
+    found: list[Value] = []
+    for item in turns or ():
+        it.count_turn(node)
+        scope = turn_scope(it, env.scope, node.variables, item, node)
+        found += _arguments_of(it, node.body, Env(scope, env.here, env.reach))
+    return NOTHING if turns is None or any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+
+
+def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
+    test = evaluate(it, node.test, env)
+    if isinstance(test, Nothing):
+        return NOTHING
+    taken = node.then if truth(it, test, node.test) else node.otherwise
+    found = _arguments_of(it, taken, env) if taken is not None else []
+    return NOTHING if any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+
+
+def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[Value]:
+    """Returns the arguments in a block; of a list among them its members, as of one among the others."""
+    scope = Scope(env.scope, env.scope.container, turn=True, labels=env.scope.labels)
+    inner = Env(scope, env.here, env.reach)
+    found: list[Value] = []
+    for item in block.items:
+        if isinstance(item, ast.Let):
+            scope.values[item.name.text] = LetBinding(item.value, scope)
+    for item in block.items:
+        if not isinstance(item, ast.Let):
+            found += spliced(evaluate(it, item, inner))
+    return found
 
 
 def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
@@ -396,6 +431,8 @@ _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.Point: _point,
     ast.List: _list,
     ast.Comprehension: _comprehension,
+    ast.ForArguments: _for_arguments,
+    ast.IfArguments: _if_arguments,
     ast.Unary: _unary,
     ast.Binary: _binary,
     ast.Comparison: _comparison,

@@ -1,4 +1,4 @@
-"""`linear_array`, `grid` and `polar_array`: many of a thing, laid out by a centre, a pitch, a radius.
+"""`linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a curve.
 
 They are built in because they make structures, which no definition of the language can do. A template is
 instantiated once; the other members are copies over the same unknowns.
@@ -6,10 +6,12 @@ instantiated once; the other members are copies over the same unknowns.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.along import KINDS, Way, way_along
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
@@ -30,8 +32,10 @@ from aidl_lang.building.values import (
     kind_of,
     number,
     point,
+    spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -246,7 +250,101 @@ def _step(call: _Call, n: int) -> Expression:
     return ex.div(call.size("sweep"), ex.constant(float(n if is_full else max(n - 1, 1))))
 
 
+# --- Along curves --------------------------------------------------------------------------------
+
+
+def _along(call: _Call) -> Value:
+    way = _way(call)
+    if way is None:
+        return NOTHING
+    inset = call.size("inset") if "inset" in call.a else ex.ZERO
+    length = way.length
+    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
+    if room.value <= 0:
+        return call.wrong(
+            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
+            "ends",
+            "make the `inset` less",
+        )
+    found = _steps(call, room, is_closed=way.is_closed)
+    if found is None:
+        return NOTHING
+    n, step = found
+    if n * len(way.stretches) > _MOST_ALONG:
+        call.it.report(
+            "E0805",
+            f"{n} members along {len(way.stretches)} curves are too many: their product is at most "
+            f"{_MOST_ALONG}",
+            call.node,
+        )
+        return NOTHING
+    first = inset
+    if not way.is_closed:
+        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
+        first = ex.add(inset, ex.half(left))
+    call.settings.fields.setdefault("pitch", Num(step, LENGTH))
+    turns = call.a.get("turn") is not False
+    about = call.centre()
+
+    def motion(i: int) -> Motion:
+        to, heading = way.at(ex.add(first, ex.mul(ex.constant(float(i)), step)))
+        return turned(heading, about, to) if turns else Motion(about, to)
+
+    return call.laid_out(((i,), motion(i)) for i in range(n))
+
+
+_MOST_ALONG = 20_000
+"""Members times curves: each place is worked out over all of them."""
+
+
+def _way(call: _Call) -> Way | None:
+    """Returns the way along what a pattern follows."""
+    given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
+    drawn = [p for g in given for p in g.primitives(even_construction=True)]
+    curves = [p for p in drawn if p.type != "point"]
+    other = next((c.type for c in curves if c.type not in KINDS), None)
+    if other is not None or any(g.recipe is not None for g in given):
+        call.wrong(
+            f"`along` follows lines, arcs and circles, and this is {with_article(other or given[0].type)}",
+            "follow a `path` or `polyline` near it, or what the outline is made of",
+        )
+        return None
+    found = way_along(curves, call.env.here) if curves else None
+    if found is None:
+        call.wrong(
+            "`along` follows one line, open or closed, and this is none or several", "name one of them"
+        )
+    return found
+
+
+def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
+    """Returns the number of members and the way from each to the next."""
+    if "n" in call.a:
+        n = call.count("n")
+        if n is None:
+            return None
+        parts = n if is_closed else n - 1
+        return n, ex.div(room, ex.constant(float(parts))) if parts > 0 else ex.ZERO
+    pitch = call.size("pitch")
+    if pitch.value <= 0:
+        call.wrong(f"the `pitch` is {pitch.value:g}", "write the way from one member to the next, in mm")
+        return None
+    fit = room.value / pitch.value
+    if fit > call.it.limits.entities:
+        call.it.report(
+            "E0805",
+            f"this pattern has {fit:.0f} members; at most {call.it.limits.entities} are allowed",
+            call.node,
+        )
+        return None
+    if is_closed:
+        n = max(1, round(fit))
+        return n, ex.div(room, ex.constant(float(n)))
+    return math.floor(fit + 1e-9) + 1, pitch
+
+
 FUNCTIONS = {
+    "along": _pattern(_along),
     "linear_array": _pattern(_linear_array),
     "grid": _pattern(_grid),
     "polar_array": _pattern(_polar_array),

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from aidl_lang.building.conditions import replace_placed, value_unknowns
 from aidl_lang.building.model import Condition
 from aidl_lang.building.state import Env
-from aidl_lang.building.values import Num, Value, members
+from aidl_lang.building.values import Num, Value, members, spliced
 from aidl_lang.checking.types import PEERS, Binding, BoxType, GeometryType, PointType, StructureType
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
@@ -84,9 +84,3 @@ def _delegates(definition: ast.ConstraintDefinition) -> bool:
             return True
         case _:
             return False
-
-
-def spliced(value: Value) -> Sequence[Value]:
-    """Returns the members of a list, or the thing alone."""
-    items = members(value)
-    return items if items is not None else [value]

@@ -254,6 +254,12 @@ def members(value: Value) -> Sequence[Value] | None:
             return None
 
 
+def spliced(value: Value) -> Sequence[Value]:
+    """Returns the members of a list, or the thing alone."""
+    items = members(value)
+    return items if items is not None else [value]
+
+
 def holds(value: Value, kind: type) -> bool:
     """Tells whether a value is of a kind, or a list with something of it."""
     if isinstance(value, kind):

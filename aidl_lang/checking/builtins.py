@@ -84,6 +84,8 @@ linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start:
 linear_array(x, n: integer, by: point, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
+along(x, curve, n: integer, inset: length?, turn: bool?)
+along(x, curve, pitch: length, inset: length?, turn: bool?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
@@ -122,7 +124,7 @@ OUTLINES = frozenset(
 EDITS = frozenset({"move", "translate", "rotate", "scale"})
 """Statements that change what was written; as expressions they make copies."""
 
-PATTERNS = frozenset({"linear_array", "grid", "polar_array"})
+PATTERNS = frozenset({"along", "linear_array", "grid", "polar_array"})
 """Operations that make members of an array."""
 
 CUTS = frozenset(

@@ -60,6 +60,7 @@ STRUCTURE: Mapping[str, Type] = {
 
 PATTERN: Mapping[str, Mapping[str, Type]] = {
     "linear_array": _fields("center start", "pitch", "angle"),
+    "along": _fields("", "pitch inset"),
     "grid": _fields("center start", "pitch pitch_x pitch_y"),
     "polar_array": _fields("center", "radius", "start sweep"),
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import reduce
 
 from aidl_lang.checking import calls, members, named, operators, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
@@ -169,6 +170,27 @@ class Inference:
         element = self.fact(node.element)
         return replace(element.listed(), reads=element.reads | reads)
 
+    def _for_arguments(self, node: ast.ForArguments) -> Fact:
+        reads = self.iterable(node.iterable, len(node.variables)).reads
+        members = self._argument_block(node.body)
+        return replace(members.listed(), reads=members.reads | reads)
+
+    def _if_arguments(self, node: ast.IfArguments) -> Fact:
+        self.test(node.test)
+        members = self._argument_block(node.then)
+        if node.otherwise is not None:
+            members = joined(members, self._argument_block(node.otherwise))
+        return members.listed()
+
+    def _argument_block(self, block: ast.ArgumentBlock) -> Fact:
+        """Returns what the arguments in a block have in common; a list among them counts by its members."""
+        facts = []
+        for item in block.items:
+            fact = self.fact(item.value if isinstance(item, ast.Let) else item)
+            if not isinstance(item, ast.Let):
+                facts.append(fact.element() if isinstance(fact.type, ListType) else fact)
+        return reduce(joined, facts) if facts else UNKNOWN
+
     def iterable(self, node: ast.Expression, variables: int = 1) -> Fact:
         """Returns the fact of the value that a `for` runs through."""
         fact = self.fact(node)
@@ -288,6 +310,8 @@ _INFER: dict[type, Callable[..., Fact]] = {
     ast.Point: Inference._point,
     ast.List: Inference._list,
     ast.Comprehension: Inference._comprehension,
+    ast.ForArguments: Inference._for_arguments,
+    ast.IfArguments: Inference._if_arguments,
     ast.Unary: operators.unary,
     ast.Binary: operators.binary,
     ast.Comparison: operators.comparison,

@@ -63,7 +63,7 @@ def _structure_itself(check: Inference, node: ast.Node | None) -> Fact:
 
 def _loop_variable(check: Inference, symbol: Symbol) -> Fact:
     loop = symbol.node
-    assert isinstance(loop, ast.For | ast.Comprehension)
+    assert isinstance(loop, ast.For | ast.ForArguments | ast.Comprehension)
     if len(loop.variables) > 1:
         return UNKNOWN
     run = check.facts.get(loop.iterable)

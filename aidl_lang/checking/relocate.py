@@ -156,7 +156,7 @@ class Relocation:
         if symbol.kind is SymbolKind.ARGUMENT:
             return None
         reads = of_symbol(self.infer, symbol).reads
-        is_local = isinstance(scope.owner, ast.For | ast.Block)
+        is_local = isinstance(scope.owner, ast.For | ast.ForArguments | ast.Block | ast.ArgumentBlock)
         if symbol.kind is SymbolKind.LET and (is_local or reads != NOTHING_READ):
             value = getattr(symbol.node, "value", None)
             if value is None or symbol.is_array or len(symbol.nodes) > 1:

@@ -290,9 +290,30 @@ class Resolver:
                 if condition is not None:
                     self.expression(condition, inner)
                 self.expression(element, inner)
+            case ast.ForArguments(variables, iterable, body):
+                self.expression(iterable, scope)
+                self._argument_block(body, self._loop(node, variables, scope))
+            case ast.IfArguments(test, then, otherwise):
+                self.expression(test, scope)
+                for block in (then, otherwise):
+                    if block is not None:
+                        self._argument_block(block, scope)
             case _:
                 for child in ast.children(node):
                     self.expression(child, scope)
+
+    def _argument_block(self, block: ast.ArgumentBlock, scope: SymbolScope) -> None:
+        """Resolves a block among arguments. The names in it are its own."""
+        inner = SymbolScope(block, scope, scope.homes)
+        self.resolution.scopes[block] = inner
+        lets = [item for item in block.items if isinstance(item, ast.Let)]
+        for let in lets:
+            if (earlier := inner.values.get(let.name.text)) is not None:
+                complaints.declared_twice(self, let.name, earlier)
+            else:
+                inner.values[let.name.text] = self.enter(inner, let.name, SymbolKind.LET, let)
+        for item in block.items:
+            self.expression(item.value if isinstance(item, ast.Let) else item, inner)
 
     def _name(self, node: ast.Name, scope: SymbolScope) -> None:
         symbol = scope.value(node.text)

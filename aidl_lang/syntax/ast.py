@@ -118,6 +118,33 @@ class Comprehension(Node):
 
 
 @record(eq=False, repr=False)
+class ArgumentBlock(Node):
+    """`{ arguments }` in a call; the names that its `let`s give are its own."""
+
+    items: tuple[Let | Expression, ...]
+
+
+@record(eq=False, repr=False)
+class ForArguments(Node):
+    """`for variable in iterable { arguments }` among the arguments of a call."""
+
+    variables: tuple[Identifier, ...]
+    iterable: Expression
+    body: ArgumentBlock
+
+
+@record(eq=False, repr=False)
+class IfArguments(Node):
+    """`if test { arguments } else { arguments }` among the arguments of a call; `else if` is a block that
+    holds one more.
+    """
+
+    test: Expression
+    then: ArgumentBlock
+    otherwise: ArgumentBlock | None
+
+
+@record(eq=False, repr=False)
 class Unary(Node):
     """`operator` is `-`, `+` or `not`."""
 
@@ -182,6 +209,8 @@ Expression: TypeAlias = (
     | Point
     | List
     | Comprehension
+    | ForArguments
+    | IfArguments
     | Unary
     | Binary
     | Comparison

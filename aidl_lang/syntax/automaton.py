@@ -140,9 +140,11 @@ class Automaton:
         """Begins the list of statements of a block in which there are none yet."""
         target = self.tables.actions[self.states[-1]].get(";", 0)
         if target < 0 and not (rule := self.tables.rules[~target]).size:
-            self.states.append(self.tables.actions[self.states[-1]][rule.origin])
-            self.values.append([])
-            self.starts.append(self.end)
+            reached = self.tables.actions[self.states[-1]][rule.origin]
+            if reached in self.tables.statement_states:
+                self.states.append(reached)
+                self.values.append([])
+                self.starts.append(self.end)
 
     def drop_statement(self) -> None:
         """Forgets the statement under way, keeping all that stands before it in its block."""

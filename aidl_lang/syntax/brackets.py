@@ -5,11 +5,12 @@ from __future__ import annotations
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, closing, replaced
+from aidl_lang.syntax.trouble import LONGEST, SyntaxProblem, TokenRepair, Trouble, closing, replaced
 from aidl_lang.syntax.words import VALUE_STARTS
 
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 _BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
+_ITEMS = {"CALL": "arguments", "{": "arguments", "[": "items", "(": "coordinates"}
 _VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 
@@ -19,11 +20,16 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
     to be.
     """
     found: list[tuple[int, Diagnostic]] = []
-    opened: list[str] = []
+    opened: list[str] = []  # a block in a call is one of arguments, which may be lists
     asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
         asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
-        if token.kind == "[" and opened[-1:] in ([], ["{"]) and len(found) < _MOST_LISTS:
+        if (
+            token.kind == "["
+            and opened[-1:] in ([], ["{"])
+            and "CALL" not in opened
+            and len(found) < _MOST_LISTS
+        ):
             before = tokens[n - 1].kind if n else ";"
             joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
@@ -86,6 +92,8 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
     if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
         return None
     closers = [_CLOSER[opener.kind] for opener in reversed(t.open)]
+    if t.token.kind == "}" and "}" in closers[1:]:
+        closers = closers[: closers.index("}", 1)]  # which ends the block among arguments
     if not t.accepts(*closers):
         return None
     opener = t.open[-1]
@@ -175,10 +183,11 @@ def stray_closer(t: Trouble) -> SyntaxProblem | None:
 
 
 def missing_comma(t: Trouble) -> SyntaxProblem | None:
-    if not t.open or t.token.kind not in VALUE_STARTS or not t.accepts(",", t.token.kind):
+    if not t.open or not (t.token.kind in VALUE_STARTS or t.token.kind == "for"):
         return None
-    opener = t.open[-1]
-    inside = {"CALL": "arguments", "[": "items", "(": "coordinates"}[opener.kind]
+    if not t.accepts(",", t.token.kind):
+        return None
+    opener, inside = t.open[-1], _ITEMS[t.open[-1].kind]
     return SyntaxProblem(
         Diagnostic(
             "E0112",
@@ -189,6 +198,92 @@ def missing_comma(t: Trouble) -> SyntaxProblem | None:
             fix=replaced("put in `,`", t.gap(), ","),
         ),
         TokenRepair(t.position, t.position, (t.token_here(","),)),
+    )
+
+
+def comma_before_block(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `path((0, 0) for i in 0..3 { … })`, where the comma before `for` is missing."""
+    if t.token.kind != "{" or not t.open or t.open[-1].kind not in ("CALL", "{"):
+        return None
+    depth = 0
+    for n in range(t.position - 1, max(t.begin, t.position - LONGEST), -1):
+        token, before = t.tokens[n], t.tokens[n - 1]
+        if token.kind in ("for", "if") and not depth:
+            break
+        depth += (token.kind in (")", "]", "}")) - (token.kind in _CLOSER)
+        if depth < 0:
+            return None
+    else:
+        return None
+    if before.kind not in (*_VALUE_ENDS, "STRING"):
+        return None
+    place = Span(t.source, before.end, before.end)
+    return SyntaxProblem(
+        Diagnostic(
+            "E0112",
+            f"expected `,` before a block of arguments that begins with `{token.text}`",
+            place,
+            "a comma is missing here",
+            (Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here"),),
+            fix=replaced("put in `,`", place, ","),
+        ),
+        TokenRepair(n, n, (Token(",", ",", before.end, before.end),)),
+    )
+
+
+def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
+    """Recognises a block among arguments that is left open where its call is closed."""
+    if t.token.kind != ")" or not t.open or t.open[-1].kind != "{":
+        return None
+    count = 1
+    while count < len(t.open) and t.open[-count - 1].kind == "{":
+        count += 1
+    if not t.accepts(*"}" * count, ")"):
+        return None
+    opener, text = t.open[-1], "}" * count
+    return SyntaxProblem(
+        Diagnostic(
+            "E0102",
+            f"expected `{text}` to close the block that begins here",
+            t.span(opener),
+            "opened here and not closed",
+            (Label(t.gap(), f"`{text}` is missing"),),
+            fix=replaced(f"put in `{text}`", t.gap(), " " + text),
+        ),
+        TokenRepair(t.position, t.position, tuple(t.token_here("}") for _ in range(count))),
+    )
+
+
+def choice_in_block(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `a if c else b` in a block among arguments."""
+    if t.token.kind != "else" or not t.open or t.open[-1].kind != "{" or not t.accepts("{"):
+        return None
+    message = "in a block of arguments, `if` behind an argument begins a block of its own"
+    hint = "write `if c then a else b`, or put `a if c else b` in parentheses"
+    return SyntaxProblem(Diagnostic("E0119", message, t.span(), hints=(hint,)))
+
+
+def name_in_block(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `p = (i, 0)` and `from: (i, 0)` in a block among arguments."""
+    if t.token.kind not in ("=", ":") or not t.open or t.open[-1].kind != "{" or t.before is None:
+        return None
+    name = t.before.text
+    if not name.isidentifier():
+        return None
+    if t.token.kind == ":":
+        hint = f"write `{name}: …` among the arguments outside of the block"
+        message = f"an argument in a block has no name, and this is called `{name}`"
+        return SyntaxProblem(Diagnostic("E0119", message, t.span(t.before, t.token), hints=(hint,)))
+    place = Span(t.source, t.before.start, t.before.start)
+    return SyntaxProblem(
+        Diagnostic(
+            "E0119",
+            f"a block of arguments makes nothing, and `{name} = …` would",
+            t.span(t.before, t.token),
+            hints=(f"`let {name} = …` names a value for the rest of the block",),
+            fix=replaced("write `let`", place, "let "),
+        ),
+        TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),)),
     )
 
 

@@ -59,8 +59,13 @@ def build_tables(grammar: str) -> Tables:
         literals=literals,
         reserved=frozenset(words - soft),
         soft_words=soft,
-        statement_states=frozenset(n for n, row in enumerate(actions) if row.get(";", -1) >= 0),
+        statement_states=frozenset(n for n, row in enumerate(actions) if _may_begin_statement(row)),
     )
+
+
+def _may_begin_statement(row: dict[str, int]) -> bool:
+    """Tells whether a statement may begin in a state; a `;` may stand among arguments in a block too."""
+    return row.get(";", -1) >= 0 and row.get("prefer", -1) >= 0
 
 
 def _plain_rule(rule: LarkRule) -> Rule:

@@ -30,11 +30,20 @@ _BINARY = {
 
 @record()
 class BracketGroup:
-    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own."""
+    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own. A
+    block has spaces inside its braces; it is broken with what it belongs to, and stands on a line of its own
+    in what is broken around it.
+    """
 
     opening: str
     items: tuple[PrintDocument, ...]
     closing: str
+    is_block: bool = False
+
+    @property
+    def edge(self) -> str:
+        """What stands inside of both brackets on one line."""
+        return " " if self.is_block and self.items else ""
 
 
 @record()
@@ -63,12 +72,17 @@ def doc(*parts: str | BracketGroup | PrintDocument) -> PrintDocument:
 
 
 def _flat_group(group: BracketGroup) -> str:
-    return group.opening + ", ".join(item.flat() for item in group.items) + group.closing
+    inside = ", ".join(item.flat() for item in group.items)
+    return group.opening + group.edge + inside + group.edge + group.closing
 
 
 def _group_width(group: BracketGroup) -> int:
     items = sum(item.width for item in group.items) + 2 * max(0, len(group.items) - 1)
-    return len(group.opening) + items + len(group.closing)
+    return len(group.opening) + items + 2 * len(group.edge) + len(group.closing)
+
+
+def _has_block(document: PrintDocument) -> bool:
+    return any(isinstance(piece, BracketGroup) and piece.is_block for piece in document.pieces)
 
 
 def render(document: PrintDocument, indent: int, column: int | None = None, after: int = 0) -> str:
@@ -90,13 +104,14 @@ def render(document: PrintDocument, indent: int, column: int | None = None, afte
                 break
         else:
             tail += after
-        if not piece.items or column + _group_width(piece) + tail <= WIDTH:
+        fits = column + _group_width(piece) + tail <= WIDTH and not piece.is_block
+        if not piece.items or fits:
             out.append(_flat_group(piece))
             column += _group_width(piece)
             continue
         inner = indent + INDENT
         together = ", ".join(item.flat() for item in piece.items)
-        is_short = inner + len(together) <= WIDTH
+        is_short = inner + len(together) <= WIDTH and not any(map(_has_block, piece.items))
         lines = [together] if is_short else [render(item, inner, after=1) for item in piece.items]
         pad = "\n" + " " * inner
         out.append(piece.opening + pad + ("," + pad).join(lines) + "\n" + " " * indent + piece.closing)
@@ -131,6 +146,23 @@ class ExpressionPrinter:
         )
         return doc(BracketGroup(opening, items, ")"))
 
+    def _argument_block(self, opening: str, block: ast.ArgumentBlock) -> BracketGroup:
+        items = tuple(
+            doc(f"let {self.name(item.name)} = ", self.expression(item.value))
+            if isinstance(item, ast.Let)
+            else self.expression(item)
+            for item in block.items
+        )
+        return BracketGroup(opening + "{", items, "}", is_block=True)
+
+    def _else_arguments(self, block: ast.ArgumentBlock | None) -> PrintDocument:
+        if block is None:
+            return doc()
+        chained = block.items[0] if len(block.items) == 1 else None
+        if isinstance(chained, ast.IfArguments) and chained.span == block.span:
+            return doc(" else ", self.expression(chained))
+        return doc(self._argument_block(" else ", block))
+
     def _print(self, node: ast.Expression) -> tuple[int, PrintDocument]:  # noqa: C901 (one case a node)
         """Returns how tightly a node binds, and its text."""
         match node:
@@ -158,6 +190,14 @@ class ExpressionPrinter:
                 test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
                 element, iterable = self.expression(node.element), self.iterable(node.iterable)
                 return ATOM, doc("[", element, f" for {variables} in ", iterable, test, "]")
+            case ast.ForArguments():
+                variables = ", ".join(map(self.name, node.variables))
+                head = doc(f"for {variables} in ", self.iterable(node.iterable))
+                return CHOICE, doc(head, self._argument_block(" ", node.body))
+            case ast.IfArguments():
+                head = doc("if ", self.expression(node.test, OR))
+                block = self._argument_block(" ", node.then)
+                return CHOICE, doc(head, block, self._else_arguments(node.otherwise))
             case ast.Unary(operator="not"):
                 return NOT, doc("not ", self.expression(node.operand, NOT))
             case ast.Unary():

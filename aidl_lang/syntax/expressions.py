@@ -78,14 +78,48 @@ class ExpressionBuilder:
             self.identifier(callee), receiver, arguments_of(arguments), span=self.span(start, end)
         )
 
-    def arguments(self, start: int, end: int, *items: ast.Argument) -> tuple[ast.Argument, ...]:
-        return items
+    def arguments(self, start: int, end: int, *items: Any) -> tuple[ast.Argument, ...]:
+        return tuple(
+            item if isinstance(item, ast.Argument) else ast.Argument(None, item, span=item.span)
+            for item in items
+        )
 
     def argument(self, start: int, end: int, value: ast.Expression) -> ast.Argument:
         return ast.Argument(None, value, span=Span(self.source, start, end))
 
     def named_argument(self, start: int, end: int, name: Token, value: ast.Expression) -> ast.Argument:
         return ast.Argument(self.identifier(name), value, span=Span(self.source, start, end))
+
+    # --- Blocks of arguments ---
+
+    def argument_block(self, start: int, end: int, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
+        return ast.ArgumentBlock(items, span=self.span(start, end))
+
+    def for_arguments(
+        self,
+        start: int,
+        end: int,
+        variables: tuple[ast.Identifier, ...],
+        iterable: ast.Expression,
+        *rest: Any,
+    ) -> ast.ForArguments:
+        """Builds `for x in a, y in b { … }` as one loop in another."""
+        span, body = self.span(start, end), rest[-1]
+        if len(rest) > 1:
+            body = ast.ArgumentBlock((self.for_arguments(start, end, *rest),), span=body.span)
+        return ast.ForArguments(variables, iterable, body, span=span)
+
+    def if_arguments(
+        self,
+        start: int,
+        end: int,
+        test: ast.Expression,
+        then: ast.ArgumentBlock,
+        other: ast.ArgumentBlock | ast.IfArguments | None = None,
+    ) -> ast.IfArguments:
+        if isinstance(other, ast.IfArguments):
+            other = ast.ArgumentBlock((other,), span=other.span)
+        return ast.IfArguments(test, then, other, span=self.span(start, end))
 
     # --- Operators ---
 

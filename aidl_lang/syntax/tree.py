@@ -21,11 +21,11 @@ from aidl_lang.syntax.words import FOREIGN_WORDS
 
 
 class ThenIf:
-    """The expression at the end of a statement and the `if` statement that follows it."""
+    """The expression at the end of a statement and the `if` that follows it."""
 
     __slots__ = ("following", "value")
 
-    def __init__(self, value: ast.Expression, following: ast.If) -> None:
+    def __init__(self, value: ast.Expression, following: ast.If | ast.IfArguments) -> None:
         self.value = value
         self.following = following
 
@@ -161,7 +161,7 @@ class Builder(ExpressionBuilder):
 
     def _ending_in(
         self, start: int, end: int, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
-    ) -> ast.Statement | list[ast.Statement]:
+    ) -> ast.Statement | list[Any]:
         """Builds the statement that ends in `value`, and the `if` after it if there is one."""
         if isinstance(value, ThenIf):
             return [make(value.value, self.span(start, value.value.span.end)), value.following]
@@ -324,6 +324,19 @@ class Builder(ExpressionBuilder):
     ) -> ThenIf:
         """Builds an expression, and the `if` statement that begins with `word`."""
         return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
+
+    def interrupted_argument(
+        self,
+        start: int,
+        end: int,
+        value: ast.Expression,
+        word: Token,
+        test: ast.Expression,
+        then: ast.ArgumentBlock,
+        otherwise: ast.ArgumentBlock | ast.IfArguments | None = None,
+    ) -> ThenIf:
+        """Builds an argument, and the block that begins with `word`."""
+        return ThenIf(value, self.if_arguments(word.start, end, test, then, otherwise))
 
     def conditional(
         self, start: int, end: int, test: ast.Expression, then: ast.Expression, otherwise: Any

@@ -68,8 +68,8 @@ class Trouble:
 
     @cached_property
     def open(self) -> list[Token]:
-        """The open brackets of the statement, outermost first; blocks are not among them."""
-        return [t for t in self.automaton.open_brackets() if t.kind != "{" and t.start >= self.first.start]
+        """The open brackets of the statement, outermost first; of blocks those among arguments."""
+        return [t for t in self.automaton.open_brackets() if t.start >= self.first.start]
 
     @property
     def between(self) -> bool:
@@ -78,7 +78,7 @@ class Trouble:
     @cached_property
     def complete(self) -> bool:
         """True if the statement could end here."""
-        return self.accepts(";")
+        return not self.open and self.accepts(";")
 
     @property
     def on_new_line(self) -> bool:
@@ -122,7 +122,8 @@ class Trouble:
             return True
         if not self.on_new_line:
             return self.token.kind in STATEMENT_WORDS - {"if", "for"}
-        if self.token.kind in STATEMENT_WORDS | {"@"}:
+        in_call = self.token.kind in ("for", "if") and self.open and self.open[-1].kind in ("CALL", "{")
+        if self.token.kind in STATEMENT_WORDS | {"@"} and not in_call:
             return True
         return self.indentation(self.token.start) <= self.indentation(self.first.start)
 

@@ -446,8 +446,48 @@ export default grammar({
     index_expression: ($) => seq(field("object", $._primary), field("index", $.subscript)),
 
     arguments: ($) =>
-      seq($._touching_parenthesis, optional(choice(trailing($._argument), $.comprehension)), ")"),
+      seq($._touching_parenthesis, optional(choice($._arguments, $.comprehension)), ")"),
+    // A comma stands behind each but the last; behind a block it may be left out.
+    _arguments: ($) =>
+      choice(
+        seq(repeat($._separated_argument), $._argument),
+        repeat1($._separated_argument),
+      ),
+    _separated_argument: ($) =>
+      choice(seq($._argument, ","), seq(choice($.for_arguments, $.if_arguments), optional(","))),
     _argument: ($) => choice($.expression, $.named_argument),
+
+    for_arguments: ($) => seq($._for_head, field("body", $.argument_block)),
+    if_arguments: ($) =>
+      seq(
+        "if",
+        field("condition", $._disjunction),
+        field("consequence", $.argument_block),
+        optional(field("alternative", alias($._else_arguments, $.else_clause))),
+      ),
+    _else_arguments: ($) => seq("else", choice($.argument_block, $.if_arguments)),
+    // Where something stands before it that it would go on with, an argument begins as a statement does.
+    argument_block: ($) =>
+      seq(
+        "{",
+        repeat(seq(optional($._block_arguments), choice(",", ";", $.for_arguments, $.if_arguments))),
+        optional($._block_arguments),
+        "}",
+      ),
+    _block_arguments: ($) =>
+      seq(choice($._argument_in_block, $.let_declaration), repeat(choice($._first_sum, $.let_declaration))),
+    // `if` behind an argument begins a block: `a if c else b` stands in parentheses.
+    _argument_in_block: ($) =>
+      choice($._disjunction, alias($._conditional_in_block, $.conditional_expression)),
+    _conditional_in_block: ($) =>
+      seq(
+        "if",
+        field("condition", $._disjunction),
+        "then",
+        field("consequence", $.expression),
+        "else",
+        field("alternative", $._argument_in_block),
+      ),
     named_argument: ($) => seq(field("name", $.identifier), choice(":", "="), field("value", $.expression)),
 
     parenthesized_expression: ($) => seq("(", $.expression, ")"),

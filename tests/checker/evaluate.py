@@ -141,6 +141,24 @@ class Evaluator:
         inner = [self.bound(e.variables, item, scope) for item in self.items(self.value(e.iterable, scope))]
         return [self.value(e.element, s) for s in inner if e.condition is None or self.truth(e.condition, s)]
 
+    def _forarguments(self, e: ast.ForArguments, scope: Scope) -> list[Any]:
+        turns = [self.bound(e.variables, item, scope) for item in self.items(self.value(e.iterable, scope))]
+        return [value for turn in turns for value in self._in_block(e.body, turn)]
+
+    def _ifarguments(self, e: ast.IfArguments, scope: Scope) -> list[Any]:
+        taken = e.then if self.truth(e.test, scope) else e.otherwise
+        return self._in_block(taken, scope) if taken is not None else []
+
+    def _in_block(self, block: ast.ArgumentBlock, scope: Scope) -> list[Any]:
+        inner, found = Scope(scope), list[Any]()
+        for item in block.items:
+            if isinstance(item, ast.Let):
+                inner.names[item.name.text] = self.value(item.value, inner)
+            else:
+                value = self.value(item, inner)
+                found += value if isinstance(value, list) else [value]
+        return found
+
     def bound(self, variables: tuple[ast.Identifier, ...], item: Any, scope: Scope) -> Scope:
         names = [v.text for v in variables]
         values = [item] if len(names) == 1 else self.items(item)
@@ -264,7 +282,10 @@ class Evaluator:
 
     def arguments(self, e: ast.Call, scope: Scope) -> tuple[list[Any], dict[str, Any]]:
         positional = [] if e.receiver is None else [self.value(e.receiver, scope)]
-        positional += [self.value(a.value, scope) for a in e.arguments if a.name is None]
+        for a in e.arguments:
+            if a.name is None:
+                value = self.value(a.value, scope)
+                positional += value if isinstance(a.value, ast.ForArguments | ast.IfArguments) else [value]
         named = {a.name.text: self._argument(a, scope) for a in e.arguments if a.name is not None}
         return positional, named
 

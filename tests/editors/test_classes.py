@@ -55,7 +55,7 @@ def _named(node: ast.Node) -> Iterator[tuple[ast.Identifier, str]]:
             yield node.name, "name.parameter"
             if node.type is not None:
                 yield node.type, "name.type"
-        case ast.For() | ast.Comprehension():
+        case ast.For() | ast.ForArguments() | ast.Comprehension():
             yield from ((name, "name.definition") for name in node.variables)
         case ast.Import():
             yield from ((name, "name.definition") for name in (*node.names, node.alias) if name is not None)

@@ -278,6 +278,7 @@ NODES: dict[type[ast.Node], str] = {
     ast.Assert: "assert_statement",
     ast.Equation: "equation",
     ast.If: "if_statement",
+    ast.IfArguments: "if_arguments",
     ast.Parameter: "parameter",
     ast.Attribute: "attribute",
     ast.Placement: "placement",

@@ -30,7 +30,7 @@ STARTS = (
     "for_statement",
 )
 FOLDABLE = {
-    *("block", "constraint_block", "parameters", "arguments", "list", "block_comment"),
+    *("block", "constraint_block", "argument_block", "parameters", "arguments", "list", "block_comment"),
     *("doc_comment", "line_comment", "import_statement"),
 }
 

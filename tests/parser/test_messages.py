@@ -78,6 +78,8 @@ PAGES = [
         ),
         ("let x == 3", "E0111", (1, 7), "a name is given its value by `=`, not `==`"),
         ("x = f(a b)", "E0112", (1, 8), "expected `,` between two arguments"),
+        ("x = f(a: 1 for i in 0..2 { i })", "E0112", (1, 11), "expected `,` between two arguments"),
+        ('x = f(1, for i in 0..2 { i "a" })', "E0112", (1, 27), "expected `,` between two arguments"),
         ("x = [1 2]", "E0112", (1, 7), "expected `,` between two items"),
         ("def f(x) = x", "E0113", (1, 1), "there is no `def`: functions are defined as `fn f(x) = 2 * x`"),
         ("while a { }", "E0113", (1, 1), "there is no `while`: programs repeat with `for i in 0..9 { … }`"),

@@ -26,10 +26,12 @@ from aidl_lang.tools.grammars.notation import (
 def from_left_to_right(rules: Rules) -> dict[str, Node]:
     """Returns the same language in rules without left recursion, with common beginnings shared."""
     result = dict(rules)
+    choices: set[str] = set()
     for members in left_recursive(rules):
         group = _Group(rules, members)
         result = {name: group.joined(node) for name, node in result.items()} | group.rules
-    shared = _Sharing(result, frozenset(rules) - {"gap", "new_line"})
+        choices |= group.choices
+    shared = _Sharing(result, (frozenset(rules) | choices) - {"gap", "new_line"})
     return {name: shared.node(node) for name, node in result.items()}
 
 
@@ -39,7 +41,7 @@ class _Group:
     What they hold is a walk: from a beginning that is in no rule of the group (`base`), over what may
     follow each rule that is complete (`steps`), to the rule that was wanted. `rules` are the new ones: for
     each old rule its beginnings, and behind these one rule for each place on the walk, which may be empty
-    at its end.
+    at its end; `choices` are those to any of several rules.
     """
 
     def __init__(self, rules: Rules, group: set[str]) -> None:
@@ -52,6 +54,7 @@ class _Group:
                 self.bases[name] = base
             for first, rest in begun:
                 self.steps[first].append((name, rest))
+        self.choices: set[str] = set()
         self.rules: dict[str, Node] = {}
         for name in self.steps:
             self.rules[name] = self._walk(frozenset([name]))
@@ -86,6 +89,7 @@ class _Group:
                 title = _one_name(targets)
                 if title not in self.rules:
                     self.rules[title] = self._walk(targets)
+                    self.choices.add(title)
                 return Name(title)
             case Alt(items):
                 return alt(*map(self.joined, items))
@@ -126,7 +130,7 @@ def _one_name(targets: frozenset[str]) -> str:
     return shortest if len(targets) == 1 else f"{shortest}_or_other"
 
 
-_DEEPEST = 2  # rules to look into for a common beginning
+_DEEPEST = 3  # rules to look into for a common beginning
 
 
 class _Sharing:

@@ -107,13 +107,15 @@ def _plain_names() -> dict[str, str]:
 
 @record(frozen=False)
 class _Inside:
-    """An open bracket. `role` is `parameters` of a definition, `arguments` of a call, `block`, `constraints`
-    (a block of them) or `group`; `header` is `names` before the variables of a `for`, or imported names,
-    `values` after the `in` of a `for`, else nothing.
+    """An open bracket. `role` is `parameters` of a definition, `arguments` of a call, `items` (a block of
+    such), `block`, `constraints` (a block of them) or `group`; `header` is `names` before the variables of a
+    `for`, or imported names, `values` after the `in` of a `for`, else nothing. `opens` is true behind a
+    `for`, an `if` or an `else` among arguments.
     """
 
     role: str
     header: str = ""
+    opens: bool = False
 
 
 @record(frozen=False)
@@ -270,6 +272,9 @@ class _Reader:
             case ")" | "]":
                 if self.stack[-1].role not in _BLOCKS:
                     self.stack.pop()
+            case "{" if self.stack[-1].opens:
+                self.stack[-1].header, self.stack[-1].opens = "", False
+                self.stack.append(_Inside("items"))
             case "{":
                 self._leave_calls()
                 self.stack[-1].header = ""
@@ -277,7 +282,8 @@ class _Reader:
                 self.stack.append(_Inside("constraints" if nested else self.opens))
                 self.opens = "block"
             case "}":
-                self._leave_calls()
+                while self.stack[-1].role not in (*_BLOCKS, "items"):
+                    self.stack.pop()
                 if len(self.stack) > 1:
                     self.stack.pop()
             case _:
@@ -285,6 +291,11 @@ class _Reader:
 
     def _track_header(self, place: int, kind: str) -> None:
         inside = self.stack[-1]
+        if inside.role in ("arguments", "items"):
+            begins = kind in ("for", "if", "else")
+            inside.opens = begins or (
+                inside.opens and (kind not in ("then", ",") or inside.header == "values")
+            )
         if kind in ("for", "import"):
             inside.header = "names"
         elif kind == "in" and inside.header == "names":
@@ -299,7 +310,7 @@ class _Reader:
             self.opens = "block"  # `constrain if a then b else c` is one expression
 
     def _leave_calls(self) -> None:
-        """Leaves unclosed calls: they contain no braces."""
+        """Leaves unclosed calls, which contain no braces but those of blocks among their arguments."""
         while self.stack[-1].role not in _BLOCKS:
             self.stack.pop()
 

@@ -74,7 +74,7 @@ def head(node: ast.Node) -> str:
             ast.Parameter() | ast.Param() | ast.Let() | ast.Var() | ast.Assign() | ast.Alias() | ast.Import()
         ):
             return _short(node.span.one_line)
-        case ast.For():
+        case ast.For() | ast.ForArguments():
             names = ", ".join(v.text for v in node.variables)
             return f"for {names} in {_short(node.iterable.span.one_line)}"
         case _:

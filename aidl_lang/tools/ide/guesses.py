@@ -157,6 +157,7 @@ def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, .
             yield (name,), value
         case (
             ast.For(variables=names, iterable=iterable)
+            | ast.ForArguments(variables=names, iterable=iterable)
             | ast.Comprehension(variables=names, iterable=iterable)
         ):
             yield names, iterable

@@ -39,7 +39,7 @@ def scope_at(view: View, offset: int) -> SymbolScope:
 def _opens_here(node: ast.Node, offset: int) -> bool:
     """True if the names of a node are visible at an offset: its head belongs to what is around it."""
     match node:
-        case ast.Structure(parameters=None) | ast.For():
+        case ast.Structure(parameters=None) | ast.For() | ast.ForArguments():
             return node.body.span.start < offset <= node.body.span.end
         case _:
             return True

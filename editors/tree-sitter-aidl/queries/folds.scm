@@ -1,6 +1,7 @@
 [
   (block)
   (constraint_block)
+  (argument_block)
   (parameters)
   (arguments)
   (list)

@@ -1,6 +1,7 @@
 [
   (block)
   (constraint_block)
+  (argument_block)
   (parameters)
   (arguments)
   (parenthesized_expression)
@@ -19,6 +20,9 @@
   "}" @indent.end)
 
 (constraint_block
+  "}" @indent.end)
+
+(argument_block
   "}" @indent.end)
 
 [

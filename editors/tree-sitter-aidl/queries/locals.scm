@@ -4,10 +4,12 @@
   (structure)
   (block)
   (constraint_block)
+  (argument_block)
   (function_definition)
   (shape_definition)
   (constraint_definition)
   (for_statement)
+  (for_arguments)
   (comprehension)
 ] @local.scope
 

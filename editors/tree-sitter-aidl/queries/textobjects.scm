@@ -13,7 +13,13 @@
 (for_statement
   body: (_) @loop.inner) @loop.outer
 
+(for_arguments
+  body: (_) @loop.inner) @loop.outer
+
 (if_statement
+  consequence: (_) @conditional.inner) @conditional.outer
+
+(if_arguments
   consequence: (_) @conditional.inner) @conditional.outer
 
 (call_expression

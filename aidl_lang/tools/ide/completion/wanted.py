@@ -78,6 +78,10 @@ class Around:
                 return self._compared(node, (left, right))
             case ast.Conditional(test=test):
                 return CONDITION if node is test else self.wanted(path[:-1])
+            case ast.ArgumentBlock() | ast.ForArguments() if not _is_run_through(node, above):
+                return self.wanted(path[:-1])
+            case ast.IfArguments(test=test):
+                return CONDITION if node is test else self.wanted(path[:-1])
             case ast.List():
                 return _member_of(self.wanted(path[:-1]))
             case _:
@@ -88,6 +92,10 @@ class Around:
         facts = [self.check.fact(o) for o in operands if o is not node]
         known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
         return _alike(known) if known is not None else Wanted()
+
+
+def _is_run_through(node: ast.Node, above: ast.Node) -> bool:
+    return isinstance(above, ast.For | ast.ForArguments | ast.Comprehension) and node is above.iterable
 
 
 def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Wanted:
@@ -101,7 +109,7 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted((RangeType(), ListType(ANY)))
         case ast.Range() | ast.Membership():
             return Wanted((_NUMBER, _WHOLE))
-        case ast.For() | ast.Comprehension(iterable=_) if node is above.iterable:
+        case ast.For() | ast.ForArguments() | ast.Comprehension() if _is_run_through(node, above):
             return Wanted((ListType(ANY), RangeType()))
         case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
             return Wanted((_WHOLE,))

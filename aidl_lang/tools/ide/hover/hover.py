@@ -107,7 +107,7 @@ def _headed(view: View, mention: Mention) -> str:
     match symbol.node:
         case None:
             return fenced(f"{symbol.name}: {kind}") if kind else ""
-        case ast.For() | ast.Comprehension():
+        case ast.For() | ast.ForArguments() | ast.Comprehension():
             return fenced(f"{symbol.name}  // {symbol.kind} of `{head(symbol.node)}`")
         case node:
             note = f"  // {kind}" if kind and not isinstance(node, ast.Structure) else ""

@@ -190,6 +190,8 @@ def _owner(path: Sequence[ast.Node]) -> int | None:
         match node:
             case ast.FunctionDefinition() | ast.ConstraintDefinition() | ast.Comprehension():
                 return None
+            case ast.ForArguments() | ast.ArgumentBlock():
+                return None
             case ast.Structure() | ast.ShapeDefinition() if inside is node.body:
                 return number
             case ast.Structure(parameters=parameters) if parameters is not None and inside in parameters:

@@ -110,6 +110,8 @@ class Reader:
                 inner = self.inside(variables)
                 test = inner.key(condition) if condition is not None else ()
                 return ("list", self.key(iterable), inner.key(element), test)
+            case ast.ForArguments(variables, iterable, body):
+                return ("for", self.key(iterable), self.inside(variables).key(body))
         plain = [v for v in vars(node).values() if isinstance(v, str | bool | float)]
         return (type(node).__name__, *plain, *map(self.key, ast.children(node)))
 

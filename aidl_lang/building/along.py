@@ -1,0 +1,168 @@
+"""The ways along curves: places and directions at lengths from the start, over expressions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.motion import Place
+from aidl_lang.building.primitives import clockwise, direction, distance, number, sweep, view, xy
+from aidl_lang.common.records import record
+
+KINDS = frozenset({"line", "arc", "circle"})
+"""Curves whose length is an expression."""
+
+_DEGREES = ex.constant(180.0 / math.pi)
+_RADIANS = ex.constant(math.pi / 180.0)
+_MEETS = 1e-6
+"""Distance of two ends that are one, relative to the extent of the curves or in mm."""
+
+
+@record(eq=False)
+class Stretch:
+    """A line or an arc that is walked from `start` on.
+
+    length  in mm
+    bow     the angle (degrees) that its direction turns by in each mm, counter-clockwise; nothing for a line
+    heading its direction at the start
+    """
+
+    start: Place
+    heading: Expression
+    length: Expression
+    center: Place | None = None
+    bow: Expression = ex.ZERO
+
+    def at(self, way: Expression) -> Place:
+        x, y = self.start
+        if self.center is None:
+            cos, sin = ex.cos(self.heading), ex.sin(self.heading)
+            return ex.add(x, ex.mul(way, cos)), ex.add(y, ex.mul(way, sin))
+        turn = ex.mul(self.bow, way)
+        cos, sin = ex.cos(turn), ex.sin(turn)
+        u, v = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
+        return (
+            ex.add(self.center[0], ex.sub(ex.mul(cos, u), ex.mul(sin, v))),
+            ex.add(self.center[1], ex.add(ex.mul(sin, u), ex.mul(cos, v))),
+        )
+
+    def direction(self, way: Expression) -> Expression:
+        return ex.add(self.heading, ex.mul(self.bow, way))
+
+    @property
+    def end(self) -> tuple[float, float]:
+        return _value(self.at(self.length))
+
+
+@record(eq=False)
+class Way:
+    """Stretches that go on from one another, and whether the last ends where the first begins."""
+
+    stretches: tuple[Stretch, ...]
+    is_closed: bool
+
+    @property
+    def length(self) -> Expression:
+        total = ex.ZERO
+        for stretch in self.stretches:
+            total = ex.add(total, stretch.length)
+        return total
+
+    def at(self, way: Expression) -> tuple[Place, Expression]:
+        """Returns the place at a length from the start, wherever the joints come to lie, and the direction of
+        the stretch on which it lies at the first guesses.
+        """
+        x, y = self.stretches[0].start
+        rest, heading = way, self.stretches[0].heading
+        for index, stretch in enumerate(self.stretches):
+            is_last = index == len(self.stretches) - 1
+            own = rest if len(self.stretches) == 1 else _within(rest, stretch.length)
+            if rest.value >= -_MEETS and (is_last or index == 0 or rest.value > _MEETS):
+                heading = stretch.direction(own)
+            to, start = stretch.at(own), stretch.start
+            x, y = ex.add(x, ex.sub(to[0], start[0])), ex.add(y, ex.sub(to[1], start[1]))
+            rest = ex.sub(rest, stretch.length)
+        return (x, y), heading
+
+
+def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
+    """Returns the way along curves that are joined at their ends, in the sense in which the first is written;
+    None for such as are not one line.
+    """
+    if len(curves) == 1 and curves[0].type == "circle":
+        return Way((_circle(curves[0], here),), is_closed=True)
+    if any(curve.type == "circle" for curve in curves):
+        return None
+    both = [(_stretch(c, here), _stretch(c, here, reverse=True)) for c in curves]
+    near = _MEETS * max(1.0, *(abs(v) for pair in both for v in (*_value(pair[0].start), *pair[0].end)))
+    first, *rest = both
+    walked = _walked(first[0], rest, near)
+    if rest:  # the first lies in the middle
+        turned = {backward: forward for pair in both for forward, backward in (pair, pair[::-1])}
+        walked = [*(turned[s] for s in reversed(_walked(first[1], rest, near)[1:])), *walked]
+    if rest:
+        return None
+    is_closed = len(walked) > 1 and math.dist(walked[-1].end, _value(walked[0].start)) <= near
+    return Way(tuple(walked), is_closed)
+
+
+_Pair = tuple["Stretch", "Stretch"]
+
+
+def _walked(stretch: Stretch, rest: list[_Pair], near: float) -> list[Stretch]:
+    """Returns a stretch and those that go on from it, which are taken out of the rest."""
+    walked = [stretch]
+    while (found := _next(rest, walked[-1].end, near)) is not None:
+        rest.remove(found[0])
+        walked.append(found[1])
+    return walked
+
+
+def _next(rest: Sequence[_Pair], end: tuple[float, float], near: float) -> tuple[_Pair, Stretch] | None:
+    for pair in rest:
+        for stretch in pair:
+            if math.dist(_value(stretch.start), end) <= near:
+                return pair, stretch
+    return None
+
+
+def _circle(curve: Geometry, here: Structure) -> Stretch:
+    core = view(curve, here)
+    x, y = xy(core["center"])
+    radius = number(core["radius"])
+    turn = ex.constant(-1.0 if clockwise(curve, here) else 1.0)
+    return Stretch(
+        (ex.add(x, radius), y),
+        ex.mul(turn, ex.constant(90.0)),
+        ex.mul(ex.constant(2 * math.pi), radius),
+        (x, y),
+        ex.div(ex.mul(turn, _DEGREES), radius),
+    )
+
+
+def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
+    core = view(curve, here)
+    start, end = (core["end"], core["start"]) if reverse else (core["start"], core["end"])
+    if curve.type == "line":
+        return Stretch(xy(start), direction(start, end), distance(start, end))
+    is_clockwise = clockwise(curve, here)
+    radius = distance(core["center"], core["start"])
+    turn = ex.constant(-1.0 if is_clockwise != reverse else 1.0)
+    return Stretch(
+        xy(start),
+        ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0))),
+        ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius),
+        xy(core["center"]),
+        ex.div(ex.mul(turn, _DEGREES), radius),
+    )
+
+
+def _within(way: Expression, length: Expression) -> Expression:
+    return ex.apply("minimum", ex.apply("maximum", way, ex.ZERO), length)
+
+
+def _value(place: Place) -> tuple[float, float]:
+    return place[0].value, place[1].value
