@@ -40,7 +40,6 @@ assembly bicycle {
     solid mudguard(from = 20, to = 170) { v = ring_sector(origin, r + 3.6, r + 1.6, from, to) }
     @color("#2e2e33")
     solid pedal(angle = 0) { v = rounded_rectangle(crank + polar(15, angle), 11, 3.4, 1.2) }
-
     back_wheel = tyred_wheel() at rear
     front_wheel = tyred_wheel() at front
     back_guard = mudguard(32, 178) at rear
