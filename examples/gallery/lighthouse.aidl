@@ -30,7 +30,7 @@ assembly lighthouse {
         @color("#566069")
         drawing cracks { v = [zigzag(p, p + (16, -3), 2, 1) for p in [(-50, -11), (50, -6)]] }
     }
-    tower = cone("whitesmoke", foot, head, tower_height) at fixed((0, tower_height / 2))
+    tower = cone("whitesmoke", foot, head, tower_height) at (0, tower_height / 2)
     @color("firebrick")
     solid paint {
         for i in 1..stripes {
