@@ -1,7 +1,7 @@
 /// A dotted mug of coffee on its saucer, seen a little from above: a heart of milk, a spoon, a cookie, and steam.
 assembly coffee_mug {
-    param width = 78mm in 64..94
-    param height = 80mm in 66..98
+    param width = 78mm in 58..98
+    param height = 80mm in 60..100
     /// Dots from side to side.
     param dots_across = 5 in 4..7
     param wisps_of_steam = 3 in 2..5

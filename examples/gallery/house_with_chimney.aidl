@@ -1,8 +1,8 @@
 /// A brick house with a shingled roof, a smoking chimney, shuttered windows, a picket fence and a tree.
 assembly house_with_chimney {
-    param width = 124mm in 105..150
-    param wall_height = 56mm in 46..68
-    param roof_height = 44mm in 34..56
+    param width = 124mm in 93..155
+    param wall_height = 56mm in 42..70
+    param roof_height = 44mm in 33..56
     /// Windows to either side of the door.
     param windows = 1 in 1..2
     param roof_color = "#9c4a3c" in ["#9c4a3c", "#5b6b7a", "#6f7f4f"]

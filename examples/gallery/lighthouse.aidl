@@ -2,7 +2,7 @@
 assembly lighthouse {
     param tower_height = 150mm in 110..200
     /// Width of the tower's head as a share of its foot.
-    param taper = 0.6 in 0.5..0.75
+    param taper = 0.6 in 0.45..0.75
     /// Red stripes, with a window between them.
     param stripes = 3 in 2..5
     /// Rays of the light to either side.

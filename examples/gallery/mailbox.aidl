@@ -1,10 +1,10 @@
 /// A mailbox on a wooden post, seen from the side: open door with letters, raised flag, flowers in the grass.
 assembly mailbox {
-    param width = 48mm in 38..58
-    param height = 58mm in 48..70
+    param width = 48mm in 36..60
+    param height = 58mm in 43..73
     /// How far the box reaches back.
-    param depth = 76mm in 58..95
-    param post_height = 96mm in 75..120
+    param depth = 76mm in 57..95
+    param post_height = 96mm in 72..120
     param flowers = 4 in 2..6
     param paint = "#3b6ea5" in ["#3b6ea5", "#a63d40", "#4f7f4f"]
     let back = (depth, 0.28 * depth)
@@ -69,8 +69,8 @@ assembly mailbox {
     }
     @color("crimson")
     solid flag at side + 0.24 * back + (0, 0.4 * height) {
-        pole = strip((0, 0), (0, 34), 3)
-        cloth = rectangle(bottom_left: (0, 22), width: 18, height: 12)
+        pole = strip((0, 0), (0, 0.58 * height), 3)
+        cloth = rectangle(top_left: (0, 0.58 * height), width: 18, height: 12)
     }
     @color("gold")
     solid pivot { v = circle(radius: 3) }

@@ -1,16 +1,16 @@
 /// A rotary telephone from the front: casing, finger wheel over its digits, handset in the cradle, curly cord.
 assembly old_school_telephone {
     /// Width of the casing at its foot; the handset grows with it.
-    param width = 180mm in 150..220
-    param height = 104mm in 88..125
+    param width = 180mm in 135..225
+    param height = 104mm in 78..130
     /// Diameter of the dial, as a share of what the casing has room for.
-    param dial = 0.84 in 0.65..0.9
+    param dial = 0.84 in 0.63..1
     param curls_of_cord = 21 in 14..28
     param tint = "firebrick" in ["firebrick", "teal", "goldenrod", "darkslategray"]
 
     let w = width / 100
     let h = height / 100
-    let r = dial / 2 * min(height, 62 * w)
+    let r = dial / 2 * min(94 * h, 60 * w)
     let shadow = darker(tint, 0.4)
 
     @color(tint)
@@ -90,7 +90,7 @@ assembly old_school_telephone {
         right = mirror(left, about: y_axis)
     }
     constrain {
-        face.bezel.rim.center == casing.center + (0, 3)
+        face.bezel.rim.center == casing.center + (0, 2)
         saddle.on_top_of(casing, align: center)
         handset.body.start == saddle.block.top.midpoint
         caps.top == handset.bottom + 2

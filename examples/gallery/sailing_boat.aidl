@@ -1,8 +1,8 @@
 /// A wooden sailing boat under way: planked hull, cabin with portholes, striped mainsail, jib, pennant and waves.
 assembly sailing_boat {
     /// Length of the hull.
-    param length = 130mm in 110..155
-    param mast_height = 140mm in 115..165
+    param length = 130mm in 97..163
+    param mast_height = 140mm in 105..175
     /// Coloured stripes of the mainsail.
     param stripes = 3 in 2..5
     param portholes = 3 in 2..4
@@ -86,7 +86,7 @@ assembly sailing_boat {
     near_sea = sea(high: -3, waves: 6)
     front_sea = sea("#3a7cab", high: -15, waves: 5)
     @color("white")
-    drawing foam { v = [wave((x, -9), (x + 16, -9), 1.2, 1.5) for x in [-96, -40, 8, 78]] }
+    drawing foam { v = [wave((x * l, -9), (x * l + 16, -9), 1.2, 1.5) for x in [-74, -30, 6, 60]] }
     constrain {
         pennant.right == mast.pole.left
         pennant.top == mast.top

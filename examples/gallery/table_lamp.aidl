@@ -1,9 +1,9 @@
 /// A leaded-glass table lamp: bulging panes, jewels along the rim, a turned stem, a pull chain, a table with a book.
 assembly table_lamp {
-    param shade_width = 130mm in 105..155
-    param shade_height = 58mm in 46..72
+    param shade_width = 130mm in 97..163
+    param shade_height = 58mm in 43..73
     /// Height of the turned stem.
-    param stem_height = 74mm in 58..95
+    param stem_height = 74mm in 55..95
     /// Panes of the shade that are seen.
     param panes = 8 in 5..11
     param glass = "#e0a526" in ["#e0a526", "#4f9d8f", "#b5566b"]
@@ -31,7 +31,7 @@ assembly table_lamp {
     solid glow {
         v = trapezoid(bottom_width: 3.4 * s, top_width: 1.84 * s, height: stem_height + 13)
     }
-    table = part(4 * s, 10, 2, "#b07c4f")
+    table = part(max(4 * s, 230), 10, 2, "#b07c4f")
     @color("#7d5330")
     drawing grain { v = wood_grain(table.v, pitch: 3) }
     foot = part(70, 6, 3)

@@ -1,11 +1,11 @@
 /// A porcelain teapot with a painted band, gold rims, a lid, and steam over its curved spout.
 assembly teapot {
-    param width = 120mm in 95..150
+    param width = 120mm in 90..150
     /// Height of the pot without foot and lid.
-    param height = 86mm in 70..105
+    param height = 86mm in 64..108
     param flowers = 5 in 3..6
     /// How far the spout reaches out.
-    param reach = 42mm in 34..52
+    param reach = 42mm in 31..53
     param glaze = "#3f7cac" in ["#3f7cac", "#b5483a", "#4f8a5b"]
     let w = width / 100
     let h = height / 100
