@@ -11,15 +11,15 @@ assembly coffee_mug {
 
     /// A round thing lying flat.
     @color(tint)
-    solid disc(radius = 10, tint = "white", flat = 0.24) {
+    solid dish(radius = 10, tint = "white", flat = 0.24) {
         v = ellipse((0, 0), radius, flat * radius)
     }
 
-    underside = disc(104 * w, "#b9b2a3")
-    saucer = disc(104 * w, "#f4efe4")
+    underside = dish(104 * w, "#b9b2a3")
+    saucer = dish(104 * w, "#f4efe4")
     @color(glaze)
     drawing ring_ { v = ellipse((0, 0), 96 * w, 22 * w) }
-    well = disc(62 * w, "#ddd6c6")
+    well = dish(62 * w, "#ddd6c6")
     @color(glaze)
     solid handle {
         way = path(
@@ -51,10 +51,10 @@ assembly coffee_mug {
     solid foot { v = clip(rectangle((0, -8 * w), width, 22 * w), by: mug.body) }
     @color(lighter(glaze, 0.5))
     drawing shine { v = line((-39.5 * w, 26 * h), (-43 * w, 66 * h)) }
-    lip = disc(51.5 * w, lighter(glaze, 0.25), flat: 0.26)
-    inside = disc(46.5 * w, darker(glaze, 0.5), flat: 0.25)
-    coffee = disc(45 * w, "#5a3420", flat: 0.23)
-    foam = disc(36 * w, "#a9713f", flat: 0.2)
+    lip = dish(51.5 * w, lighter(glaze, 0.25), flat: 0.26)
+    inside = dish(46.5 * w, darker(glaze, 0.5), flat: 0.25)
+    coffee = dish(45 * w, "#5a3420", flat: 0.23)
+    foam = dish(36 * w, "#a9713f", flat: 0.2)
     @color("#fdf3df")
     solid milk { v = heart((0, 0), width: 36 * w, height: 11 * w) }
     @color("silver")
@@ -62,8 +62,8 @@ assembly coffee_mug {
         bowl = ellipse((0, 0), 13 * w, 5.6 * w, angle: 12)
         shaft = strip((-10 * w, -2 * w), (-62 * w, -11 * w), 3.4 * w, 2 * w)
     }
-    cookie_edge = disc(20 * w, "#9c6b3a", flat: 0.42)
-    cookie = disc(20 * w, "#d29b5a", flat: 0.42)
+    cookie_edge = dish(20 * w, "#9c6b3a", flat: 0.42)
+    cookie = dish(20 * w, "#d29b5a", flat: 0.42)
     @color("#4a2b1a")
     solid chips {
         v = [ellipse((x * w, y * w), 2.6 * w, 1.6 * w) for x, y in [

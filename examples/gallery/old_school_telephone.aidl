@@ -14,7 +14,7 @@ assembly old_school_telephone {
     let shadow = darker(tint, 0.4)
 
     @color(tint)
-    solid disc(tint = "gainsboro", radius = 20) { rim = circle(center: origin, radius: radius) }
+    solid roundel(tint = "gainsboro", radius = 20) { rim = circle(center: origin, radius: radius) }
     @color(tint)
     solid pads(tint = "#33333a", x = 10, width = 20, height = 10) {
         left = rounded_rectangle((-x, 0), width: width, height: height, radius: 0.4 * height)
@@ -50,8 +50,8 @@ assembly old_school_telephone {
 
     /// The dial, about its own origin; the digits show through the holes of the wheel.
     assembly face {
-        bezel = disc(radius: r)
-        plate = disc("ivory", radius: 0.92 * r)
+        bezel = roundel(radius: r)
+        plate = roundel("ivory", radius: 0.92 * r)
         @color("black")
         drawing digits {
             for i in 0..9 { d[i] = text(str((i + 1) % 10), polar(0.67 * r, 60 + 26 * i), 0.12 * r) }
@@ -61,8 +61,8 @@ assembly old_school_telephone {
             plate = circle(center: origin, radius: 0.87 * r)
             for i in 0..9 { hole h[i] { rim = circle(polar(0.67 * r, 60 + 26 * i), 0.128 * r) } }
         }
-        hub = disc(radius: 0.38 * r)
-        card = disc("ivory", radius: 0.31 * r)
+        hub = roundel(radius: 0.38 * r)
+        card = roundel("ivory", radius: 0.31 * r)
         drawing name { letters = text("AIDL", center: origin, width: 0.4 * r) }
         @color("silver")
         solid stop { hook = strip(polar(0.97 * r, -34), polar(0.6 * r, -24), 0.14 * r, 0.09 * r) }

@@ -12,8 +12,8 @@ assembly sailing_boat {
     let tip = (3 * l, 97 * m)
 
     @color(tint)
-    solid disc(radius = 10, tint = "#8fc1dd") { v = circle(origin, radius) }
-    assembly porthole() { rim = disc(3.6, "#b98a3a"); pane = disc(2.2) }
+    solid roundel(radius = 10, tint = "#8fc1dd") { v = circle(origin, radius) }
+    assembly porthole() { rim = roundel(3.6, "#b98a3a"); pane = roundel(2.2) }
     @color(tint)
     solid sea(tint = "#4c93c3", high = 0, waves = 6) {
         swell = wave((-95 * l, high), (95 * l, high), amplitude: 2.6, waves: waves)
