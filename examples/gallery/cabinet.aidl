@@ -54,7 +54,7 @@ assembly cabinet {
             v = rounded_rectangle(center: origin, width: w - 24, height: h - 24, radius: 6)
         }
         @color(wood)
-        drawing veins { v = wood_grain(field.v, pitch: 18) }
+        drawing veins { v = wood_grain(field.v, pitch: 28) }
         @color(brass)
         solid cup { v = dome(center: origin, width: 60, height: 24) }
         @color(darker(brass, 0.4))
@@ -77,7 +77,7 @@ assembly cabinet {
         @color(lighter(wood, 0.3))
         solid panel { v = offset(groove.v, -10) }
         @color(wood)
-        drawing veins { v = wood_grain(panel.v, pitch: 22, angle: 90deg) }
+        drawing veins { v = wood_grain(panel.v, pitch: 34, angle: 90deg) }
         @color(brass)
         solid brasses {
             knob = circle(center: (-door_w / 2 + 18, 0), radius: 11)

@@ -62,7 +62,7 @@ assembly gear_with_holes {
     }
 
     /// A hexagon head on its washer.
-    assembly screw(size = 4mm) {
+    assembly bolt_head(size = 4mm) {
         @color("#e8ecef")
         solid washer { v = circle(center: origin, radius: 1.9 * size) }
         @color("#4c5663")
@@ -71,7 +71,7 @@ assembly gear_with_holes {
         solid top { v = circle(center: origin, radius: 1.1 * size) }
     }
     for i in 0..<bolts step 2 {
-        screws[i] = screw(size: bolt) at polar(0.67 * hub, 360deg / bolts * i)
+        screws[i] = bolt_head(size: bolt) at polar(0.67 * hub, 360deg / bolts * i)
     }
 
     @color(darker(steel, 0.5))

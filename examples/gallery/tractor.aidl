@@ -79,7 +79,7 @@ assembly tractor {
         v = thick(line_of_it, 9)
     }
     /// A tyre with lugs around discs that get smaller, and bolts round the hub.
-    assembly wheel(d = 80mm, n = 24) {
+    assembly big_wheel(d = 80mm, n = 24) {
         @color("#2a2c30")
         solid tyre { v = cog(outer_radius: 0.5 * d, inner_radius: 0.46 * d, teeth: n) }
         let tints = ["#43464c", "#f2c230", "#d09a1c", "#f2c230", "#5a5f66"]
@@ -90,8 +90,8 @@ assembly tractor {
         @color("#6b5414")
         solid bolts { v = polar_array(circle(radius: 0.016 * d), n: 8, radius: 0.19 * d) }
     }
-    rear_wheel = wheel(d: rear, n: lugs) at (0, rear / 2)
-    front_wheel = wheel(d: front * rear, n: lugs - 4) at (wheelbase, 30)
+    rear_wheel = big_wheel(d: rear, n: lugs) at (0, rear / 2)
+    front_wheel = big_wheel(d: front * rear, n: lugs - 4) at (wheelbase, 30)
 
     constrain {
         front_wheel.disc[0].v.center == fixed((wheelbase, front * rear / 2))

@@ -20,7 +20,7 @@ assembly wall_clock {
     @color("#a56a3a")
     solid moulding { v = ring(outer_radius: r - 0.2 * wood, inner_radius: dial + 0.35 * wood) }
     @color("#5d3519")
-    drawing grain { v = wood_grain(moulding.v, pitch: 0.3 * wood) }
+    drawing grain { v = wood_grain(moulding.v, pitch: 0.6 * wood) }
     @color("#d9b25f")
     solid bezel { v = ring(outer_radius: dial + 0.03 * r, inner_radius: dial - 0.02 * r) }
     @color("#fbf6e6")
