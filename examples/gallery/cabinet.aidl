@@ -1,0 +1,97 @@
+/// A sideboard on turned legs: rows of drawers over two panelled doors.
+assembly cabinet {
+    /// Width of the case.
+    param width = 900mm in 700..1200
+    /// Height of the case without its legs.
+    param height = 720mm in 600..900
+    /// Rows of drawers.
+    param rows = 2 in 1..3 step 1
+    /// Drawers in a row.
+    param columns = 3 in 2..4 step 1
+    /// How much of the height the drawers take.
+    param share = 0.45 in 0.35..0.6
+
+    let wood = "#b9814a"
+    let dark = darker(wood, 0.4)
+    let brass = "#e3b750"
+    let gap = 14mm
+    let post = 36mm
+    let inner = width - 2 * post
+    let deep = share * height
+    let cell_w = (inner - gap * (columns - 1)) / columns
+    let cell_h = (deep - gap * rows) / rows
+    let door_w = (inner - gap) / 2
+    let door_h = height - deep - 2 * post
+
+    @color(darker(wood, 0.2))
+    solid plate { v = rounded_rectangle(width: width + 70, height: 26, radius: 8) }
+    @color(wood)
+    solid moulding { v = trapezoid(bottom_width: width, top_width: width + 40, height: 16) }
+    @color(wood)
+    solid case { v = rectangle(center: (0, 0), width: width, height: height) }
+    @color(darker(wood, 0.25))
+    drawing grain { v = wood_grain(case.v, pitch: 70, angle: 90deg, margin: 4) }
+    @color(dark)
+    solid inside { v = rectangle(width: inner + 2 * gap, height: height - post - gap) }
+    @color(darker(wood, 0.2))
+    solid skirt { v = rectangle(center: (0, -height / 2), width: width, height: 32) }
+    /// A tapering leg on a brass shoe.
+    assembly leg() {
+        @color(dark)
+        solid shaft { v = trapezoid(center: (0, 0), bottom_width: 22, top_width: 44, height: 120) }
+        @color(brass)
+        solid shoe { v = trapezoid(center: (0, -72), bottom_width: 18, top_width: 22, height: 24) }
+    }
+    right_leg = leg() at (width / 2 - 40, -500)
+    left_leg = leg() at (40 - width / 2, -500)
+
+    /// A drawer front with a bevelled edge, a sunk field and a cup handle.
+    assembly drawer(w = 100mm, h = 80mm) {
+        @color(lighter(wood, 0.15))
+        solid front { v = rectangle(center: origin, width: w, height: h) }
+        @color(lighter(wood, 0.3))
+        solid field {
+            v = rounded_rectangle(center: origin, width: w - 24, height: h - 24, radius: 6)
+        }
+        @color(wood)
+        drawing veins { v = wood_grain(field.v, pitch: 28) }
+        @color(brass)
+        solid cup { v = dome(center: origin, width: 60, height: 24) }
+        @color(darker(brass, 0.4))
+        solid lip { v = rectangle(center: (0, -12), width: 66, height: 5) }
+    }
+    for i in 0..<columns {
+        for k in 0..<rows {
+            let x = (cell_w + gap) * (i - (columns - 1) / 2)
+            let y = height / 2 - post - cell_h / 2 - (cell_h + gap) * k
+            drawers[i][k] = drawer(w: cell_w, h: cell_h) at (x, y)
+        }
+    }
+
+    /// A door with an arched panel, a knob towards the middle and two hinges.
+    assembly door() {
+        @color(lighter(wood, 0.15))
+        solid leaf { v = rectangle(center: origin, width: door_w, height: door_h) }
+        @color(darker(wood, 0.15))
+        solid groove { v = arch(center: origin, width: door_w - 70, height: door_h - 60, rise: 30) }
+        @color(lighter(wood, 0.3))
+        solid panel { v = offset(groove.v, -10) }
+        @color(wood)
+        drawing veins { v = wood_grain(panel.v, pitch: 34, angle: 90deg) }
+        @color(brass)
+        solid brasses {
+            knob = circle(center: (-door_w / 2 + 18, 0), radius: 11)
+            for s in [-1, 1] { hinge[s] = square(center: (door_w / 2, s * door_h / 4), size: 24) }
+        }
+    }
+    right_door = door() at ((door_w + gap) / 2, post + door_h / 2 - height / 2)
+    left_door = mirror(right_door, about: y_axis)
+
+    constrain {
+        column(plate, moulding, case, gap: 0, align: center)
+        skirt.below(case, gap: 0, align: center)
+        right_leg.below(skirt, gap: 0)
+        left_leg.below(skirt, gap: 0)
+        inside.centered_in(case)
+    }
+}
