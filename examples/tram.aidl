@@ -18,12 +18,11 @@ assembly tram {
 
     @color("black")
     solid bogie(radius = 15) {
-        frame = trapezoid(bottom_width: 50, top_width: 76, height: 24)
+        frame = trapezoid(center: origin, bottom_width: 50, top_width: 76, height: 24)
         for i in 0..1 {
-            @color("silver")
-            solid tyre[i] at fixed((48 * i - 24, -12)) {
-                tread = circle(radius: radius)
-                hole spokes { cut = polar_array(circle(radius: 2.5), n: 5, radius: 0.6 * radius) }
+            tyre[i] = circle(center: fixed((48 * i - 24, -12)), radius: radius)
+            hole spokes[i] at fixed((48 * i - 24, -12)) {
+                cut = polar_array(circle(radius: 2.5), n: 5, radius: 9)
             }
         }
     }

@@ -3,7 +3,7 @@
 
 /// An L: a level and an upright bar that share the lower left corner.
 ///
-/// Lies corner at the lower left.
+/// Lies with its corner at the lower left.
 ///
 /// ```aidl
 /// solid bracket { body = l_shape(width: 40, height: 60, thickness: 8) }
@@ -181,7 +181,7 @@ fn i_shape(center: point = (0, 0), width: length, height: length, thickness: len
 
 /// A Z profile: an upright web with a flange to the left at the top and one to the right at the bottom.
 ///
-/// Lies upper flange to the left.
+/// Lies with its upper flange to the left.
 ///
 /// ```aidl
 /// solid purlin { body = z_shape(width: 50, height: 60, thickness: 8) }

@@ -99,7 +99,7 @@ shape trapezoid(
 
 /// A trapezoid whose left side is upright, by its lower left corner.
 ///
-/// Lies with its upright side on the left; held at `bottom_left`.
+/// Lies with the upright side on the left, held at `bottom_left`.
 ///
 /// ```aidl
 /// solid ramp { body = right_trapezoid(bottom_width: 60, top_width: 35, height: 20) }

@@ -100,7 +100,7 @@ shape segment(start: point, end: point, radius: length) {
 
 /// Half a disc, flat side down.
 ///
-/// Lies flat side down; `center` is the middle of that side.
+/// Lies flat side down; `center` is on it.
 ///
 /// ```aidl
 /// solid protractor { body = semicircle(radius: 40) }

@@ -151,7 +151,7 @@ fn incenter_of(a: point, b: point, c: point) = (a * norm(c - b) + b * norm(a - c
 ///
 /// `angle` turns it about that corner. Its edges are `bottom`, `left` and `hypotenuse`.
 ///
-/// Lies with its right angle at the lower left, where it is held.
+/// Lies with its right angle at the lower left, held there.
 ///
 /// ```aidl
 /// solid shelf_support { body = right_triangle(corner: (0, 0), width: 40, height: 60) }

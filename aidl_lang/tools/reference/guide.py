@@ -30,6 +30,7 @@ from aidl_lang.tools.reference.pages import entry_blocks, short_calls
 from aidl_lang.tools.reference.signatures import parts
 
 _PLACED = re.compile(r"\(center\?, (.*), angle\?\)$")
+_WITH = re.compile(r"^with (its |the |a )?")
 _ALTERNATIVES = re.compile(r"\b(\w+)/\w+(/\w+){2,}")
 _PLACEHOLDER = re.compile(r"\{\{(\w+) ?([^}]*)\}\}")
 _BLOCKS = (
@@ -113,7 +114,7 @@ def _calls(variant: Variant, *topics: str) -> str:
         if named:
             told[entry.name] = set(named)
         shown = " ".join(([f"as {like}"] if like else []) + more)
-        lies = entry.doc.lies.replace("`", "")
+        lies = _WITH.sub("", entry.doc.lies.replace("`", ""))
         about = (f" → {shown}" if shown else "") + (f"  // {lies}" if lies else "")
         lines.append((entry.name, _arguments(variant, entry) + about))
     return _joined(lines)
