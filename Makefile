@@ -90,10 +90,10 @@ accept: $(READY) ## take the present results as the new goldens, the README's pi
 	$(BIN)/aidl compile examples/telephone.aidl -o docs/images/telephone.svg --quiet
 	$(BIN)/aidl compile examples/motor_bracket.aidl -o docs/images/motor_bracket.svg --dimension --quiet
 
-examples: $(READY) ## draw every example into build/examples
-	@mkdir -p build/examples
-	@for file in examples/*.aidl; do \
-		$(BIN)/aidl compile $$file -o build/examples/$$(basename $$file .aidl).svg || exit 1; \
+examples: $(READY) ## draw every example into build/examples, those of the gallery among them
+	@mkdir -p build/examples/gallery
+	@for file in examples/*.aidl examples/gallery/*.aidl; do \
+		$(BIN)/aidl compile $$file -o build/$${file%.aidl}.svg || exit 1; \
 	done
 
 lock: $(READY) ## renew requirements-dev.lock

@@ -29,6 +29,9 @@ from aidl_lang.common.world import DiskWorld
 
 ROOT = Path(__file__).resolve().parent.parent
 TELEPHONE = ROOT / "examples" / "telephone.aidl"
+GALLERY = ROOT / "examples" / "gallery"
+STAGES = ("interpret", "solve", "regions")
+"""Those that take most of the time."""
 
 
 def main() -> None:
@@ -41,6 +44,7 @@ def main() -> None:
     print_cold(arguments.program, runs)
     print_warm(arguments.program, runs)
     print_library(runs)
+    print_gallery(runs)
 
 
 def machine() -> str:
@@ -113,6 +117,21 @@ def print_library(runs: int) -> None:
         f"The library has {count} definitions of {len(names)} names in {text} bytes of text; "
         f"as data it has {len(library.built())} bytes."
     )
+
+
+def print_gallery(runs: int) -> None:
+    """Prints what the programs of the gallery take, compiled anew in a process that goes on."""
+    print(f"| gallery, warm | compile | {' | '.join(STAGES)} |\n|---|" + "---:|" * (1 + len(STAGES)))
+    rows = []
+    for path in sorted(GALLERY.glob("*.aidl")):
+        source, taken = SourceFile(path.name, path.read_text("utf-8")), []
+        for _ in range(runs + 1):
+            start = time.process_time()
+            stages = pipeline.compile(source).timings
+            taken.append((time.process_time() - start, *(stages.get(stage, 0.0) for stage in STAGES)))
+        rows.append(tuple(map(median, zip(*taken[1:], strict=True))))
+        print(f"| {path.stem} | {' | '.join(map(_milliseconds, rows[-1]))} |")
+    print(f"| *median* | {' | '.join(_milliseconds(median(column)) for column in zip(*rows, strict=True))} |\n")
 
 
 def _decode_all() -> None:

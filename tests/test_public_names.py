@@ -11,7 +11,7 @@ import pytest
 
 from aidl_lang.checking import builtins
 from aidl_lang.tools.highlighting import site as colours
-from aidl_lang.tools.reference import coverage, site
+from aidl_lang.tools.reference import coverage, gallery, site
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.pages import image
 from tests.checker import test_corpus as corpus
@@ -59,6 +59,7 @@ def _stale() -> Iterator[str]:
     made = {**site.texts(ROOT), **colours.texts(ROOT)}
     stale = [path for path, text in made.items() if _read(path) != text]
     pictures = {f"docs/reference/{image(entry)}" for entry in ENTRIES if entry.doc.example}
+    pictures |= set(gallery.image_paths(ROOT))
     stale += [path for path in pictures if not (ROOT / path).is_file()]
     stale += site.strays(ROOT, pictures | site.texts(ROOT).keys())
     page = _read(site.COVERAGE)

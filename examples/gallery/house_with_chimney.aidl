@@ -4,7 +4,7 @@ assembly house_with_chimney {
     param wall_height = 56mm in 42..70
     param roof_height = 44mm in 33..56
     /// Windows to either side of the door.
-    param windows = 1 in 1..2
+    param windows = 1 in 1..2 step 1
     param roof_color = "#9c4a3c" in ["#9c4a3c", "#5b6b7a", "#6f7f4f"]
     let bay = (width / 2 - 16) / windows
     let pane = min(18, 0.48 * bay)

@@ -4,9 +4,9 @@ assembly lighthouse {
     /// Width of the tower's head as a share of its foot.
     param taper = 0.6 in 0.45..0.75
     /// Red stripes, with a window between them.
-    param stripes = 3 in 2..5
+    param stripes = 3 in 2..5 step 1
     /// Rays of the light to either side.
-    param rays = 4 in 2..6
+    param rays = 4 in 2..6 step 1
     let foot = 62mm
     let head = taper * foot
     let room = 0.74 * head

@@ -5,7 +5,7 @@ assembly mailbox {
     /// How far the box reaches back.
     param depth = 76mm in 57..95
     param post_height = 96mm in 72..120
-    param flowers = 4 in 2..6
+    param flowers = 4 in 2..6 step 1
     param paint = "#3b6ea5" in ["#3b6ea5", "#a63d40", "#4f7f4f"]
     let back = (depth, 0.28 * depth)
     let mouth = (-0.36 * depth, -0.22 * depth)

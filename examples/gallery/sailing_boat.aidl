@@ -4,8 +4,8 @@ assembly sailing_boat {
     param length = 130mm in 97..163
     param mast_height = 140mm in 105..175
     /// Coloured stripes of the mainsail.
-    param stripes = 3 in 2..5
-    param portholes = 3 in 2..4
+    param stripes = 3 in 2..5 step 1
+    param portholes = 3 in 2..4 step 1
     param sail_color = "#c8473c" in ["#c8473c", "#2f6f9f", "#d99a2b"]
     let l = length / 100
     let m = mast_height / 100

@@ -5,7 +5,7 @@ assembly table_lamp {
     /// Height of the turned stem.
     param stem_height = 74mm in 55..95
     /// Panes of the shade that are seen.
-    param panes = 8 in 5..11
+    param panes = 8 in 5..11 step 1
     param glass = "#e0a526" in ["#e0a526", "#4f9d8f", "#b5566b"]
     let s = shade_width / 2
     let h = shade_height

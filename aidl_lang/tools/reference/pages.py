@@ -61,15 +61,21 @@ def image(entry: Entry) -> str:
 
 def picture(entry: Entry) -> bytes:
     """Returns the drawing of an entry's example as SVG. Raises ValueError if it does not compile."""
+    return picture_of(f"the example of `{entry.name}` ({entry.where})", entry.doc.example)
+
+
+def picture_of(name: str, program: str, theme: str = "colour") -> bytes:
+    """Returns the drawing of a program as SVG. Raises ValueError if it does not compile."""
     from aidl_lang import pipeline  # a page in the terminal needs no solver
     from aidl_lang.common.render import render
     from aidl_lang.common.source import SourceFile
+    from aidl_lang.export import Options
 
-    compiled = pipeline.compile(SourceFile(f"{entry.name}.aidl", entry.doc.example))
+    compiled = pipeline.compile(SourceFile(name, program))
     if not compiled.ok:
         why = "\n".join(render(d) for d in compiled.diagnostics)
-        raise ValueError(f"the example of `{entry.name}` ({entry.where}) does not compile\n{why}")
-    return compiled.export(".svg")
+        raise ValueError(f"{name} does not compile\n{why}")
+    return compiled.export(".svg", Options(compiled.show, theme=theme))
 
 
 # --- Pages ---------------------------------------------------------------------------------------
@@ -80,7 +86,7 @@ def topic_page(reference: Reference, topic: Topic) -> str:
     links = ", ".join(f"[`{e.name}`](#{anchor(e)})" for e in entries)
     blocks = [f"# {topic.title}", *([topic.text] if topic.text else []), links]
     blocks += [block for entry in entries for block in entry_blocks(entry)]
-    return _page(blocks)
+    return page_of(blocks)
 
 
 def entry_blocks(entry: Entry, level: str = "##") -> Iterator[str]:
@@ -147,7 +153,7 @@ def signature_page(reference: Reference) -> str:
         entries = [e for e in reference.entries.values() if e.sort == sort]
         if entries:
             blocks += [f"## {title}", *([text] if text else []), _table(sort, entries)]
-    return _page(blocks)
+    return page_of(blocks)
 
 
 def _table(sort: str, entries: list[Entry]) -> str:
@@ -177,7 +183,7 @@ def _index(reference: Reference) -> str:
         entries = reference.of_topic(topic.name)
         rows = [f"| [{e.name}]({topic.name}.md#{anchor(e)}) | {_cell(e.doc.line)} |" for e in entries]
         blocks.append("\n".join(["| | |", "|---|---|", *rows]))
-    return _page(blocks)
+    return page_of(blocks)
 
 
 def _cell(text: str) -> str:
@@ -190,7 +196,8 @@ def anchor(entry: Entry) -> str:
     return entry.name.removeprefix("@").lower()
 
 
-def _page(blocks: list[str]) -> str:
+def page_of(blocks: list[str]) -> str:
+    """Returns a generated page of some paragraphs."""
     return "\n\n".join(block.strip("\n") for block in [*blocks, MARK]) + "\n"
 
 

@@ -1,10 +1,12 @@
-"""The generated files of a checkout: the pages of `docs/reference`, their pictures, the guide, `llms.txt`."""
+"""The generated files of a checkout: the pages of `docs/reference` and the gallery, their pictures, the guide,
+`llms.txt`.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from aidl_lang.tools.reference import coverage
+from aidl_lang.tools.reference import coverage, gallery
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.guide import guide
 from aidl_lang.tools.reference.llms import llms
@@ -19,25 +21,27 @@ def texts(root: Path) -> dict[str, str]:
     minutes.
     """
     found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
-    return {**found, "docs/guide.md": guide(), "llms.txt": llms(root)}
+    return {**found, gallery.PAGE: gallery.page(root), "docs/guide.md": guide(), "llms.txt": llms(root)}
 
 
-def drawn() -> dict[str, bytes]:
+def drawn(root: Path) -> dict[str, bytes]:
     """Returns every generated picture by its path below the root."""
-    return {f"{_FOLDER}/{path}": data for path, data in pictures(reference()).items()}
+    found = {f"{_FOLDER}/{path}": data for path, data in pictures(reference()).items()}
+    return found | gallery.pictures(root)
 
 
 def strays(root: Path, known: set[str]) -> list[str]:
     """Returns pages and pictures that are no longer generated."""
     folder = root / _FOLDER
     files = [path for path in folder.glob("*.md") if path.read_text("utf-8").rstrip().endswith(MARK)]
-    found = (path.relative_to(root).as_posix() for path in (*files, *folder.glob("images/*")))
+    images = (*folder.glob("images/*"), *(root / gallery.IMAGES).glob("*"))
+    found = (path.relative_to(root).as_posix() for path in (*files, *images))
     return sorted(path for path in found if path not in known)
 
 
 def write(root: Path) -> None:
     """Updates the generated files. A file that is right already is not touched."""
-    current = {path: text.encode() for path, text in texts(root).items()} | drawn()
+    current = {path: text.encode() for path, text in texts(root).items()} | drawn(root)
     current[COVERAGE] = coverage.page().encode()
     for path, data in current.items():
         file = root / path
