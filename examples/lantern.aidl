@@ -1,5 +1,4 @@
 /// A storm lantern: a tank, a globe with a flame between two wires, a vented chimney, and a handle.
-@orientation(front)
 assembly lantern {
     param height = 240 in 180..300
     param vents = 4 in 2..6 step 1
@@ -10,7 +9,7 @@ assembly lantern {
     @detached
     solid handle {
         construction way = arch(width: 1.12 * w, height: 1.1 * w)
-        bow = thick([way.right, way.top, way.left], 5)
+        bow = thick([way.right, way.top, way.left], 5, caps: "butt")
     }
 
     @color("lightcyan")
@@ -66,7 +65,7 @@ assembly lantern {
             up(0.5 * w),
             line_to(0.3 * w, 1.2 * w)
         )
-        rod = thick(way, 5)
+        rod = thick(way, 5, caps: "butt")
     }
     left_wire = mirror(right_wire, about: y_axis)
 
@@ -76,9 +75,9 @@ assembly lantern {
         chimney.on_top_of(globe, align: center)
         flame.bottom == burner.top
         flame.center_x == burner.center_x
-        right_wire.bottom == tank.body.top - 4
-        handle.bottom == right_wire.way.corner[3].y
-        centered_horizontally(handle, tank)
+        right_wire.way.corner[0].y == tank.body.top - 4
+        handle.way.bottom == right_wire.way.corner[3].y
+        centered_horizontally(handle.way, tank)
         tank.center_x == 0
     }
 }

@@ -61,7 +61,7 @@ def extremes(geo: Geo, frame: Transform) -> Iterator[Vec]:
     """Points of the curves of a geometry, in `frame`, whose box is the box of the curves."""
     if geo.type == "point":
         yield frame.inward(tuple(geo.data["at"]))
-    for curve in geo.curves():
+    for curve in geo.curves(even_construction=True):
         yield from _EXTREMES[curve.type](curve, frame)
 
 
@@ -73,7 +73,7 @@ def structure_extremes(node: Node, frame: Transform, ignored: Collection[Node] =
             for y in (bb["bottom"], bb["top"]):
                 yield frame.inward((x, y))
     for geo in node.geometry.values():
-        if geo.type != "point":
+        if geo.type != "point" and not geo.construction:
             yield from extremes(geo, frame)
     for child in node.children.values():
         if child.kind != "hole" and child not in ignored:

@@ -78,13 +78,13 @@ class Geo:
             self._members = gathered(self.parts)
         return self._members
 
-    def curves(self) -> Iterator[Geo]:
-        if self.construction:
+    def curves(self, *, even_construction: bool = False) -> Iterator[Geo]:
+        if self.construction and not even_construction:
             return
         if self.type != "point" and not self.parts:
             yield self
         for part in self.parts.values():
-            yield from part.curves()
+            yield from part.curves(even_construction=self.construction)
 
 
 @dataclass(eq=False)

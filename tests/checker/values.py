@@ -167,6 +167,8 @@ class Scope:
 
     def canonical(self, name: str) -> str:
         for here in self.chain():
+            if not here.is_library and fold(name) in here.functions:
+                return name
             target = here.aliases.get(fold(name))
             if target is not None:
                 return self.canonical(target) if fold(target) != fold(name) else target

@@ -35,6 +35,8 @@ def program(snippet: Snippet) -> str:
         around = "solid s { r = rectangle(width: 60, height: 40)\nSNIPPET\n}\n"
     if snippet.prefix == "holes":
         around = "solid s { r = rectangle(width: 160, height: 40)\nSNIPPET\n}\n"
+    if snippet.prefix in ("@behind", "@in_front"):  # of a sibling
+        around = f"assembly s {{ solid other {SOLID}\nSNIPPET\nsolid p {SOLID} }}\n"
     return around.replace("SNIPPET", snippet.expanded)
 
 

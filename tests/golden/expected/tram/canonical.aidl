@@ -1,5 +1,4 @@
 /// A city tram: doors and windows along its body, two bogies, a pantograph under its wire, and the track.
-@orientation(front)
 assembly tram {
     param length = 360 in 300..440
     param windows = 3 in 1..4 step 1
@@ -31,14 +30,15 @@ assembly tram {
 
     @color("dimgray")
     solid pantograph {
-        lower = thick(path(from: (-20, 0), line_to(22, 24), line_to(-4, 48)), 3)
+        way = path(from: (-20, 0), line_to(22, 24), line_to(-4, 48))
+        arms = thick(way, 3)
         shoe = rounded_rectangle(center: (-4, 50), width: 56, height: 5, radius: 2)
         foot = rectangle(center: (-10, 0), width: 50, height: 6)
     }
 
     @color(paint)
     solid body {
-        hull = rounded_rectangle(width: length, height: 92, radii: [6, 6, 24, 24])
+        hull = rounded_rectangle(width: length, height: 92, radius: 16)
         construction skirt = rectangle(width: length, height: 26)
         constrain skirt.bottom_center == hull.bottom_center
 
