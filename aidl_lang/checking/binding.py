@@ -76,8 +76,8 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -
 
 
 def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Binding | list[Mismatch]:
-    """Returns the candidate that fits best (least conversion, then fewest defaults, then first written), or
-    all mismatches.
+    """Returns the candidate that fits best (least conversion, then fewest bare numbers for an angle that may
+    be left out, then fewest defaults, then first written), or all mismatches.
     """
     found = outcomes(candidates, given)
     fits = [outcome for outcome in found if isinstance(outcome, Binding)]
