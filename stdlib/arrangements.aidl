@@ -102,6 +102,7 @@ constraint flush(things: list, side: text, by: length = 0) {
 /// From left to right, each beyond the one before; `gap` is exact, `at_least` a minimum.
 ///
 /// `pitch` is the way from centre to centre. `align` (top, center, bottom) also lines them up.
+/// The members of a list count one by one, also beside other things; `[battlements]` is one group.
 ///
 /// ```aidl
 /// drawing d {
@@ -129,6 +130,7 @@ constraint row(things: peers, pitch: length, align: text = "free") {
 /// From top to bottom, each below the one before; `gap` is exact, `at_least` a minimum.
 ///
 /// `pitch` is the way from centre to centre. `align` (left, center, right) also lines them up.
+/// The members of a list count one by one, also beside other things; `[battlements]` is one group.
 ///
 /// ```aidl
 /// drawing d {

@@ -99,6 +99,7 @@ fn quarter(a: box, of: box) = if written(a.center_y - of.center_y) < 0 then if w
 /// Without `margin` the room before the first and behind the last is as wide as a gap; with it, they stand that
 /// far from the border (`margin: 0`: flush). Nothing overlaps, and nothing stands out. Along x the order is
 /// from left to right; along y upwards, or downwards if the first guesses run so. One thing is centred.
+/// The members of a list count one by one, also beside other things; `[slits]` is one group.
 ///
 /// ```aidl
 /// solid panel {

@@ -86,8 +86,8 @@ shape rosette(
     let bulge = outer_radius - inner_radius * cos(half)
     let radius = (chord ^ 2 + bulge ^ 2) / (2 * bulge)
     let opening = atan2(chord, radius - bulge)
-    assert opening <= 90deg + half,
-        "the lobes of this rosette run into each other: it needs fewer, or flatter ones"
+    assert inner_radius >= outer_radius * cos(half) / (1 + sin(half)),
+        "the lobes of this rosette run into each other: it needs fewer, or an `inner_radius` just above what is asked"
     for i in 0..<lobes {
         let way = angle + half * (2 * i + 1)
         edge[i] = arc(

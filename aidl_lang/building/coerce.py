@@ -6,6 +6,7 @@ Each returns None after reporting a value that does not fit, unless it says othe
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator
 
 from aidl_lang.building import expression as ex
@@ -189,6 +190,35 @@ def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | Non
     if known is None:
         return None
     if abs(known - round(known)) > 1e-9 * max(1.0, abs(known)) or not math.isfinite(known):
-        it.misfit(rules.fraction(what, f"{known:g}"), node)
+        it.misfit(rules.fraction(what, f"{known:g}"), node, _numbered(it, node))
         return None
     return round(known)
+
+
+def _numbered(it: Interpreter, node: ast.Node) -> Fix | None:
+    """Returns the edits that have a loop count its turns, for an index that is its variable; None for another
+    index.
+    """
+    symbol = it.program.resolution.uses.get(node)
+    loop = symbol.node if symbol is not None else None
+    if not isinstance(loop, ast.For) or len(loop.variables) > 1 or isinstance(loop.iterable, ast.Range):
+        return None
+    taken = set(re.findall(r"\w+", loop.span.source.text))
+    count = next((name for name in ("i", "j", "k", "n", "number") if name not in taken), None)
+    if count is None:
+        return None
+    variable, through = loop.variables[0], loop.iterable.span
+    indices = [
+        index
+        for found in ast.walk(loop.body)
+        for index in (*getattr(found, "indices", ()), getattr(found, "index", None))
+        if isinstance(index, ast.Name) and it.program.resolution.uses.get(index) is symbol
+    ]
+    edits = [
+        Edit(Span(through.source, variable.span.start, variable.span.start), f"{count}, "),
+        Edit(Span(through.source, through.start, through.start), "enumerate("),
+        Edit(Span(through.source, through.end, through.end), ")"),
+        *(Edit(index.span, count) for index in indices),
+    ]
+    told = f"for {count}, {variable.text} in enumerate({shown(loop.iterable)})"
+    return Fix(f"count the turns: `{told}`, and `[{count}]`", tuple(edits), is_sure=True)

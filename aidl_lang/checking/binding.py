@@ -2,7 +2,7 @@
 
 In other words means: an argument by a synonym of its parameter's name (`r` for `radius`), two parameters by
 one pair (`size: (40, 20)`), a point by its coordinates (`x: 3, y: 4`), sizes by their order without the
-centre before them (`circle(5)`).
+centre before them (`circle(5)`) or behind what is named (`rectangle(bottom_center: p, 20, 10)`).
 """
 
 from __future__ import annotations
@@ -67,12 +67,17 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -
         loose = [_loosely(candidate, given) for candidate in among]
         if fits := _unambiguous([b for b in loose if isinstance(b, Binding)], given):
             return fits
+    if following := _following(given):
+        for among in choices:
+            filled = [_filling(candidate, given, following) for candidate in among]
+            if fits := _agreeing([b for b in filled if isinstance(b, Binding)], given, following):
+                return fits
     return loose
 
 
 def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Binding | list[Mismatch]:
-    """Returns the candidate that fits best (least conversion, then fewest defaults, then first written), or
-    all mismatches.
+    """Returns the candidate that fits best (least conversion, then fewest bare numbers for an angle that may
+    be left out, then fewest defaults, then first written), or all mismatches.
     """
     found = outcomes(candidates, given)
     fits = [outcome for outcome in found if isinstance(outcome, Binding)]
@@ -89,6 +94,73 @@ def _unambiguous(fits: Sequence[Binding], given: Sequence[GivenArgument]) -> lis
         meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
         if len(meant) > 1 and fold(argument.name) not in map(fold, meant):
             return [_ambiguous(fit.signature, argument.name, list(meant), index) for fit in fits]
+    return list(fits)
+
+
+def in_order(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Mapping[int, str]:
+    """Returns the parameters that the arguments without a name would fill, by their index, if they all went
+    to parameters that are not named; none if no candidate takes them so, or candidates differ about it.
+    """
+    loose = [i for i, g in enumerate(given) if g.name is None]
+    fits = [b for c in candidates if isinstance(b := _filling(c, given, loose), Binding)]
+    found = {tuple((i, fit.parameter_of(i)) for i in loose) for fit in fits}
+    return {i: name for i, name in found.pop() if name is not None} if len(found) == 1 else {}
+
+
+def _following(given: Sequence[GivenArgument]) -> Sequence[int]:
+    """Returns the arguments without a name behind the first that has one, by their index."""
+    first = next((i for i, g in enumerate(given) if g.name is not None), len(given))
+    return [i for i in range(first, len(given)) if given[i].name is None]
+
+
+def _filling(
+    signature: Signature, given: Sequence[GivenArgument], following: Sequence[int]
+) -> Binding | Mismatch:
+    """Matches some arguments without a name to the parameters that nothing else fills, in their order;
+    without a centre that may be left out if they do not begin with it.
+    """
+    read = [(replace(g), ArgumentSource(i)) for i, g in enumerate(given) if i not in following]
+    renamed = _renamed(signature, read)
+    if isinstance(renamed, Mismatch) or signature.gathers or signature.takes_any:
+        return Mismatch(signature, "does not fit")
+    names = [name for name, _, _ in signature.parameters]
+    leading = sum(g.name is None for g, _ in renamed)
+    filled = {*names[:leading], *(signature.by_fold.get(fold(g.name)) for g, _ in renamed if g.name)}
+    free = [name for name in names if name not in filled]
+    center = _center(signature)
+    choices = [free, free[1:]] if free and free[0] == center else [free]
+    outcome: Binding | Mismatch = Mismatch(signature, "does not fit")
+    for choice in choices:
+        if len(choice) < len(following):
+            break
+        late = [
+            (replace(given[i], name=name), ArgumentSource(i))
+            for i, name in zip(following, choice, strict=False)
+        ]
+        outcome = _bound(signature, [*renamed, *late])
+        if isinstance(outcome, Binding):
+            break
+    return outcome
+
+
+def _agreeing(
+    fits: Sequence[Binding], given: Sequence[GivenArgument], following: Sequence[int]
+) -> list[Binding | Mismatch]:
+    """Returns the candidates that fit; a mismatch instead if an argument without a name is one parameter here
+    and another there.
+    """
+    for index in following:
+        meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
+        if len(meant) > 1 and not isinstance(given[index].type, AnyType):
+            return [
+                Mismatch(
+                    fit.signature,
+                    f"does not tell whether {' or '.join(ticked(meant))} is meant",
+                    index,
+                    tuple(meant),
+                )
+                for fit in fits
+            ]
     return list(fits)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from aidl_lang.checking.binding import in_order
 from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
 from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
@@ -103,20 +104,48 @@ def _knows(signature: Signature, word: str) -> bool:
 def _ambiguous(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports a word that may mean several parameters. Returns whether there is one."""
+    """Reports a word, or an argument by its place, that may mean several parameters. Returns whether there is
+    one.
+    """
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
         return False
-    word = given[miss.argument].name or ""
-    argument = next(a for a in node.arguments if a.name is not None and a.name.text == word)
-    assert argument.name is not None
+    argument = node.arguments[miss.argument - (len(given) - len(node.arguments))]
+    word = argument.name or argument.value
     names = " or ".join(ticked(miss.meanings))
     check.report(
         "E0344",
-        f"`{word}` of `{node.callee.text}` could mean {names}",
-        argument.name,
+        f"`{shown(word)}` of `{node.callee.text}` could mean {names}",
+        word,
         label="say which",
         hints=[f"write `{name}: {shown(argument.value)}`" for name in miss.meanings],
+    )
+    return True
+
+
+def _filled_twice(
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+) -> bool:
+    """Reports arguments without a name that stand for parameters which are named as well: `rectangle(20, 10,
+    bottom_center: p)`. Returns whether they would fit by name.
+    """
+    names = in_order([m.signature for m in misses], given)
+    before = len(given) - len(node.arguments)
+    loose = [(node.arguments[i - before], name) for i, name in sorted(names.items()) if i >= before]
+    if not loose or len(loose) < len(names) or len(names) == len(given):
+        return False
+    named = [f"{name}: {shown(a.value)}" for a, name in loose]
+    spans = [(a.value.span, name) for a, name in loose]
+    edits = tuple(Edit(Span(s.source, s.start, s.start), f"{name}: ") for s, name in spans)
+    written = next(a.name for a in node.arguments if a.name is not None)
+    check.report(
+        "E0311",
+        f"`{node.callee.text}` counts arguments without a name from its first parameter, "
+        f"also where `{written.text}` is named",
+        loose[0][0].value,
+        label=f"in this call of `{node.callee.text}`",
+        hints=[f"name {'it' if len(named) == 1 else 'them'}: `{', '.join(named)}`"],
+        fix=Fix(f"write `{', '.join(named)}`", edits, is_sure=True),
     )
     return True
 
@@ -294,6 +323,7 @@ def _unknown_parameter(
 
 _ANSWERS = (
     _ambiguous,
+    _filled_twice,
     _loose_coordinates,
     _pair_for_one,
     _half_or_double,

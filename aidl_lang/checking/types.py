@@ -312,7 +312,8 @@ class Binding:
     signature: Signature
     arguments: Mapping[str, tuple[int, ...]]
     gathered: str | None
-    cost: tuple[int, int]
+    cost: tuple[int, int, int]
+    """conversions, bare numbers read as an angle that could be left out, and parameters left out"""
     positional: tuple[int, ...] = ()
     sources: tuple[ArgumentSource, ...] = ()
 
@@ -413,7 +414,7 @@ def _fitted(
     """Returns the binding with its distance from the wanted types, or the parameter that gets nothing that
     fits.
     """
-    distance, defaulted = (_GATHERED if gathered is not None else 0), 0
+    distance, turned, defaulted = (_GATHERED if gathered is not None else 0), 0, 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:
             if not optional:
@@ -425,7 +426,12 @@ def _fitted(
             if step is None:
                 return Mismatch(signature, f"needs `{name}`", index, kinds=(kind, given[index].type))
             distance += step
-    return Binding(signature, arguments, gathered, (distance, defaulted), positional)
+            turned += optional and kind in _TURNS and given[index].type in _BARE
+    return Binding(signature, arguments, gathered, (distance, turned, defaulted), positional)
+
+
+_TURNS = (NumberType(ANGLE), NumberType(ANGLE, whole=True))
+_BARE = (NumberType(None), NumberType(None, whole=True))
 
 
 def with_article(kind: object) -> str:

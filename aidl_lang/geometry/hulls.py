@@ -174,7 +174,11 @@ def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
     x, y = d[0] - c[0], d[1] - c[1]
     square = x * x + y * y
     rest = square - (r - s) ** 2
-    if rest <= 0 or square == 0:
+    if min(r, s) == 0 and abs(rest) <= 2 * _NEAR * square:
+        rest = 0.0  # a point on the circle is where it is touched: the root of a rounding error is none
+    elif rest <= 0:
+        return None
+    if square == 0:
         return None
     # The outward normal n has length 1 and n·(d - c) = r - s.
     k, h = (r - s) / square, math.sqrt(rest) / square
