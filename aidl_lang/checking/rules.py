@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from aidl_lang.checking import units
 from aidl_lang.checking.types import GeometryType, NumberType, PointType, StructureType, Type
-from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.checking.units import ANGLE, AREA, LENGTH, MaybeDimension
 from aidl_lang.checking.wording import a, comparison_hint
 from aidl_lang.common.records import record
 
@@ -80,6 +80,11 @@ def unequal(what: str, left: MaybeDimension, right: MaybeDimension) -> TypeMisfi
     hint = "both sides need the same dimension; units are written as in `30deg`, `4mm`"
     if {left, right} == {LENGTH, units.multiply(LENGTH, ANGLE)}:  # as the length of an arc is often written
         hint = "an angle times a radius is no length: an arc is `radians(angle) * radius` long"
+    if {left, right} == {LENGTH, AREA}:
+        hint = (
+            "a length times a length is an area, also with `unit(v)`, which is 1 mm long: "
+            "divide by `1mm`, or write `polar(length, angle)`"
+        )
     return TypeMisfit("E0308", f"{what} {a(NumberType(left))} and {a(NumberType(right))}", (hint,))
 
 
