@@ -131,7 +131,9 @@ def print_gallery(runs: int) -> None:
             taken.append((time.process_time() - start, *(stages.get(stage, 0.0) for stage in STAGES)))
         rows.append(tuple(map(median, zip(*taken[1:], strict=True))))
         print(f"| {path.stem} | {' | '.join(map(_milliseconds, rows[-1]))} |")
-    print(f"| *median* | {' | '.join(_milliseconds(median(column)) for column in zip(*rows, strict=True))} |\n")
+    print(
+        f"| *median* | {' | '.join(_milliseconds(median(column)) for column in zip(*rows, strict=True))} |\n"
+    )
 
 
 def _decode_all() -> None:

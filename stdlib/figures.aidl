@@ -140,8 +140,6 @@ shape drop(
 
 /// A heart; `tip` is its lowest point and `dip` the one between the lobes.
 ///
-/// Lies tip down.
-///
 /// ```aidl
 /// solid ornament { body = heart(width: 50, height: 46) }
 /// ```
@@ -165,8 +163,6 @@ shape heart(
 }
 
 /// An egg, widest a little below its middle.
-///
-/// Lies blunt end down.
 ///
 /// ```aidl
 /// solid egg_cup_rim { body = egg(width: 40, height: 54) }

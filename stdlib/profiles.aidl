@@ -3,8 +3,6 @@
 
 /// An L: a level and an upright bar that share the lower left corner.
 ///
-/// Lies with its corner at the lower left.
-///
 /// ```aidl
 /// solid bracket { body = l_shape(width: 40, height: 60, thickness: 8) }
 /// ```
@@ -33,8 +31,6 @@ shape l_shape(
 }
 
 /// A T: a level bar on top of the middle of an upright one.
-///
-/// Lies bar up.
 ///
 /// ```aidl
 /// solid hanger { body = t_shape(width: 60, height: 40, thickness: 8) }
@@ -66,8 +62,6 @@ shape t_shape(
 }
 
 /// A U: a level bar with an upright one at each end, open at the top.
-///
-/// Lies open to the top.
 ///
 /// ```aidl
 /// solid clip { body = u_shape(width: 50, height: 30, thickness: 6) }
@@ -262,8 +256,6 @@ fn cross(
 ) = cross_shape(center: center, width: width, height: height, thickness: thickness, angle: angle)
 
 /// A chevron that points to the right; `thickness` is measured level.
-///
-/// Lies pointing to the right.
 ///
 /// ```aidl
 /// solid marker { body = chevron(width: 30, height: 40, thickness: 12) }

@@ -233,6 +233,10 @@ class Inference:
             return Fact(ANY, fact.reads)
         if isinstance(fact.type, AnyType) and isinstance(self.fact(node.index).type, TextType):
             return Fact(ANY, fact.reads)
+        if isinstance(node.value, ast.Index) and fact.type is ANY and "[" not in _between(node):
+            return Fact(ANY, fact.reads)  # the rest of `[a, b]`, of which `a` was reported
+        if not isinstance(fact.type, ListType | AnyType) and _begins_line(node):
+            return self.misfit(rules.list_on_a_line(shown(node.value), fact.type), node)
         self.whole(node.index, "an index")
         match fact.type:
             case ListType():
@@ -331,6 +335,16 @@ def _loose_number(x: NumberType, y: NumberType) -> Type:
     if x.dimension == y.dimension:
         return NumberType(x.dimension, x.whole or y.whole)
     return ANY
+
+
+def _begins_line(node: ast.Index) -> bool:
+    """Tells whether the `[` of an index stands on a line of its own."""
+    return "\n" in _between(node).partition("[")[0]
+
+
+def _between(node: ast.Index) -> str:
+    """Returns the text between a value and its index."""
+    return node.span.source.text[node.value.span.end : node.index.span.start]
 
 
 def _at(node: ast.Node) -> Span:

@@ -57,6 +57,15 @@ def no_members(text: str, kind: Type) -> TypeMisfit:
     return TypeMisfit("E0305", f"`{text}` is {a(kind)} and has no members by number")
 
 
+def list_on_a_line(text: str, kind: Type) -> TypeMisfit:
+    """Refuses an index that begins a line below something without numbered members."""
+    return TypeMisfit(
+        "E0305",
+        f"this `[` goes on with the line above: `{text}` is {a(kind)} and has no members by number",
+        hints=("a list of things stands in a call: `centered_in([a, b], c)`, `align_left(a, b, c)`",),
+    )
+
+
 def no_whole_number(what: str, kind: Type) -> TypeMisfit:
     """Refuses another value in place of a whole number."""
     return TypeMisfit("E0302", f"{what} must be a whole number, not {a(kind)}")

@@ -18,10 +18,10 @@ _LOOKED_AT = "lighthouse"
 _THEMES = ("blueprint", "ink", "cutter")
 
 _INTRODUCTION = """\
-Programs of at most a hundred lines. Each knob may be turned to both ends of its range, and no message comes: a
-test turns them all.
+Programs of at most a hundred lines. Each knob may be turned to both ends of its range, and no message
+comes: a test turns them all.
 """
-_LOOKS = f"""\
+_LOOKS = """\
 `aidl compile --theme` draws any program as a blueprint, in ink, or as the outlines that a cutter follows.
 """
 
@@ -37,7 +37,12 @@ def page(root: Path) -> str:
         text = path.read_text("utf-8")
         name = path.stem.replace("_", " ")
         link = f"[{path.name}](../{FOLDER}/{path.name}), {len(text.splitlines())} lines."
-        blocks += [f"## {name.capitalize()}", _image(path.stem, name), f"{_comment(text)} {link}", _knobs(text)]
+        blocks += [
+            f"## {name.capitalize()}",
+            _image(path.stem, name),
+            f"{_comment(text)} {link}",
+            _knobs(text),
+        ]
     shown = [_image(f"{_LOOKED_AT}-{theme}", f"{_LOOKED_AT}, {theme}") for theme in _THEMES]
     return page_of([*blocks, "## Other looks", _LOOKS, "\n".join(shown)])
 

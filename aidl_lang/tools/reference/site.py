@@ -1,4 +1,4 @@
-"""The generated files of a checkout: the pages of `docs/reference` and the gallery, their pictures, the guide,
+"""The generated files of a checkout: the pages of `docs/reference`, the gallery, their pictures, the guide,
 `llms.txt`.
 """
 
