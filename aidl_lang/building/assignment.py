@@ -129,7 +129,19 @@ class Assignment:
             self.first[template] = made, own[0]
         return made
 
-    def _of(self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]) -> Structure:
+    def _of(
+        self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]
+    ) -> Structure | Nothing:
+        follower = next((g for s in source.walk() for g in s.own() if not g.bound_to.is_within(source)), None)
+        if follower is not None:
+            self.it.report(
+                "E0331",
+                f"`{source.name}` cannot be copied alone: `{follower.path}` is made of geometry of "
+                f"`{follower.bound_to.path}`",
+                self.node.value,
+                hints=[f"copy `{follower.bound_to.name}` with all that it holds"],
+            )
+            return NOTHING
         scale = motion.scale
         inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)
         copier = Copier(self.it, None, inside, span=self.node.span)
