@@ -1,7 +1,7 @@
 // Spur gears and what they run on. A tooth is computed once, for a module of 1 mm and with constants only; a gear
 // turns and scales it, so that its unknowns are few however many teeth it has.
 
-/// A spur gear with involute teeth: tooth 0 points to `angle`, the others follow counter-clockwise.
+/// A spur gear, a wheel with involute teeth: tooth 0 points to `angle`, the others follow counter-clockwise.
 ///
 /// `clearance`, `profile_shift` and `addendum` are in modules; `backlash` is what each tooth is thinner than half the
 /// pitch. It has `pitch_radius`, `pitch_diameter`, `base_radius`, `outer_radius`, `root_radius`, `tooth[i]` (each with

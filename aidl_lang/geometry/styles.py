@@ -107,6 +107,8 @@ def idle_looks(
 
     def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
         own, whole = styles[s.path], styles[body.path]
-        return [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
+        # A drawing in it takes its colour.
+        words = _OF_BODIES if any(below.kind == "drawing" for below in s.walk()) else ("color", *_OF_BODIES)
+        return [w for w in words if w in s.attributes and getattr(own, w) != getattr(whole, w)]
 
     return united_notes(root, bodies, other)

@@ -923,7 +923,7 @@ export const about: Record<string, string> = {
   "raspberry_pi_mount": "The four holes of a Raspberry Pi (models B+ to 5), 58 by 49 mm, for M2.5 screws; about their middle.",
   "bearing": "A ball bearing by its number, as 608: `bore`, `outside` and `width`.",
   "bearing_seat": "The hole that a ball bearing is pressed into, `play` wider than it, placed with `at`; in a `hole` its rim.",
-  "gear": "A spur gear with involute teeth: tooth 0 points to `angle`, the others follow counter-clockwise.",
+  "gear": "A spur gear, a wheel with involute teeth: tooth 0 points to `angle`, the others follow counter-clockwise.",
   "internal_gear": "A ring gear, with its teeth inside: tooth 0 points from `angle` to the centre.",
   "rack": "A toothed bar: `center` is the middle of its pitch line, along which the teeth stand `pi * module` apart.",
   "meshes": "The gears run together: they stand the sum of their pitch radii apart, and a tooth of one meets a gap of the other.",
