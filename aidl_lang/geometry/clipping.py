@@ -119,7 +119,7 @@ def _clipped(curve: Piece, stretches: Sequence[_Stretch], within: Sequence[bool]
             before = inner.pop()
             stretch = _Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
         inner.append(stretch)
-    if len(inner) > 1 and inner[-1].t1 == inner[0].t0 + 1:
+    if is_closed(curve) and len(inner) > 1 and inner[-1].t1 == inner[0].t0 + 1:
         last, first = inner.pop(), inner[0]
         inner[0] = _Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
     is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))

@@ -50,6 +50,31 @@ lattices = st.builds(
 )
 
 
+# --- Single curves -----------------------------------------------------------------------------------
+
+
+spots = st.tuples(st.floats(-40, 40), st.floats(-40, 40))
+
+
+@given(stars(), spots, spots)
+def test_a_line_is_cut_as_shapely_cuts_it(corners: list[Vec], start: Vec, end: Vec) -> None:
+    """Also one with both ends inside that leaves the star in between."""
+    line = shapely.LineString([start, end])
+    if line.length < 1:
+        return
+    (one,) = clipped_each([Line(start, end)], polygon(corners))
+    assert total(one.inner) == pytest.approx(line.intersection(shapely.Polygon(corners)).length, abs=1e-3)
+
+
+def test_a_line_that_leaves_and_comes_back_has_a_gap() -> None:
+    notched = polygon([(0, 0), (30, 0), (30, 20), (20, 20), (20, 10), (10, 10), (10, 20), (0, 20)])
+    (one,) = clipped_each([Line((5, 15), (25, 15))], notched)
+    assert [(p.start, p.end) for p in one.inner if isinstance(p, Line)] == [
+        ((5, 15), (10, 15)),
+        ((20, 15), (25, 15)),
+    ]
+
+
 # --- Areas -------------------------------------------------------------------------------------------
 
 
