@@ -207,6 +207,10 @@ def test_other_spellings_and_synonyms_are_found() -> None:
     assert known.misspelt("perpendiculr") is known.entries["perpendicular"]
 
 
+def test_the_patterns_of_the_library_are_those_that_derive() -> None:
+    assert {entry.name for entry in reference().of_topic("patterns")} == builtins.FILLINGS
+
+
 # --- What is generated ----------------------------------------------------------------------------
 
 

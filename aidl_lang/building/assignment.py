@@ -132,7 +132,8 @@ class Assignment:
     def _of(
         self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]
     ) -> Structure | Nothing:
-        follower = next((g for s in source.walk() for g in s.own() if not g.bound_to.is_within(source)), None)
+        outward = (g for g in self.it.following if not g.bound_to.is_within(source))
+        follower = next((g for g in outward if g.owner.is_within(source)), None)
         if follower is not None:
             self.it.report(
                 "E0331",

@@ -7,7 +7,7 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 from aidl_lang.building import curves
@@ -232,10 +232,6 @@ def _structure(
             yield from _structure(child, whole, here, side, ignored)
 
 
-_INSIDE: Mapping[str, tuple[int, ...]] = {"tiled": (1,), "clip": (0, 1), "difference": (0,)}
-"""The operands that an outline is a part of each."""
-
-
 def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
     """Tells whether an outline made of others is a part of one in the same box, as a pattern is of the wall
     that it fills: it takes no room of its own then.
@@ -243,13 +239,18 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
     recipe = outline.recipe
     if recipe is None:
         return False
-    groups = [recipe.operands[n] for n in _INSIDE.get(recipe.kind, ())]
-    if recipe.kind == "intersect":
-        groups = list(recipe.operands)
-    elif recipe.kind == "offset" and recipe.numbers["distance"].value <= 0:
-        groups = [recipe.operands[0]]
+    covers: Sequence[tuple[Geometry, ...]] = ()
+    match recipe.kind:
+        case "tiled":
+            covers = recipe.operands[1:2]
+        case "clip" | "intersect":
+            covers = recipe.operands
+        case "difference":
+            covers = recipe.operands[:1]
+        case "offset" if recipe.numbers["distance"].value <= 0:
+            covers = recipe.operands
     return any(
-        all(_is_in(g, whole, ignored) or _lies_inside(g, whole, ignored) for g in group) for group in groups
+        all(_is_in(g, whole, ignored) or _lies_inside(g, whole, ignored) for g in cover) for cover in covers
     )
 
 

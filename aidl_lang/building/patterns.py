@@ -64,14 +64,15 @@ class _Call:
         if found is not None and found < 0:
             self.wrong(f"`{name}` is a number of members, and this is {found}", "write 1 or more")
             return None
-        if found is not None and found > self.it.limits.entities:
-            self.it.report(
-                "E0805",
-                f"this pattern has {found} members; at most {self.it.limits.entities} are allowed",
-                self.node,
-            )
-            return None
-        return found
+        return None if found is None or self.is_too_many(found) else found
+
+    def is_too_many(self, members: float) -> bool:
+        """Reports a number of members beyond the limit. Returns whether it is."""
+        most = self.it.limits.entities
+        if members > most:
+            message = f"this pattern has {members:.0f} members; at most {most} are allowed"
+            self.it.report("E0805", message, self.node)
+        return members > most
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""
@@ -330,12 +331,7 @@ def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expr
         call.wrong(f"the `pitch` is {pitch.value:g}", "write the way from one member to the next, in mm")
         return None
     fit = room.value / pitch.value
-    if fit > call.it.limits.entities:
-        call.it.report(
-            "E0805",
-            f"this pattern has {fit:.0f} members; at most {call.it.limits.entities} are allowed",
-            call.node,
-        )
+    if call.is_too_many(fit):
         return None
     if is_closed:
         n = max(1, round(fit))

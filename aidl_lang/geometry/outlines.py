@@ -23,7 +23,14 @@ from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.tiling import MOST, Lattice, TooMany, tiled_areas, tiled_bars, tiled_strokes
+from aidl_lang.geometry.tiling import (
+    MOST,
+    Lattice,
+    TooManyCopiesError,
+    tiled_areas,
+    tiled_bars,
+    tiled_strokes,
+)
 from aidl_lang.geometry.trace import trace
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
@@ -203,7 +210,7 @@ class _Outliner:
                 found = _pieces(tiled_bars(cell, region, lattice, width))
             else:
                 found = tiled_strokes(cell, region, lattice, whole=whole)
-        except TooMany as many:
+        except TooManyCopiesError as many:
             self.notes.append(notes.too_many(g, recipe, many.count, MOST))
             return []
         if not found:

@@ -16,7 +16,7 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("stroke", "dash", "opacity")
+_OF_BODIES = ("color", "stroke", "dash", "opacity")
 """Looks that a body has as a whole."""
 
 
@@ -107,8 +107,9 @@ def idle_looks(
 
     def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
         own, whole = styles[s.path], styles[body.path]
-        # A drawing in it takes its colour.
-        words = _OF_BODIES if any(below.kind == "drawing" for below in s.walk()) else ("color", *_OF_BODIES)
-        return [w for w in words if w in s.attributes and getattr(own, w) != getattr(whole, w)]
+        words = [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
+        if "color" in words and any(below.kind == "drawing" for below in s.walk()):
+            words.remove("color")  # the drawing takes it
+        return words
 
     return united_notes(root, bodies, other)

@@ -44,7 +44,7 @@ _AT_ONCE = 1000
 Floats = NDArray[np.float64]
 
 
-class TooMany(Exception):  # noqa: N818 (no fault of ours: it is told with the number)
+class TooManyCopiesError(Exception):
     """Raised with the number of copies that a region would take."""
 
     def __init__(self, count: int) -> None:
@@ -117,12 +117,12 @@ class Lattice:
                 _span(np.array((-step[1], step[0])) / across, low, high),
             ]
         if (tried := len(spans[0]) * len(spans[1])) > _MOST_TRIED:
-            raise TooMany(tried)
+            raise TooManyCopiesError(tried)
         j, i = np.meshgrid(spans[1], spans[0], indexing="ij")
         ways = i.reshape(-1, 1) * step + j.reshape(-1, 1) * row
         kept = ways[((ways >= low) & (ways <= high)).all(axis=1)]
         if len(kept) > MOST:
-            raise TooMany(len(kept))
+            raise TooManyCopiesError(len(kept))
         return [(x, y) for x, y in (kept + self.offset).tolist()]
 
     def run_of(self, curve: Piece) -> tuple[Vec, Vec | None] | None:
@@ -155,7 +155,7 @@ class Lattice:
             ends = sorted(side / _cross(unit, other) for side in (min(sides), max(sides)))
             rows = range(math.ceil(ends[0]), math.floor(ends[1]) + 1)
         if len(rows) > MOST:
-            raise TooMany(len(rows))
+            raise TooManyCopiesError(len(rows))
         for k in rows:
             dx, dy = (k * other[0], k * other[1]) if other is not None else (0.0, 0.0)
             if not min(sides) <= _cross(unit, (dx, dy)) <= max(sides):

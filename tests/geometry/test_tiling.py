@@ -15,7 +15,14 @@ from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.tiling import MOST, Lattice, TooMany, tiled_areas, tiled_bars, tiled_strokes
+from aidl_lang.geometry.tiling import (
+    MOST,
+    Lattice,
+    TooManyCopiesError,
+    tiled_areas,
+    tiled_bars,
+    tiled_strokes,
+)
 from tests.geometry.test_outlines import polygon, stars
 
 _REACH = 50
@@ -229,7 +236,7 @@ def test_bars_have_the_area_of_their_closed_form() -> None:
 def test_ten_thousand_copies_are_made_and_no_more() -> None:
     found = tiled_areas(disc(0.4), rectangle(99, 99), Lattice((1, 0), (0, 1)), whole=True)
     assert len(found.faces) == 98 * 98
-    with pytest.raises(TooMany) as many:
+    with pytest.raises(TooManyCopiesError) as many:
         tiled_areas(disc(0.4), rectangle(200, 99), Lattice((1, 0), (0, 1)), whole=True)
     assert many.value.count > MOST
 

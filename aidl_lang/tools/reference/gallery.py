@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import takewhile
 from pathlib import Path
 
-from aidl_lang.tools.reference.collect import doc
+from aidl_lang.tools.reference.collect import headline
 from aidl_lang.tools.reference.pages import page_of, picture_of
 
 FOLDER = "examples/gallery"
@@ -40,7 +38,7 @@ def page(root: Path) -> str:
         blocks += [
             f"## {name.capitalize()}",
             _image(path.stem, name),
-            f"{_comment(text)} {link}",
+            f"{headline(text)} {link}",
             _knobs(text),
         ]
     shown = [_image(f"{_LOOKED_AT}-{theme}", f"{_LOOKED_AT}, {theme}") for theme in _THEMES]
@@ -71,12 +69,6 @@ def _image(name: str, about: str) -> str:
     return f'<img src="images/gallery/{name}.svg" alt="{about}" width="{_WIDTH}">'
 
 
-def _comment(text: str) -> str:
-    """Returns the first sentence of the comment that a program begins with."""
-    comment = takewhile(lambda line: line.startswith("//"), text.splitlines())
-    return doc("\n".join(line.lstrip("/ ") for line in comment)).line
-
-
 def _knobs(text: str) -> str:
-    lines: Sequence[str] = [line.strip() for line in text.splitlines()]
+    lines = [line.strip() for line in text.splitlines()]
     return "\n".join(["```text", *(line for line in lines if line.startswith("param ")), "```"])

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import takewhile
 from pathlib import Path
 
-from aidl_lang.tools.reference.collect import doc, reference
+from aidl_lang.tools.reference.collect import doc, headline, reference
 
 _HEAD = """\
 # AIDL
@@ -58,6 +57,4 @@ def _page(path: Path) -> str:
 
 def _example(path: Path) -> str:
     """Returns the name of an example and the first sentence of the comment it begins with."""
-    comment = takewhile(lambda line: line.startswith("//"), path.read_text("utf-8").splitlines())
-    about = doc("\n".join(line.lstrip("/ ") for line in comment)).line.rstrip(".")
-    return f"- [{path.stem}](examples/{path.name}): {about}"
+    return f"- [{path.stem}](examples/{path.name}): {headline(path.read_text('utf-8')).rstrip('.')}"
