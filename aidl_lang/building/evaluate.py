@@ -76,31 +76,42 @@ def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
 
 
 def _list(it: Interpreter, node: ast.List, env: Env) -> Value:
-    items = [evaluate(it, item, env) for item in node.items]
-    return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
+    return _listed([evaluate(it, item, env) for item in node.items])
+
+
+def _listed(found: list[Value]) -> Value:
+    return NOTHING if any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
 
 
 def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
-    turns = iterate(it, node.iterable, env)
-    found: list[Value] = []
-    for item in turns or ():
-        it.count_turn(node)
-        scope = turn_scope(it, env.scope, node.variables, item, node)
-        inner = Env(scope, env.here, env.reach)
+    def made(inner: Env) -> list[Value]:
         if node.condition is None or truth(it, evaluate(it, node.condition, inner), node.condition):
-            found.append(evaluate(it, node.element, inner))
-    return NOTHING if turns is None or any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+            return [evaluate(it, node.element, inner)]
+        return []
+
+    return _of_turns(it, node, env, made)
 
 
 def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
-    """Returns the arguments of all turns, one after the other."""
+    return _of_turns(it, node, env, lambda inner: _arguments_of(it, node.body, inner))
+
+
+def _of_turns(
+    it: Interpreter,
+    node: ast.Comprehension | ast.ForArguments,
+    env: Env,
+    made: Callable[[Env], list[Value]],
+) -> Value:
+    """Returns a list of what is made in all turns, one after the other."""
     turns = iterate(it, node.iterable, env)
+    if turns is None:
+        return NOTHING
     found: list[Value] = []
-    for item in turns or ():
+    for item in turns:
         it.count_turn(node)
         scope = turn_scope(it, env.scope, node.variables, item, node)
-        found += _arguments_of(it, node.body, Env(scope, env.here, env.reach))
-    return NOTHING if turns is None or any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+        found += made(Env(scope, env.here, env.reach))
+    return _listed(found)
 
 
 def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
@@ -108,8 +119,7 @@ def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
     if isinstance(test, Nothing):
         return NOTHING
     taken = node.then if truth(it, test, node.test) else node.otherwise
-    found = _arguments_of(it, taken, env) if taken is not None else []
-    return NOTHING if any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+    return _listed(_arguments_of(it, taken, env) if taken is not None else [])
 
 
 def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[Value]:
