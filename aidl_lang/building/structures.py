@@ -49,11 +49,12 @@ def build_structure(
     structure.doc = node.doc
     edits = edits_on(it, node.name.text, indices, scope) if parent is not None else ()
     _place(it, structure, node.placement, scope, edits)
-    read_attributes(it, structure, node.attributes, scope)
     body = Scope(_around(scope, node.name.text, structure), structure, labels=scope.labels)
     structure.scope = body
     own_names(body, structure)
     run_block(it, node.body.statements, body, structure)
+    # what is said of the root may name its params, as nothing is around it
+    read_attributes(it, structure, node.attributes, body if parent is None else scope)
     finish(it, structure)
     return structure
 

@@ -147,6 +147,8 @@ class Resolver:
             self._declare(inner, node.body.statements)
             self.is_ordered = not isinstance(node, ast.ConstraintDefinition)
             self._statements(node.body.statements, inner)
+            if self._is_root(node, scope):
+                self._attributes(node.attributes, inner)  # nothing is around it that could be named
             complaints.check_aliases(self, inner)
         self.is_ordered = before
 
@@ -207,9 +209,17 @@ class Resolver:
         if isinstance(node, ast.Structure):
             self._indices(node.indices, scope)
             self._placement(node.placement, scope)
-            if node.parameters is None:
+            if node.parameters is None and not self._is_root(node, scope):
                 self._attributes(node.attributes, scope)
         self.definition(node, scope)
+
+    @staticmethod
+    def _is_root(node: ast.Node, scope: SymbolScope) -> bool:
+        return (
+            isinstance(node, ast.Structure)
+            and node.parameters is None
+            and isinstance(scope.owner, ast.Module)
+        )
 
     def _for(self, node: ast.For, scope: SymbolScope) -> None:
         self.expression(node.iterable, scope)

@@ -199,7 +199,8 @@ def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
     from aidl_lang.export.picture import pages
 
     drawn = [page for job in jobs for page in pages(job)]
-    return Exported(to_pdf(drawn, jobs[0].model.root.path), notes=character_notes(drawn))
+    root = jobs[0].model.root
+    return Exported(to_pdf(drawn, (root.doc or root.path).partition("\n")[0]), notes=character_notes(drawn))
 
 
 def _json(job: Job) -> Exported:

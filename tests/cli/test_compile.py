@@ -57,11 +57,21 @@ def test_param_is_set(aidl: Aidl) -> None:
     assert box["right"] - box["left"] == pytest.approx(100)
 
 
-@pytest.mark.parametrize("value", ["width", "=3", "width="])
+@pytest.mark.parametrize("value", ["width", "=3"])
 def test_param_must_be_a_name_and_a_value(aidl: Aidl, value: str) -> None:
     result = aidl("compile", "good.aidl", "-D", value)
     assert result.code == 2
     assert "NAME=VALUE" in result.err
+
+
+def test_a_text_can_be_set_to_nothing(aidl: Aidl, folder: Path) -> None:
+    (folder / "sign.aidl").write_text(
+        'param word = "A"\nsolid s {\n    b = square(size: 30)\n'
+        '    if word != "" { drawing d { t = text(word, height: 5) } }\n}\n'
+    )
+    assert "s.d" in aidl("compile", "sign.aidl", "-o", "-").out
+    assert "s.d" not in aidl("compile", "sign.aidl", "-D", "word=", "-o", "-").out
+    assert "E0910" in aidl("compile", "good.aidl", "-D", "width=").err
 
 
 @pytest.mark.parametrize("define", ["width=1000", "widht=100"])

@@ -26,6 +26,15 @@ assembly a {
 """
 
 
+def test_the_bare_command_greets_with_what_one_needs_first(aidl: Aidl) -> None:
+    result = aidl()
+    assert result.code == 0
+    verbs = re.findall(r"^  aidl ([a-z]+)", result.out, re.MULTILINE)
+    assert verbs == ["new", "preview", "compile", "doc", "guide"]
+    for verb in verbs:
+        assert aidl(verb, "--help").code == 0
+
+
 def test_check_says_what_it_found(aidl: Aidl) -> None:
     assert aidl("check", "good.aidl") == Result(0, "", "good.aidl: no mistakes found\n")
     result = aidl("check", "wrong.aidl", "good.aidl", "missing.aidl")
@@ -268,7 +277,6 @@ def test_structure_name(stem: str, name: str) -> None:
 def test_help_and_version(aidl: Aidl) -> None:
     assert aidl("--version").out.startswith("aidl ")
     assert "compile" in aidl("--help").out
-    assert aidl().code == 2
     assert aidl("compile").code == 2
 
 

@@ -196,3 +196,12 @@ def test_who_asks_for_nothing_is_told_nothing() -> None:
     program = '@color("red") @thickness(2) solid s { rim = circle(radius: 5) }'
     for suffix in (".dxf", ".step", ".stl", ".3mf"):
         assert written(suffix, program).notes == ()
+
+
+def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
+    program = "/// A square.\n/// It has four corners.\nsolid plate { body = square(size: 30) }"
+    assert PdfDocument(written(".pdf", program).data).get_metadata_dict()["Title"] == "A square."
+    assert (
+        PdfDocument(written(".pdf", program[program.index("solid") :]).data).get_metadata_dict()["Title"]
+        == "plate"
+    )

@@ -47,6 +47,17 @@ _VERBS = {
     "eval": "measure how models do, over prompts and runs",
 }
 """The verbs in the order of the help; the options of a verb are in the module of its name."""
+_GREETING = f"""\
+AIDL {__version__}: say what the parts are and how they relate, get an exact drawing.
+
+  aidl new part.aidl                     a program to begin with
+  aidl preview part.aidl                 see it in the browser, turn its knobs, drag its points
+  aidl compile part.aidl -o part.svg     draw it; also .pdf .png .dxf .step .stl .3mf
+  aidl doc slot                          what a name means, with an example
+  aidl guide                             the language on a few pages
+
+`aidl --help` lists all there is, `aidl VERB --help` tells more of one.
+"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -57,6 +68,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     _seldom_search()
     try:
         words = sys.argv[1:] if argv is None else argv
+        if not words:
+            sys.stdout.write(_GREETING)
+            return 0
         arguments = _parser(words).parse_args(words)
         code: int = arguments.run(arguments)
         sys.stdout.flush()

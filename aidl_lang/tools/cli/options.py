@@ -209,7 +209,7 @@ def sampling(arguments: argparse.Namespace) -> Sampling:
 
 def _definition(text: str) -> tuple[str, str]:
     name, equals, value = (part.strip() for part in text.partition("="))
-    if not (name and equals and value):
+    if not (name and equals):
         raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as in width=200, not `{text}`")
     return name, value
 
