@@ -147,7 +147,7 @@ class Resolver:
             self._declare(inner, node.body.statements)
             self.is_ordered = not isinstance(node, ast.ConstraintDefinition)
             self._statements(node.body.statements, inner)
-            if self._is_root(node, scope):
+            if isinstance(node, ast.Structure) and self._is_root(node, scope):
                 self._attributes(node.attributes, inner)  # nothing is around it that could be named
             complaints.check_aliases(self, inner)
         self.is_ordered = before
@@ -214,12 +214,8 @@ class Resolver:
         self.definition(node, scope)
 
     @staticmethod
-    def _is_root(node: ast.Node, scope: SymbolScope) -> bool:
-        return (
-            isinstance(node, ast.Structure)
-            and node.parameters is None
-            and isinstance(scope.owner, ast.Module)
-        )
+    def _is_root(node: ast.Structure, scope: SymbolScope) -> bool:
+        return node.parameters is None and isinstance(scope.owner, ast.Module)
 
     def _for(self, node: ast.For, scope: SymbolScope) -> None:
         self.expression(node.iterable, scope)
