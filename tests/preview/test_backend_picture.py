@@ -253,3 +253,8 @@ def test_hostile_texts_stay_texts() -> None:
         *("svg", "defs", "g", "path", "text", "rect", "circle", "clipPath", "line", "tspan")
     }
     assert [k.value for k in preview(view).knobs] == [evil]
+
+
+def test_a_program_that_solves_and_fails_an_assertion_is_wrong() -> None:
+    text = "solid s {{ r = rectangle(width: 30, height: 20) assert r.width > {} }}"
+    assert [preview(view_of(text.format(width))).status for width in (20, 40)] == ["solved", "wrong"]

@@ -92,6 +92,11 @@ def test_the_same_would_do_harm_elsewhere(open_pane) -> None:
         assert "/harm" in host.requests
 
 
+def test_colours_that_only_look_like_an_address_are_kept(pane: Pane) -> None:
+    pane.shows(svg=SVG.replace("</svg>", f'<path id="b" fill="burlywood" {SHAPE}/></svg>'))
+    expect(pane.page.locator("#world [fill=burlywood]")).to_have_count(1)
+
+
 def test_what_is_no_drawing_is_said(pane: Pane) -> None:
     for text in ("", "no XML", "<svg>", f"<html xmlns='{HTML}'/>", "<svg/>"):
         pane.shows(svg=text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic, has_errors
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.memory import Memory
@@ -36,7 +36,7 @@ def preview(
     has_picture = drawn is not None and _is_anything_drawn(drawn)
     svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
     return Preview(
-        status=view.outcome.status,
+        status=_status(view.outcome),
         stale=has_picture and view.is_stale,
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
@@ -50,6 +50,12 @@ def preview(
         ways=tuple(_ways(view, found)) if FREEDOM in show else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
+
+
+def _status(outcome: Compiled) -> str:
+    """Returns how a program stands: one that solved may still be `wrong`, as when an `assert` fails."""
+    is_wrong = outcome.status == "solved" and has_errors(outcome.diagnostics)
+    return "wrong" if is_wrong else outcome.status
 
 
 def _painted(

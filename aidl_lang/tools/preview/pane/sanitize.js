@@ -17,6 +17,8 @@ const ATTRIBUTES = new Set([
 ]);
 
 const LOCAL = /^\s*url\(\s*["']?#([^"')]*)["']?\s*\)\s*$/;
+/** A function that names something elsewhere, or an escape that may hide one; `burlywood` is neither. */
+const OUTSIDE = /(url|image|image-set|src)\s*\(|\\/i;
 /** Before the ids of the drawing, which must not be those of the page. */
 const PREFIX = "drawing-";
 /** Widths of lines in pixels: of most outlines, and of any. */
@@ -74,7 +76,7 @@ function cleaned(node) {
 function safeValue(name, value) {
   if (!ATTRIBUTES.has(name)) return null;
   if (name === "data-element") return /^\d{1,9}$/.test(value) ? String(Number(value)) : null;
-  if (!/url|image|\\/i.test(value)) return value;
+  if (!OUTSIDE.test(value)) return value;
   const id = name === "clip-path" ? LOCAL.exec(value)?.[1] : undefined;
   return id === undefined ? null : `url(#${PREFIX}${id})`;
 }
