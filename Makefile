@@ -98,7 +98,7 @@ examples: $(READY) ## draw every example into build/examples, those of the galle
 
 lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools
-	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra step --extra 3mf --extra models --extra mcp --extra editor --generate-hashes --allow-unsafe --strip-extras \
+	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --generate-hashes --allow-unsafe --strip-extras \
 		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
 
 clean: ## remove what was built; the virtualenv stays

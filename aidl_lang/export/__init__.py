@@ -30,6 +30,7 @@ class Options:
     timings    seconds per stage, for formats that carry them
     sheet      width and height in mm of the sheets that parts are laid on to be cut
     spacing    between parts on a sheet, and to its edge, mm
+    nest       seconds for packing parts by their outlines; None packs them by their boxes
     kerf       width of the cut, mm: outlines grow by half of it
     tile       width and height in mm of the pages that a picture is printed over, 1:1
     overlap    of neighbouring pages, mm
@@ -44,6 +45,7 @@ class Options:
     timings: Mapping[str, float] | None = None
     sheet: tuple[float, float] | None = None
     spacing: float = 3.0
+    nest: float | None = None
     kerf: float = 0.0
     tile: tuple[float, float] | None = None
     overlap: float = 10.0
@@ -116,6 +118,10 @@ def export(job: Job, suffix: str) -> Exported:
     options = job.options
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
+    if options.nest is not None and options.sheet is None:
+        raise ExportError(
+            "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
+        )
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
     _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
     if options.theme not in ("colour", "cutter") and options.for_cutter:

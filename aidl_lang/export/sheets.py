@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed, size_text
@@ -11,6 +12,7 @@ from aidl_lang.common.prose import named
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.nesting import NestingError
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.sheets import Size, laid_out
@@ -54,7 +56,18 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
     if len(bodies) > MOST_PARTS:
         message = f"{len(bodies)} parts are more than the {MOST_PARTS} that are laid on sheets"
         raise ExportError("E0924", message, "draw them in several programs")
-    layout = laid_out(job.drawing, sheet, spacing)
+    if job.options.nest is not None and find_spec("spyrrow") is None:
+        raise ExportError(
+            "E0913", "`--nest` needs a package that is not installed", "pip install 'aidl-lang[nest]'"
+        )
+    try:
+        layout = laid_out(job.drawing, sheet, spacing, job.options.nest)
+    except NestingError as reason:
+        raise ExportError(
+            "E0924",
+            f"the parts could not be packed by their outlines: {reason}",
+            "leave `--nest` out: they are packed by their boxes then",
+        ) from None
     if layout.oversize:
         raise _oversize(layout.oversize, sheet, spacing)
     notes = [_stray_note(job.model, layout.strays)] if layout.strays else []

@@ -19,6 +19,10 @@ NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
 """Width in grid units below which an area is rounding: the drawing measures about 16 of them."""
 
 
+_CORNERS = 32
+"""Of the polygon that stands for a circle around a corner."""
+
+
 class Section(Protocol):
     """The part of Manifold's `CrossSection` used here: an area of the plane bounded by polygons."""
 
@@ -44,6 +48,19 @@ def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Se
     kept = [p for p in polygons if len(p) > 2]
     section: Section = m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection()
     return section
+
+
+def widened(polygon: Polygon, by: float) -> Polygon:
+    """Returns the outer boundary of all within a distance of a polygon, or a little further out."""
+    m = _manifold()
+    reach = by / math.cos(math.pi / _CORNERS)  # of a round corner's chords
+    section: Section = m.CrossSection([polygon], m.FillRule.NonZero).offset(
+        reach, m.JoinType.Round, 2.0, _CORNERS
+    )
+    return max(
+        (np.asarray(p, np.float64) for p in section.to_polygons()),
+        key=lambda p: float(np.ptp(p, axis=0).max()),
+    )
 
 
 def union(sections: Sequence[Section]) -> Section:

@@ -1,8 +1,8 @@
 """The bodies of a drawing laid flat, apart from one another, on sheets to cut them from.
 
-Bodies are moved and turned by a quarter, never mirrored: their front stays up, and every curve is as exact as
-before. They are packed by their boxes. Those of different material or thickness are cut from different
-sheets.
+Bodies are moved and turned by quarters, never mirrored: their front stays up, and every curve is as exact as
+before. They are packed by their boxes, or in a time given for it by their outlines. Those of different
+material or thickness are cut from different sheets.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.contacts import Contacts
@@ -21,6 +23,8 @@ from aidl_lang.geometry.evaluate import Bounds, bounds, inward
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.sections import widened
+from aidl_lang.geometry.tessellate import Polygon, face_polygons
 
 SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""
@@ -31,6 +35,9 @@ SLACK = 1e-3
 """Micrometres by which rounding may enlarge a part."""
 FEW = 200
 """The most parts for which a slower packer is used, which fills the sheets better."""
+
+COARSE = 0.05
+"""Millimetres from an outline to the polygon that stands for it in packing."""
 
 Size = tuple[float, float]
 Cell = tuple[int, int]
@@ -70,16 +77,19 @@ class _Part:
 
 @record()
 class _Place:
-    """The lower left corner of a part on its sheet, mm, and whether it was turned by a quarter."""
+    """How a part gets to its sheet: turned by quarters about the origin, then moved by (`x`, `y`), mm."""
 
     part: _Part
+    quarters: int
     x: float
     y: float
-    turned: bool
 
 
-def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
-    """Returns all bodies on as few sheets as the packer finds, those of one stock together (sizes in mm)."""
+def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING, nest: float | None = None) -> Layout:
+    """Returns all bodies on as few sheets as the packer finds, those of one stock together (sizes in mm).
+
+    They are packed by their boxes and, for `nest` seconds, by their outlines; what uses less is taken.
+    """
     on, off = engraved(drawing.bodies, drawing.strokes)
     parts = _parts(drawing, on)
     gap = _ceil(spacing)
@@ -96,11 +106,15 @@ def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
     for part in parts:
         style = part.body.style
         stocks.setdefault((style.material or "", style.thickness or 0.0), []).append(part)
+
+    def nesting(group: Sequence[_Part]) -> _Nesting | None:
+        return _Nesting(sheet, spacing, nest * len(group) / len(parts)) if nest else None
+
     return Layout(
         tuple(
             _drawn(drawing, sheet, places)
             for _, group in sorted(stocks.items(), key=lambda item: item[0])
-            for places in _packed(group, room, gap)
+            for places in _packed(group, room, gap, nesting(group))
         ),
         tuple(off),
     )
@@ -135,7 +149,52 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> list[_Part]:
     return parts
 
 
-def _packed(parts: Sequence[_Part], room: Cell, gap: int) -> list[list[_Place]]:
+@record()
+class _Nesting:
+    """The sheet and the spacing, mm, and the seconds for packing by outlines."""
+
+    sheet: Size
+    spacing: float
+    seconds: float
+
+
+def _packed(parts: Sequence[_Part], room: Cell, gap: int, nesting: _Nesting | None) -> list[list[_Place]]:
+    """Returns the places on each sheet: by boxes, or by outlines if that saves sheets or room on the last."""
+    by_boxes = _in_boxes(parts, room, gap)
+    if nesting is None or len(parts) == 1:
+        return by_boxes
+    by_outlines = _by_outlines(parts, nesting)
+    return min(by_boxes, by_outlines, key=_used) if by_outlines else by_boxes
+
+
+def _used(sheets: Sequence[Sequence[_Place]]) -> tuple[int, float]:
+    """Returns the number of sheets, and the width used of the last one."""
+    return len(sheets), max(_placed_box(place)[2] for place in sheets[-1])
+
+
+def _by_outlines(parts: Sequence[_Part], nesting: _Nesting) -> list[list[_Place]]:
+    from aidl_lang.geometry.nesting import nested
+
+    # Each outline has half the spacing around it. Chords are inside of what bulges, by less than COARSE.
+    outlines = [widened(_outline(part), nesting.spacing / 2 + COARSE) for part in parts]
+    room = nesting.sheet[0] - nesting.spacing, nesting.sheet[1] - nesting.spacing
+    aside = nesting.spacing / 2
+    sheets = nested(outlines, room, nesting.seconds)
+    return [
+        [_Place(parts[n.number], n.quarters, n.x + aside, n.y + aside) for n in places] for places in sheets
+    ]
+
+
+def _outline(part: _Part) -> Polygon:
+    """Returns the outline of a part; its box, if it is in pieces or has engraving beyond its material."""
+    faces = part.body.region.faces
+    if len(faces) == 1 and part.box == part.body.box:
+        return face_polygons(faces[0], COARSE)[0]
+    left, bottom, right, top = part.box
+    return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
+
+
+def _in_boxes(parts: Sequence[_Part], room: Cell, gap: int) -> list[list[_Place]]:
     """Returns the places on each sheet. Parts are turned only if that saves sheets."""
     cells = [part.cell(gap) for part in parts]
     upright = all(_fits(cell, room) for cell in cells)
@@ -166,8 +225,21 @@ def _bins(cells: Sequence[Cell], room: Cell, *, turning: bool) -> list[Any]:
 
 
 def _place(part: _Part, cell: Any, gap: int) -> _Place:
-    turned = (cell.width, cell.height) != part.cell(gap)
-    return _Place(part, (cell.x + gap) / GRID, (cell.y + gap) / GRID, turned)
+    """Returns the place with the lower left corner of the part's box in a cell's."""
+    quarters = int((cell.width, cell.height) != part.cell(gap))
+    box = _turned_box(part.box, quarters)
+    return _Place(part, quarters, (cell.x + gap) / GRID - box[0], (cell.y + gap) / GRID - box[1])
+
+
+def _turned_box(box: Bounds, quarters: int) -> Bounds:
+    for _ in range(quarters % 4):  # (x, y) becomes (-y, x)
+        box = -box[3], box[0], -box[1], box[2]
+    return box
+
+
+def _placed_box(place: _Place) -> Bounds:
+    left, bottom, right, top = _turned_box(place.part.box, place.quarters)
+    return left + place.x, bottom + place.y, right + place.x, top + place.y
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
@@ -199,9 +271,8 @@ def _moved_loop(loop: Loop, place: _Place) -> Loop:
 
 
 def _moved(pieces: Sequence[Piece], place: _Place) -> Iterator[Piece]:
-    left, bottom, _, top = place.part.box
-    if place.turned:  # (x, y) becomes (-y, x)
-        origin, rotation = (left - place.y, top + place.x), -90.0
-    else:
-        origin, rotation = (left - place.x, bottom - place.y), 0.0
-    return (inward(piece, origin, rotation, mirrored=False) for piece in pieces)
+    # What is at the place's origin on the sheet is where the curves are seen from.
+    x, y = place.x, place.y
+    for _ in range(place.quarters % 4):
+        x, y = y, -x
+    return (inward(piece, (-x, -y), -90.0 * place.quarters, mirrored=False) for piece in pieces)

@@ -243,3 +243,36 @@ def test_tiles_are_files(aidl: Aidl, box: Path) -> None:
         "4/5: row 2, column 2",
         "5/5: row 2, column 3",
     ]
+
+
+def test_nesting_is_of_sheets_and_needs_its_package(
+    aidl: Aidl, box: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--nest"))[0] == (
+        "error[E0924]: `--nest` packs parts on sheets, and there is none"
+    )
+    assert aidl("compile", "box.aidl", "-o", "x.svg", "--sheet", "210x110", "--nest", "0").code == 2
+    assert (
+        aidl("compile", "box.aidl", "-o", "box.svg", "--sheet", "210x110", "--nest", "1", "--quiet").code == 0
+    )
+    assert sizes(box / "box.svg") == [(60, 60)]
+    monkeypatch.setattr("aidl_lang.export.sheets.find_spec", lambda _: None)
+    assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--sheet", "210x110", "--nest"))[:2] == [
+        "error[E0913]: `--nest` needs a package that is not installed",
+        "  = hint: pip install 'aidl-lang[nest]'",
+    ]
+
+
+def test_a_packer_that_gives_up_is_told(aidl: Aidl, box: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class PanicException(BaseException):
+        pass
+
+    class Panicking:
+        def __init__(self, *_: object) -> None:
+            raise PanicException("an empty polygon")
+
+    monkeypatch.setattr("spyrrow.StripPackingInstance", Panicking)
+    assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--sheet", "210x110", "--nest"))[:2] == [
+        "error[E0924]: the parts could not be packed by their outlines: an empty polygon",
+        "  = hint: leave `--nest` out: they are packed by their boxes then",
+    ]

@@ -72,7 +72,7 @@ def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing:
             old, new = outline(before[body.path]), outline(body)
             assert list(map(type, old)) == list(map(type, new))
             factor, _ = motion(numbers(old), numbers(new))
-            assert min(abs(factor - 1), abs(factor - 1j)) < 1e-9  # turned by a quarter or not; no mirror
+            assert min(abs(factor - 1j**k) for k in range(4)) < 1e-9  # turned by quarters; no mirror
             assert area(body.region) == pytest.approx(area(before[body.path].region), rel=1e-12)
 
 
@@ -260,3 +260,32 @@ def test_parts_that_overlap_are_each_complete():
     a, b = plate("a", 40, 20), plate("b", 40, 20, 10)
     (laid,) = laid_out(drawing_of(a, b), (100, 100), 3).sheets
     assert [area(body.region) for body in laid.bodies] == pytest.approx([800, 800])
+
+
+@tries(4)
+@given(st.lists(parts(), min_size=2, max_size=8), st.floats(0, 8))
+def test_any_parts_packed_by_outlines_lie_apart_and_inside(members, spacing):
+    drawing = drawing_of(*(replace(m, name=f"s{k}") for k, m in enumerate(members)))
+    sheet = (150.0, 110.0)
+    by_boxes, layout = laid_out(drawing, sheet, spacing), laid_out(drawing, sheet, spacing, nest=1)
+    assert layout.oversize == by_boxes.oversize
+    if not layout.oversize:
+        check(drawing, layout, sheet, spacing)
+        assert len(layout.sheets) <= len(by_boxes.sheets)
+
+
+def test_outlines_interlock_where_boxes_cannot():
+    ell = [(0, 0), (50, 0), (50, 10), (10, 10), (10, 50), (0, 50)]
+    ells = [structure("solid", f"p{k}", polygon("g", *((x + 60 * k, y) for x, y in ell))) for k in range(8)]
+    drawing = drawing_of(*ells)
+    assert len(laid_out(drawing, (110, 160), 2).sheets) == 2
+    layout = laid_out(drawing, (110, 160), 2, nest=4)
+    assert len(layout.sheets) == 1
+    check(drawing, layout, (110, 160), 2)
+
+
+def test_a_part_as_large_as_the_sheet_is_packed_by_its_box():
+    drawing = drawing_of(plate("a", 594, 394), plate("b", 20, 20, 700))
+    layout = laid_out(drawing, (600, 400), 3, nest=1)
+    assert len(layout.sheets) == 2
+    check(drawing, layout, (600, 400), 3)

@@ -108,6 +108,7 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         timings=compiled.timings if arguments.timings else None,
         sheet=arguments.sheet,
         spacing=arguments.spacing,
+        nest=arguments.nest,
         kerf=arguments.kerf,
         tile=arguments.tile,
         overlap=arguments.overlap,

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from aidl_lang.tools.llm.providers import Closable, Price
 
 
+LONGEST_NESTING = 600
+"""Seconds that packing by outlines may take."""
+
+
 def add_program(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the program; - reads standard input")
 
@@ -116,6 +120,15 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
         default=3.0,
         metavar="MM",
         help="between parts on a sheet, and to its edge (default: 3)",
+    )
+    parser.add_argument(
+        "--nest",
+        type=count_to(LONGEST_NESTING),
+        nargs="?",
+        const=5,
+        metavar="SECONDS",
+        help="pack parts on sheets by their outlines, not by their boxes, if that saves material "
+        "(default: for 5 seconds)",
     )
     parser.add_argument(
         "--kerf",

@@ -1,0 +1,95 @@
+"""Places for outlines on sheets by their true shapes, where packing their boxes would waste material.
+
+The packer (sparrow, through spyrrow) fills a strip of a given height, as short as it can. Here the strip is
+as high as the sheet: what lies within its width is on one sheet, and the rest is packed anew. It searches
+until its time is over, so that how well it does depends on the machine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.geometry.tessellate import Polygon
+
+if TYPE_CHECKING:
+    from spyrrow import Item
+
+SEED = 1
+"""Of the packer's random numbers: the same program, time and machine give about the same sheets."""
+_SHORTEST = 1
+"""Seconds; the packer counts whole ones."""
+_SLACK = 1e-6
+"""Millimetres by which sums of places may be off."""
+
+
+class NestingError(ValueError):
+    """Raised if the packer gives up; the message is its own."""
+
+
+@record()
+class Nested:
+    """The place of an outline: turned by quarters about the origin, then moved by (`x`, `y`), mm."""
+
+    number: int
+    quarters: int
+    x: float
+    y: float
+
+
+def nested(outlines: Sequence[Polygon], sheet: tuple[float, float], seconds: float) -> list[list[Nested]]:
+    """Returns the places of outlines, mm, on each sheet, whose lower left corner is the origin; no sheets if
+    an outline is too large for one. Needs the package spyrrow. Raises NestingError.
+    """
+    from spyrrow import Item
+
+    turns = [_turns(outline, sheet) for outline in outlines]
+    if not all(turns):
+        return []
+    rest = list(range(len(outlines)))
+    found: list[list[Nested]] = []
+    while rest:
+        checkpoint()
+        share = max(_SHORTEST, round(seconds * len(rest) / len(outlines) / 2 ** len(found)))
+        items = [Item(str(k), [(float(x), float(y)) for x, y in outlines[k]], 1, turns[k]) for k in rest]
+        placed = _strip(items, sheet[1], share)
+        here = [place for place in placed if _right(outlines[place.number], place) <= sheet[0] + _SLACK]
+        assert here, "the first part of a strip is no wider than the sheet"
+        found.append(sorted(here, key=lambda place: place.number))
+        on_it = {place.number for place in here}
+        rest = [k for k in rest if k not in on_it]
+    return found
+
+
+def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
+    """Returns places in a strip of a height that begins at x = 0."""
+    from spyrrow import StripPackingConfig, StripPackingInstance
+
+    config = StripPackingConfig(total_computation_time=seconds, num_workers=1, seed=SEED)
+    try:
+        solution = StripPackingInstance("", height, items).solve(config)
+    except BaseException as reason:  # a panic in Rust is no Exception, and its class cannot be imported
+        if type(reason).__name__ != "PanicException":
+            raise
+        raise NestingError(str(reason)) from None
+    return [
+        Nested(int(placed.id), round(placed.rotation / 90) % 4, *placed.translation)
+        for placed in solution.placed_items
+    ]
+
+
+def _turns(outline: Polygon, sheet: tuple[float, float]) -> list[float]:
+    """Returns the quarter turns in which an outline fits, degrees."""
+    width, height = (float(side) for side in outline.max(axis=0) - outline.min(axis=0))
+    upright = [0.0, 180.0] if width <= sheet[0] and height <= sheet[1] else []
+    lying = [90.0, 270.0] if height <= sheet[0] and width <= sheet[1] else []
+    return [*upright, *lying]
+
+
+def _right(outline: Polygon, place: Nested) -> float:
+    """Returns how far to the right a placed outline reaches."""
+    cos, sin = (round(f(math.tau / 4 * place.quarters)) for f in (math.cos, math.sin))
+    return float((cos * outline[:, 0] - sin * outline[:, 1]).max()) + place.x
