@@ -180,7 +180,7 @@ ATTRIBUTES = (
 STACKING = (BEHIND, IN_FRONT) = ("behind", "in_front")
 """Attributes whose arguments are names of structures beside the one that they stand before."""
 
-WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})
+WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note", "stroke"})
 """Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
 
 

@@ -61,7 +61,7 @@ def _whole(job: Job) -> Picture:
 def _overhang(drawing: Drawing) -> float:
     """Returns how far the widest line of a stated width reaches beyond its middle."""
     styles = [*(body.style for body in drawing.bodies), *(stroke.style for stroke in drawing.strokes)]
-    return max((style.stroke / 2 for style in styles if style.stroke is not None), default=0.0)
+    return max((style.width / 2 for style in styles if style.width is not None), default=0.0)
 
 
 def pages(job: Job) -> list[Picture]:
@@ -150,7 +150,8 @@ def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
     fill = body.style.color or palette.body_fill(index)
-    ink = _line(body.style, palette.OUTLINE, OUTLINE_WIDTH, size)
+    color = palette.OUTLINE if body.style.color is None else palette.outline_of(body.style.color)
+    ink = None if body.style.is_unlined else _line(body.style, color, OUTLINE_WIDTH, size)
     for face in body.region.faces:
         yield Area(face, fill, ink, opacity=_opacity(body.style))
 
@@ -173,7 +174,7 @@ def _stroke(stroke: Stroke, size: float) -> Curves:
 
 def _line(style: Style, color: str, width: float, size: float) -> Ink:
     """Returns the ink of lines of a style; their width relative to a size where the style has none."""
-    stated, dash = style.stroke, style.dashes(size)
+    stated, dash = style.width, style.dashes(size)
     # Round ends would make dashes longer than stated.
     return Ink(color, width * size if stated is None else stated, dash, is_round=dash is None)
 
