@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.colors import color_of
@@ -113,6 +113,7 @@ def _read(
 ORIENTATIONS = ("top", "front", "side")
 THINNEST, WIDEST = 0.01, 1000.0
 """mm, of lines, dashes and gaps that can be seen."""
+EDGES = ("seams", "outline")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids without outline; a width of 0 says the same."""
 
@@ -132,7 +133,15 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
 
 
 def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
-    """Tells whether anything is left to be seen; a drawing is nothing but its strokes."""
+    """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
+    if name == "edges" and of.kind in ("drawing", "hole"):
+        it.report(
+            "E0517",
+            f"`@{attribute.name.text}` is said of what has material, and `{of.name}` is a {of.kind}",
+            attribute,
+            hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
+        )
+        return False
     if name != "stroke" or of.kind != "drawing" or values != [NO_OUTLINE]:
         return True
     it.report(
@@ -145,12 +154,21 @@ def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attri
 
 
 def _orientation(values: list[Value]) -> str:
+    is_one = _is_one_of(values, ORIENTATIONS)
+    return "" if is_one else "one of `top`, `front` and `side`, as in `@orientation(front)`"
+
+
+def _edges(values: list[Value]) -> str:
+    return "" if _is_one_of(values, EDGES) else "`seams` or `outline`, as in `@edges(seams)`"
+
+
+def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
+    """Tells whether the one value is one of some words, and corrects its spelling."""
     word = values[0] if len(values) == 1 else None
-    meant = find(word.value, dict.fromkeys(ORIENTATIONS)) if isinstance(word, TextVal) else None
-    if meant is None:
-        return "one of `top`, `front` and `side`, as in `@orientation(front)`"
-    values[:] = [TextVal(meant)]
-    return ""
+    meant = find(word.value, dict.fromkeys(words)) if isinstance(word, TextVal) else None
+    if meant is not None:
+        values[:] = [TextVal(meant)]
+    return meant is not None
 
 
 def _thickness(values: list[Value]) -> str:
@@ -221,5 +239,6 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "stroke": _stroke,
     "dash": _dash,
     "opacity": _opacity,
+    "edges": _edges,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

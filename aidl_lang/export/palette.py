@@ -16,7 +16,6 @@ FILLS = (
 )
 OUTLINE = "#2f3b4a"
 LIGHT = "#b4bfcc"
-SEAM = "#2f3b4a"
 LOOSE = "#c2410c"
 CUT = "#ff0000"
 ENGRAVE = "#0000ff"

@@ -28,6 +28,7 @@ class Style:
     stroke   width of its lines, mm; 0 for solids without outline, whose drawings have lines as ever
     dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
     opacity  how much of what lies behind is covered, from 0 to 1
+    edges    `seams` if the borders between the geometries of a solid are drawn
     """
 
     color: str | None = None
@@ -37,6 +38,7 @@ class Style:
     stroke: float | None = None
     dash: tuple[float, ...] | None = None
     opacity: float | None = None
+    edges: str | None = None
 
     @property
     def is_clear(self) -> bool:
@@ -47,6 +49,11 @@ class Style:
     def width(self) -> float | None:
         """The width of its strokes, mm; None if they go by the size of the drawing."""
         return self.stroke or None
+
+    @property
+    def has_seams(self) -> bool:
+        """True if the borders between geometries that are united are drawn."""
+        return self.edges == "seams"
 
     @property
     def is_unlined(self) -> bool:
@@ -94,6 +101,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         0.0 if is_unlined(stated) else _number(stated.get("stroke"), around.stroke),
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
+        _text(stated.get("edges")) or around.edges,
     )
 
 

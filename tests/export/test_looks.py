@@ -231,6 +231,52 @@ def test_a_part_more_at_the_end_changes_no_other_part() -> None:
     assert len(set(fills(5))) == 5
 
 
+# --- Seams -----------------------------------------------------------------------------------------
+
+TURRET = """
+@color("#c86428") @edges(seams)
+solid a {
+    shaft = rectangle(center: fixed((0, 0)), width: 20, height: 40)
+    collar = rectangle(center: fixed((0, 20)), width: 30, height: 10)
+    hole slit { gap = rectangle(center: fixed((0, 15)), width: 10, height: 4) }
+    solid knob { rim = rectangle(center: fixed((10, 0)), width: 6, height: 6) }
+}
+"""
+
+
+def test_borders_between_geometries_are_fine_lines() -> None:
+    made = compiled(TURRET)
+    assert made.drawing is not None
+    knob, seams = made.drawing.seams
+    assert (seams.path, seams.body, knob.path) == ("a", "a", "a.knob")
+    # The collar lies over the end of the shaft, the knob over its side, the hole cut the collar's edge.
+    found = sorted(tuple(sorted((_near(p.start), _near(p.end)))) for p in seams.pieces)  # type: ignore[union-attr]
+    assert found == [((-10, 15), (-5, 15)), ((5, 15), (10, 15))]
+    svg = written(".svg", TURRET).data.decode()
+    assert 'class="seam"' in group(svg, "a")
+    assert 'stroke="#6e3716"' in group(svg, "a.knob")
+    assert "seam" not in written(".svg", TURRET, cut=True).data.decode()
+    plain = written(".svg", TURRET.replace("seams", "outline")).data.decode()
+    assert 'class="seam"' not in group(plain, "a")
+    assert 'stroke-opacity="0.55"' in group(plain, "a.knob")
+
+
+def _near(p: tuple[float, float]) -> tuple[float, float]:
+    return round(p[0], 6), round(p[1], 6)
+
+
+def test_a_solid_without_outline_has_the_seams_it_asks_for() -> None:
+    svg = written(".svg", TURRET.replace("@edges", "@stroke(none) @edges")).data.decode()
+    assert svg.count('class="seam"') == 2
+    assert "seam" not in written(".svg", TURRET.replace("@edges(seams)", "@stroke(none)")).data.decode()
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".stl", ".step", ".3mf"])
+def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
+    (note,) = [n for n in written(suffix, "@thickness(2)" + TURRET).notes if n.code == "N0741"]
+    assert note.message.startswith("`@edges` counts for nothing in this file: ")
+
+
 # --- What has no place -----------------------------------------------------------------------------
 
 
