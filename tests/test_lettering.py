@@ -9,14 +9,21 @@ from itertools import pairwise
 
 import pytest
 from fontTools.ttLib import TTFont
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from aidl_lang import pipeline
 from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.curves import Bezier, Line
+from aidl_lang.geometry.letters import letter_faces
+from aidl_lang.geometry.measures import loop_area
 
 FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
+BOLD = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL-Bold.ttf"))
+FACES = pytest.mark.parametrize(
+    "font", [lettering.plain_font(), lettering.bold_font()], ids=["plain", "bold"]
+)
 CAPITAL = 1493
 CHARACTERS = {chr(code): name for code, name in FONT.getBestCmap().items()}
 
@@ -43,11 +50,12 @@ def _on(points: lettering.Curve, t: float) -> tuple[float, float]:
     return points[0]
 
 
-def test_contours_of_the_font_are_nested() -> None:
+@FACES
+def test_contours_of_the_font_are_nested(font: lettering.Font) -> None:
     """None crosses itself or another, so that filling them in turns gives the letter."""
     crossing = []
     for character in CHARACTERS:
-        for glyph in lettering.typeset(character, "left", 1.6):
+        for glyph in lettering.typeset(character, "left", 1.6, font):
             found = list(contours(glyph))
             apart = all(not a.boundary.intersects(b.boundary) for i, a in enumerate(found) for b in found[:i])
             if not apart or not all(polygon.is_valid for polygon in found):
@@ -82,6 +90,27 @@ def test_what_the_font_should_have() -> None:
         "±°×÷µ²³½¼¾ ≤≥≈≠√∞ ←↑→↓ ⌀ € £ § © ™ – — … „“” ✓"
     )
     assert lettering.unknown_characters(text) == []
+
+
+def test_the_faces_have_the_same_characters() -> None:
+    assert BOLD.getBestCmap().keys() == FONT.getBestCmap().keys()
+
+
+@FACES
+def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) -> None:
+    """Nested contours in turns, by another geometry; counted for all characters."""
+    for character in CHARACTERS:
+        for glyph in lettering.typeset(character, "left", 1.6, font):
+            curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
+            faces = letter_faces(curves)
+            alternating = Polygon()
+            for contour in contours(glyph):
+                alternating = alternating.symmetric_difference(contour)
+            count = len(alternating.geoms) if isinstance(alternating, MultiPolygon) else 1
+            assert len(faces) == count, character
+            areas = [[loop_area(loop) for loop in face.loops] for face in faces]
+            assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas), character
+            assert sum(map(sum, areas)) == pytest.approx(alternating.area, rel=0.02), character
 
 
 def test_accents_written_apart_are_joined() -> None:

@@ -41,10 +41,11 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         return ()
     if len(text.value) > it.limits.entities:
         it.count_entity(node, len(text.value))  # stops here, before the letters are set
-    if unknown := lettering.unknown_characters(text.value):
+    font = lettering.bold_font() if a["bold"] is True else lettering.plain_font()
+    if unknown := lettering.unknown_characters(text.value, font):
         _report_unknown(it, unknown, node)
         return ()
-    glyphs = lettering.typeset(text.value, align.value, apart)
+    glyphs = lettering.typeset(text.value, align.value, apart, font)
     if not glyphs:
         hint = "write what is to be drawn, or leave the text out"
         _report(it, "E0351", "there is nothing to draw in this text", node, [hint])
