@@ -79,6 +79,25 @@ shape text(
     let baseline = baseline_of(ink, start, height, angle)
 }
 
+/// Along a circle, an arc, a line or a path of these, of any structure above, and wherever it is solved to be.
+///
+/// It stands on the outside of a circle or an arc, reading clockwise; with `inside: true` on the inside, reading
+/// counter-clockwise. On a circle it is centred at the top (inside: at the bottom), on other curves in their middle; `align` may be
+/// `left` or `right`, too. What is longer than its curve runs on beyond the ends.
+shape text(
+    text,
+    along,
+    height: length,
+    inside: bool = false,
+    align: text = "center",
+    line_spacing = 1.6,
+    bold: bool = false,
+    outline: bool = false
+) {
+    let side = choice(align, ["left", "center", "right"])
+    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold)
+}
+
 // The middle of the ink of a text from its start, and the line under its first line.
 fn middle_of(ink: record, height: length) =
     ((ink.left + ink.right) / 2 * height, (ink.bottom + ink.top) / 2 * height)

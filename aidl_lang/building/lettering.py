@@ -29,7 +29,7 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     apart = constant(it, spacing, node, "the spacing of lines")
     if align.value not in lettering.ALIGNMENTS:
         allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
-        _report(
+        report_once(
             it,
             "E0516",
             f'"{align.value}" is not one of the words that are meant here',
@@ -48,11 +48,11 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     glyphs = lettering.typeset(text.value, align.value, apart, font)
     if not glyphs:
         hint = "write what is to be drawn, or leave the text out"
-        _report(it, "E0351", "there is nothing to draw in this text", node, [hint])
+        report_once(it, "E0351", "there is nothing to draw in this text", node, [hint])
     return glyphs
 
 
-def _report(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
+def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
     """Reports once for a text, at its author's call rather than in the library."""
     span = it.place(node)
     if not any(d.code == code and d.span == span for d in it.diagnostics):
@@ -65,7 +65,7 @@ def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None
         f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
     ]
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
-    _report(it, "E0350", f"the font has no {names}", node, [*instead, has])
+    report_once(it, "E0350", f"the font has no {names}", node, [*instead, has])
 
 
 def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -2,8 +2,8 @@
 
 The outlines are those of a TrueType font that ships with the package, plain or bold. It has no overlapping
 contours, so that nested ones alternate. The splines of such a font are quadratic; as cubic Bézier curves they
-are the same curves. Characters stand one behind the other by their advance widths, without kerning. All places
-go by the ink: a line of text begins where its first letter has its leftmost point.
+are the same curves. Characters stand one behind the other by their advance widths, without kerning. All
+places go by the ink: a line of text begins where its first letter has its leftmost point.
 """
 
 from __future__ import annotations
