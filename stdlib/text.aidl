@@ -1,18 +1,21 @@
 // Lettering, for engraving and for cutting.
 
-/// Lettering as outlines, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
+/// Lettering, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
 ///
-/// In a `drawing` a text is engraved, in a `hole` it is cut out; a number is written as text. Instead of its center `start` may be said: the point of
+/// In a `drawing` a text is engraved: filled with the colour of the drawing in pictures, or with `outline: true` drawn as
+/// outlines, which cutters, DXF and STEP get of all letters. In a `hole` it is cut out, in a `solid` it is material. `bold: true` takes
+/// the bold face. A number is written as text. Instead of its center `start` may be said: the point of
 /// the baseline where the text begins (or has its middle or its end, as `align` says); instead of a height a `width`.
 /// `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart their baselines
 /// are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first line. The letters
-/// are those of one font, DejaVu Sans, one behind the other without kerning.
+/// are those of one font, DejaVu Sans, in two faces, one behind the other without kerning.
 ///
 /// ```aidl
 /// solid sign {
-///     plate = rounded_rectangle(width: 70, height: 30, radius: 4)
+///     plate = rounded_rectangle(width: 76, height: 44, radius: 4)
 ///     drawing label {
-///         name = text("Hello\nAIDL 42", height: 7)
+///         name = text("Hello\nAIDL 42", center: fixed((0, 7)), height: 7)
+///         maker = text("SINCE 1931", center: fixed((0, -14)), height: 5, bold: true, outline: true)
 ///     }
 /// }
 /// ```
@@ -23,12 +26,14 @@ shape text(
     angle: turn = 0deg,
     align: text = "center",
     line_spacing = 1.6,
+    bold: bool = false,
+    outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(str(text), side, line_spacing)
+    let ink = ink(str(text), side, line_spacing, bold)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
     let glyph = letters.glyph
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
@@ -41,12 +46,14 @@ shape text(
     angle: turn = 0deg,
     align: text = "left",
     line_spacing = 1.6,
+    bold: bool = false,
+    outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    letters = glyphs(str(text), start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
     let glyph = letters.glyph
-    let ink = ink(str(text), side, line_spacing)
+    let ink = ink(str(text), side, line_spacing, bold)
     let center = start + turned(middle_of(ink, height), angle)
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
@@ -59,15 +66,36 @@ shape text(
     angle: turn = 0deg,
     align: text = "center",
     line_spacing = 1.6,
+    bold: bool = false,
+    outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(str(text), side, line_spacing)
+    let ink = ink(str(text), side, line_spacing, bold)
     let height = width / (ink.right - ink.left)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
     let glyph = letters.glyph
     let baseline = baseline_of(ink, start, height, angle)
+}
+
+/// Along a circle, an arc, a line or a path of these, of any structure above, and wherever it is solved to be.
+///
+/// It stands on the outside of a circle or an arc, reading clockwise; with `inside: true` on the inside, reading
+/// counter-clockwise. On a circle it is centred at the top (inside: at the bottom), on other curves in their middle; `align` may be
+/// `left` or `right`, too. What is longer than its curve runs on beyond the ends.
+shape text(
+    text,
+    along,
+    height: length,
+    inside: bool = false,
+    align: text = "center",
+    line_spacing = 1.6,
+    bold: bool = false,
+    outline: bool = false
+) {
+    let side = choice(align, ["left", "center", "right"])
+    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold)
 }
 
 // The middle of the ink of a text from its start, and the line under its first line.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -9,14 +10,25 @@ from itertools import pairwise
 
 import pytest
 from fontTools.ttLib import TTFont
-from shapely.geometry import Polygon
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely.geometry import MultiPolygon, Polygon
 
 from aidl_lang import pipeline
 from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.curves import Bezier, Line
+from aidl_lang.geometry.letters import letter_faces
+from aidl_lang.geometry.measures import loop_area
+from tests.amount import tries
 
 FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
+BOLD = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL-Bold.ttf"))
+FONTS = {False: lettering.plain_font(), True: lettering.bold_font()}
+FACES = pytest.mark.parametrize(
+    "font", [lettering.plain_font(), lettering.bold_font()], ids=["plain", "bold"]
+)
 CAPITAL = 1493
 CHARACTERS = {chr(code): name for code, name in FONT.getBestCmap().items()}
 
@@ -43,11 +55,12 @@ def _on(points: lettering.Curve, t: float) -> tuple[float, float]:
     return points[0]
 
 
-def test_contours_of_the_font_are_nested() -> None:
+@FACES
+def test_contours_of_the_font_are_nested(font: lettering.Font) -> None:
     """None crosses itself or another, so that filling them in turns gives the letter."""
     crossing = []
     for character in CHARACTERS:
-        for glyph in lettering.typeset(character, "left", 1.6):
+        for glyph in lettering.typeset(character, "left", 1.6, font):
             found = list(contours(glyph))
             apart = all(not a.boundary.intersects(b.boundary) for i, a in enumerate(found) for b in found[:i])
             if not apart or not all(polygon.is_valid for polygon in found):
@@ -84,6 +97,27 @@ def test_what_the_font_should_have() -> None:
     assert lettering.unknown_characters(text) == []
 
 
+def test_the_faces_have_the_same_characters() -> None:
+    assert BOLD.getBestCmap().keys() == FONT.getBestCmap().keys()
+
+
+@FACES
+def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) -> None:
+    """Nested contours in turns, by another geometry; counted for all characters."""
+    for character in CHARACTERS:
+        for glyph in lettering.typeset(character, "left", 1.6, font):
+            curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
+            faces = letter_faces(curves)
+            alternating = Polygon()
+            for contour in contours(glyph):
+                alternating = alternating.symmetric_difference(contour)
+            count = len(alternating.geoms) if isinstance(alternating, MultiPolygon) else 1
+            assert len(faces) == count, character
+            areas = [[loop_area(loop) for loop in face.loops] for face in faces]
+            assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas), character
+            assert sum(map(sum, areas)) == pytest.approx(alternating.area, rel=0.02), character
+
+
 def test_accents_written_apart_are_joined() -> None:
     assert lettering.typeset("e\u0301", "left", 1.6) == lettering.typeset("é", "left", 1.6)
 
@@ -104,3 +138,53 @@ def test_many_labels_cost_little_to_solve() -> None:
     assert compiled.ok
     assert compiled.model is not None
     assert compiled.model.degrees == 2 * 31
+
+
+@given(
+    st.floats(-50, 50),
+    st.floats(5, 60),
+    st.floats(1, 12),
+    st.booleans(),
+    st.booleans(),
+    st.floats(-360, 360),
+    st.floats(20, 340),
+)
+@tries(40)
+def test_letters_stand_on_their_curve(
+    x: float, radius: float, height: float, inside: bool, bold: bool, first: float, sweep: float
+) -> None:
+    """Below the middle of its ink each has a point of the circle, and there the direction of it."""
+    said = f"height: {height}, inside: {str(inside).lower()}, bold: {str(bold).lower()}"
+    text = f"""drawing d {{
+        rim = circle(center: ({x}, 3), radius: {radius})
+        bow = arc(center: ({x}, 3), radius: {radius}, start_angle: {first}deg, end_angle: {first + sweep}deg)
+        a = text("Agj8", along: rim, {said})
+        b = text("Agj8", along: bow, {said})
+    }}"""
+    model = pipeline.compile(SourceFile("p", text)).model
+    assert model is not None
+    named = {g.name: g for g in model.root.geometry}
+    boxes = [g.box for g in lettering.typeset("Agj8", "center", 1.6, FONTS[bold])]
+    middles = [(left + right) / 2 for left, _, right, _ in boxes]
+    for name in "ab":
+        center = named["rim" if name == "a" else "bow"].values["center"]
+        for glyph, middle in zip(named[name].parts, middles, strict=True):
+            start, angle = glyph.values["start"], math.radians(glyph.values["angle"])  # type: ignore[arg-type]
+            foot = [
+                start[0] + middle * height * math.cos(angle),
+                start[1] + middle * height * math.sin(angle),
+            ]  # type: ignore[index]
+            out = foot[0] - center[0], foot[1] - center[1]  # type: ignore[index]
+            assert math.hypot(*out) == pytest.approx(radius)
+            up = (-math.sin(angle) * out[0] + math.cos(angle) * out[1]) / radius
+            assert up == pytest.approx(-1 if inside else 1)
+
+
+def test_letters_along_a_curve_stand_as_far_apart_as_in_a_line() -> None:
+    """Measured on the curve, by the middles of their ink."""
+    text = 'drawing d { w = circle(center: fixed((0, 0)), radius: 40) t = text("AVI", along: w, height: 9) }'
+    model = pipeline.compile(SourceFile("p", text)).model
+    assert model is not None
+    turned = [part.values["angle"] for part in model.root.geometry[1].parts]
+    middles = [(g.box[0] + g.box[2]) / 2 * 9 for g in lettering.typeset("AVI", "center", 1.6)]
+    assert turned == pytest.approx([-math.degrees(m / 40) for m in middles])

@@ -53,6 +53,12 @@ class Stretch:
         return ex.add(self.heading, ex.mul(self.bow, way))
 
     @property
+    def turned_round(self) -> Stretch:
+        """The same curve, walked from its end."""
+        heading = ex.add(self.direction(self.length), ex.constant(180.0))
+        return Stretch(self.at(self.length), heading, self.length, self.center, ex.apply("neg", self.bow))
+
+    @property
     def end(self) -> tuple[float, float]:
         return _value(self.at(self.length))
 
@@ -73,14 +79,18 @@ class Way:
 
     def at(self, way: Expression) -> tuple[Place, Expression]:
         """Returns the place at a length from the start, wherever the joints come to lie, and the direction of
-        the stretch on which it lies at the first guesses.
+        the stretch on which it lies at the first guesses. Beyond its ends the way runs on as they do.
         """
         x, y = self.stretches[0].start
         rest, heading = way, self.stretches[0].heading
         for index, stretch in enumerate(self.stretches):
             is_last = index == len(self.stretches) - 1
-            own = rest if len(self.stretches) == 1 else _within(rest, stretch.length)
-            if rest.value >= -_MEETS and (is_last or index == 0 or rest.value > _MEETS):
+            own = rest
+            if index > 0:
+                own = ex.apply("maximum", own, ex.ZERO)
+            if not is_last:
+                own = ex.apply("minimum", own, stretch.length)
+            if index == 0 or (rest.value >= -_MEETS and (is_last or rest.value > _MEETS)):
                 heading = stretch.direction(own)
             to, start = stretch.at(own), stretch.start
             x, y = ex.add(x, ex.sub(to[0], start[0])), ex.add(y, ex.sub(to[1], start[1]))
@@ -160,8 +170,35 @@ def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stre
     )
 
 
-def _within(way: Expression, length: Expression) -> Expression:
-    return ex.apply("minimum", ex.apply("maximum", way, ex.ZERO), length)
+def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool) -> Way | None:
+    """Returns the way of writing that goes along curves: clockwise on the outside of a circle or an arc, from
+    the bottom of a circle; from left to right along a line, as it is written along other curves. `inside` is
+    the other side, from the top of a circle. None for curves that are no one line, or closed.
+    """
+    if len(curves) == 1 and curves[0].type == "circle":
+        return Way((_written_round(curves[0], here, inside=inside),), is_closed=True)
+    way = way_along(curves, here)
+    if way is None or way.is_closed:
+        return None
+    backwards = inside
+    if len(curves) == 1 and curves[0].type == "arc":
+        backwards = clockwise(curves[0], here) == inside
+    elif len(curves) == 1:
+        ahead = way.stretches[0].heading.value
+        backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == inside
+    return Way(tuple(s.turned_round for s in reversed(way.stretches)), is_closed=False) if backwards else way
+
+
+def _written_round(circle: Geometry, here: Structure, *, inside: bool) -> Stretch:
+    core, turn = view(circle, here), 1.0 if inside else -1.0
+    (x, y), radius = xy(core["center"]), number(core["radius"])
+    return Stretch(
+        (x, ex.add(y, ex.mul(ex.constant(turn), radius))),
+        ex.constant(180.0),
+        ex.mul(ex.constant(2 * math.pi), radius),
+        (x, y),
+        ex.div(ex.mul(ex.constant(turn), _DEGREES), radius),
+    )
 
 
 def _value(place: Place) -> tuple[float, float]:

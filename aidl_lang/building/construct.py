@@ -366,6 +366,7 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.glyphs = typeset(it, a)
+    g.filled = a.get("outline") is not True
     it.count_entity(None, len(g.glyphs))
     _plain(it, g, a, env)
 

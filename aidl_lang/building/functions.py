@@ -12,6 +12,7 @@ from aidl_lang.building.coerce import as_point, as_written, constant, numeric
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.lettering import ink
+from aidl_lang.building.letters_along import lettered
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -351,6 +352,7 @@ FUNCTIONS: dict[str, Function] = {
     "choice": _choice,
     **colors.FUNCTIONS,
     "ink": ink,
+    "lettered": lettered,
     "fixed": _mark(Exactness.FIXED),
     "guess": _mark(Exactness.GUESS),
     "written": _written,

@@ -29,7 +29,7 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     apart = constant(it, spacing, node, "the spacing of lines")
     if align.value not in lettering.ALIGNMENTS:
         allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
-        _report(
+        report_once(
             it,
             "E0516",
             f'"{align.value}" is not one of the words that are meant here',
@@ -41,17 +41,18 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         return ()
     if len(text.value) > it.limits.entities:
         it.count_entity(node, len(text.value))  # stops here, before the letters are set
-    if unknown := lettering.unknown_characters(text.value):
+    font = lettering.bold_font() if a["bold"] is True else lettering.plain_font()
+    if unknown := lettering.unknown_characters(text.value, font):
         _report_unknown(it, unknown, node)
         return ()
-    glyphs = lettering.typeset(text.value, align.value, apart)
+    glyphs = lettering.typeset(text.value, align.value, apart, font)
     if not glyphs:
         hint = "write what is to be drawn, or leave the text out"
-        _report(it, "E0351", "there is nothing to draw in this text", node, [hint])
+        report_once(it, "E0351", "there is nothing to draw in this text", node, [hint])
     return glyphs
 
 
-def _report(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
+def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
     """Reports once for a text, at its author's call rather than in the library."""
     span = it.place(node)
     if not any(d.code == code and d.span == span for d in it.diagnostics):
@@ -64,7 +65,7 @@ def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None
         f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
     ]
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
-    _report(it, "E0350", f"the font has no {names}", node, [*instead, has])
+    report_once(it, "E0350", f"the font has no {names}", node, [*instead, has])
 
 
 def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -95,6 +95,7 @@ class Geometry:
     known_as   the copy of a nameless geometry, by which it is known
     reach      the structure that holds both, if it is derived of geometry outside of its owner
     glyphs     for a text, its characters in units of its height
+    filled     a drawing fills what it encloses, as it does letters
     recipe     the way its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
                `end.fillet` of the end of a curve
@@ -110,6 +111,7 @@ class Geometry:
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
+    filled: bool = False
     name: str | None = None
     container: Geometry | Structure | None = None
     construction: bool = False

@@ -9,11 +9,12 @@ from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.values import Namespace, TextVal, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, is_word
+from aidl_lang.checking.builtins import CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
 from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import ANY, Binding, GivenArgument, Mismatch, Signature, Type, with_article
+from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
@@ -48,6 +49,8 @@ class CallSite:
         self.derives = bool(signatures) and signatures[0].name in DERIVING
         self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
         self._names = tuple(a.name.text if a.name else None for a in node.arguments)
+        if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:
+            self.derives = any(name is not None and fold(name) == followed for name in self._names)
         self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
         self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
 

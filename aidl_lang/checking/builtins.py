@@ -49,7 +49,9 @@ fixed(value)
 guess(value)
 written(value)
 nearest(value, candidates: list)
-ink(text: text, align: text, line_spacing: number)
+ink(text: text, align: text, line_spacing: number, bold: bool)
+lettered(text: text, curve, height: length, align: text, line_spacing: number, inside: bool, \
+outline: bool, bold: bool)
 where(value, positive, negative)
 shown(value)
 sizes(of)
@@ -148,6 +150,9 @@ COPYING = frozenset({"mirror", "copy"}) | EDITS
 
 DERIVING = COPYING | OUTLINES | FILLINGS
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
+
+FOLLOWED = {"text": "along"}
+"""Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
 FINISHES = frozenset({"fillet", "chamfer"})
 """Statements that change the corners of outlines after solving."""

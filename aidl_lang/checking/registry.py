@@ -105,7 +105,10 @@ _RECORDS = (
     ),
     Primitive(
         "glyphs",
-        calls=("text: text, start: point, height: length, angle: angle, align: text, line_spacing: number",),
+        calls=(
+            "text: text, start: point, height: length, angle: angle, align: text, line_spacing: number, "
+            "outline: bool, bold: bool",
+        ),
         fields="start: point, height: size, angle: direction, glyph: glyphs[]",
         chief="start height angle",
     ),

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import DERIVING, PATTERNS
+from aidl_lang.checking.builtins import DERIVING, FOLLOWED, PATTERNS
 from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.facts import Fact, ReadPlace, is_point
 from aidl_lang.checking.fields import PRIMITIVE
@@ -125,7 +125,10 @@ class _Walker:
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
-            if (derives or (reach and is_thing)) and _may_derive(self.infer.fact(node), site.homes):
+            follows = name in FOLLOWED and self._parameter(call, index) == FOLLOWED[name]
+            if (derives or follows or (reach and is_thing)) and _may_derive(
+                self.infer.fact(node), site.homes
+            ):
                 self._order(node, site)
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)

@@ -1,17 +1,17 @@
 """Lettering: texts as exact outlines, measured in the height of a capital letter.
 
-The outlines are those of one TrueType font that ships with the package, which has no overlapping contours, so
-that nested ones alternate. The splines of such a font are quadratic; as cubic Bézier curves they are the same
-curves. Characters stand one behind the other by their advance widths, without kerning. All places go by the
-ink: a line of text begins where its first letter has its leftmost point.
+The outlines are those of a TrueType font that ships with the package, plain or bold. It has no overlapping
+contours, so that nested ones alternate. The splines of such a font are quadratic; as cubic Bézier curves they
+are the same curves. Characters stand one behind the other by their advance widths, without kerning. All
+places go by the ink: a line of text begins where its first letter has its leftmost point.
 """
 
 from __future__ import annotations
 
 import unicodedata
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
-from functools import cache, lru_cache
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache, cached_property, lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,7 @@ Box = tuple[float, float, float, float]
 
 ALIGNMENTS = {"left": 0.0, "center": 0.5, "right": 1.0}
 
-_FONT = "aidl_lang/common/fonts/DejaVuSansAIDL.ttf"
+_FOLDER = "aidl_lang/common/fonts"
 
 
 @record()
@@ -119,14 +119,14 @@ def _turn(a: Vec, b: Vec, c: Vec) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def unknown_characters(text: str) -> list[str]:
-    """Returns the characters that the font does not have, each once; line breaks are no characters."""
-    known = _font().getBestCmap()
-    return [c for c in dict.fromkeys(_composed(text)) if ord(c) not in known and c != "\n"]
+def unknown_characters(text: str, font: Font | None = None) -> list[str]:
+    """Returns the characters that a font does not have, each once; line breaks are no characters."""
+    known = font or plain_font()
+    return [c for c in dict.fromkeys(_composed(text)) if c not in known and c != "\n"]
 
 
 @lru_cache(maxsize=1024)
-def typeset(text: str, align: str, line_spacing: float) -> tuple[Glyph, ...]:
+def typeset(text: str, align: str, line_spacing: float, font: Font | None = None) -> tuple[Glyph, ...]:
     """Returns the characters of a text that have ink, in order, with known characters only.
 
     The origin lies on the baseline of the first line, at the left end, the middle or the right end of every
@@ -134,7 +134,7 @@ def typeset(text: str, align: str, line_spacing: float) -> tuple[Glyph, ...]:
     """
     found: list[Glyph] = []
     for number, line in enumerate(_composed(text).split("\n")):
-        placed = list(_set_line(line))
+        placed = list(_set_line(line, font or plain_font()))
         if placed:
             left, _, right, _ = box_around(placed)
             shift = left + ALIGNMENTS[align] * (right - left)
@@ -147,46 +147,67 @@ def _composed(text: str) -> str:
     return unicodedata.normalize("NFC", text).replace("\r\n", "\n")
 
 
-def _set_line(line: str) -> Iterator[Glyph]:
+def _set_line(line: str, font: Font) -> Iterator[Glyph]:
     pen = 0.0
     for character in line:
-        glyph, advance = _glyph(character)
+        glyph, advance = font.glyph(character)
         if glyph is not None:
             yield glyph.moved(pen, 0.0)
         pen += advance
 
 
-# --- The font ------------------------------------------------------------------------------------
+# --- Fonts ---------------------------------------------------------------------------------------
+
+
+class Font:
+    """A font file, of which each character is read once."""
+
+    def __init__(self, data: bytes) -> None:
+        # Not imported at the top: a program without text needs no font.
+        from fontTools.ttLib import TTFont
+
+        self._file: TTFont = TTFont(BytesIO(data), lazy=True)
+        self._names: Mapping[int, str] = self._file.getBestCmap()
+        self._made: dict[str, tuple[Glyph | None, float]] = {}
+
+    def __contains__(self, character: str) -> bool:
+        return ord(character) in self._names
+
+    def glyph(self, character: str) -> tuple[Glyph | None, float]:
+        """Returns the outline of a character at the origin (None for a blank) and its advance width."""
+        if character not in self._made:
+            self._made[character] = self._read(character)
+        return self._made[character]
+
+    def _read(self, character: str) -> tuple[Glyph | None, float]:
+        from fontTools.pens.recordingPen import DecomposingRecordingPen
+
+        glyphs, name = self._file.getGlyphSet(), self._names[ord(character)]
+        pen = DecomposingRecordingPen(glyphs)
+        glyphs[name].draw(pen)
+        unit = 1.0 / self._capital_height
+        curves = tuple(
+            tuple((x * unit, y * unit) for x, y in curve)
+            for curve in _curves(pen.value)
+            if len(set(curve)) > 1
+        )
+        advance = float(glyphs[name].width) * unit
+        return (Glyph(curves, _ink(curves)) if curves else None), advance
+
+    @cached_property
+    def _capital_height(self) -> float:
+        """The height of an H in font units."""
+        return float(self._file["glyf"][self._names[ord("H")]].yMax)
 
 
 @cache
-def _font() -> TTFont:
-    # Not imported at the top: a program without text needs no font.
-    from fontTools.ttLib import TTFont
-
-    return TTFont(BytesIO(resource(_FONT).read_bytes()), lazy=True)
+def plain_font() -> Font:
+    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL.ttf").read_bytes())
 
 
 @cache
-def _capital_height() -> float:
-    """Returns the height of an H in font units."""
-    return float(_font()["glyf"][_font().getBestCmap()[ord("H")]].yMax)
-
-
-@cache
-def _glyph(character: str) -> tuple[Glyph | None, float]:
-    """Returns the outline of a character at the origin (None for a blank) and its advance width."""
-    from fontTools.pens.recordingPen import DecomposingRecordingPen
-
-    glyphs, name = _font().getGlyphSet(), _font().getBestCmap()[ord(character)]
-    pen = DecomposingRecordingPen(glyphs)
-    glyphs[name].draw(pen)
-    unit = 1.0 / _capital_height()
-    curves = tuple(
-        tuple((x * unit, y * unit) for x, y in curve) for curve in _curves(pen.value) if len(set(curve)) > 1
-    )
-    advance = float(glyphs[name].width) * unit
-    return (Glyph(curves, _ink(curves)) if curves else None), advance
+def bold_font() -> Font:
+    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL-Bold.ttf").read_bytes())
 
 
 def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
@@ -247,7 +268,7 @@ def replacement(character: str) -> str | None:
     """
     if character == "\t":
         return "    "
-    known = _font().getBestCmap()
+    known = plain_font()
     plain = unicodedata.normalize("NFKD", character)
     plain = "".join(c for c in plain if not unicodedata.combining(c))
-    return plain if plain != character and plain and all(ord(c) in known for c in plain) else None
+    return plain if plain != character and plain and all(c in known for c in plain) else None

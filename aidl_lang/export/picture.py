@@ -137,7 +137,8 @@ def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
         if seam.is_asked or not styles[seam.body].is_unlined:
             yield seam.path, _seam(seam, styles[seam.body], size)
     for stroke in drawing.strokes:
-        yield stroke.path, _stroke(stroke, size)
+        for mark in _strokes(stroke, size):
+            yield stroke.path, mark
 
 
 def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
@@ -169,16 +170,20 @@ def _seam(seam: Seam, style: Style, size: float) -> Curves:
     return Curves(seam.pieces, ink, "seam")
 
 
-def _stroke(stroke: Stroke, size: float) -> Curves:
+def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     style = stroke.style
     if stroke.role != "drawing":
         ink = Ink(palette.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
-        return Curves(stroke.pieces, ink, stroke.role)
+        yield Curves(stroke.pieces, ink, stroke.role)
+        return
     color = style.color or palette.OUTLINE
     if stroke.over is not None:
         color = palette.contrasting(stroke.over)
+    if stroke.faces:
+        yield from (Area(face, color, None, opacity=_opacity(style)) for face in stroke.faces)
+        return
     ink = replace(_line(style, color, STROKE_WIDTH, size), opacity=_opacity(style))
-    return Curves(stroke.pieces, ink)
+    yield Curves(stroke.pieces, ink)
 
 
 def _line(style: Style, color: str, width: float, size: float) -> Ink:

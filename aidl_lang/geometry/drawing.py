@@ -25,11 +25,12 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
+from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
@@ -65,7 +66,8 @@ class Stroke:
 
     `role` is `drawing` for the curves of a drawing, `open` for curves of other structures that bound no face,
     `hole` for the outline of a hole that nothing holds. `over`: the colour of what it lies on, where it
-    has the same from a structure around it, so that it would not be seen.
+    has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
+    which is filled where it can be; `pieces` are their outlines.
     """
 
     path: str
@@ -74,6 +76,7 @@ class Stroke:
     style: Style
     role: str = "drawing"
     over: str | None = None
+    faces: tuple[Face, ...] = ()
 
 
 @record()
@@ -348,12 +351,31 @@ def _inked(
         if is_asked and look.color and hidden and all(hidden):
             lost.setdefault(look.color, []).append(shape.geometry.name)
         over = look.color if any(hidden) and not is_asked else None
-        pieces = tuple(ground.network.curves[number] for number in numbers)
-        yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over)
+        for pieces, faces in _told_apart(shape, ground.network):
+            yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over, faces=faces)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
         if whole := [name for name in names if _array(name) not in seen]:
             notes.append(covered_note(drawing, whole, by))
+
+
+def _told_apart(shape: Shape, network: Network) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
+    """Yields the letters of a shape, which are filled, and the rest of it, each with its faces."""
+    number_of = {id(leaf): number for leaf, number in shape.leaves}
+    letters: list[Piece] = []
+    faces: list[Face] = []
+    for glyph in (g for g in shape.geometry.walk() if g.filled):
+        own = [leaf for leaf in glyph.parts if id(leaf) in number_of]
+        outline = [network.curves[number_of[id(leaf)]] for leaf in own]
+        if found := letter_faces(outline) if outline else ():
+            letters += outline
+            faces += found
+            for leaf in own:
+                del number_of[id(leaf)]
+    if rest := tuple(network.curves[number] for number in number_of.values()):
+        yield rest, ()
+    if letters:
+        yield tuple(letters), tuple(faces)
 
 
 def _array(name: str) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -65,7 +65,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
         closed = _is_closed(network, shape, uses)
         kept = _without_dangling(network, uses) if closed else []
         if kept:
-            section = _alternating(network, kept)
+            section = union([_alternating(network, uses) for uses in _by_letter(network, shape, kept)])
             if is_nothing(section):  # flat, or twice the same outline
                 result.loose += shape.leaves
             else:
@@ -76,6 +76,20 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     if free:
         _chain_free(network, free, outlines, result)
     return result
+
+
+def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:
+    """Yields what alternates by itself: each letter of a text along a curve, where letters may overlap."""
+    letters = [part for part in shape.geometry.parts if part.type == "glyphs"]
+    if len(letters) < 2:
+        yield uses
+        return
+    letter_of = {id(leaf): k for k, letter in enumerate(letters) for leaf in letter.walk()}
+    of_edge = {edge: letter_of.get(id(leaf)) for leaf, n in shape.leaves for edge, _ in network.uses[n]}
+    parts: dict[int | None, list[Use]] = defaultdict(list)
+    for use in uses:
+        parts[of_edge.get(use[0])].append(use)
+    yield from parts.values()
 
 
 def _is_closed(network: Network, shape: Shape, uses: list[Use]) -> bool:

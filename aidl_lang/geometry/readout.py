@@ -372,7 +372,8 @@ def _glyph(
     """Returns one character of a text, with its curves as parts."""
     checkpoint()
     edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
-    return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
+    path, filled = f"{text.path}.{name}", text.filled
+    return SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
 
 
 def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:

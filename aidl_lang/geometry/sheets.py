@@ -243,13 +243,13 @@ def _placed_box(place: _Place) -> Bounds:
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
-    """Returns the drawing of one sheet. Seams and plans are not cut."""
+    """Returns the drawing of one sheet. Seams and plans are not cut, and nothing is filled."""
     bodies, strokes, regions = [], [], dict[str, Region]()
     for place in places:
         part = place.part
         region = _moved_region(part.body.region, place)
         bodies.append(replace(part.body, region=region, box=region_bounds(region)))
-        strokes += [replace(s, pieces=tuple(_moved(s.pieces, place))) for s in part.strokes]
+        strokes += [replace(s, pieces=tuple(_moved(s.pieces, place)), faces=()) for s in part.strokes]
         for path, below in part.regions.items():
             faces = regions.get(path, Region()).faces
             regions[path] = Region(faces + _moved_region(below, place).faces)

@@ -85,6 +85,7 @@ class SolvedGeometry:
     source  the path of what it is a copy of
     attributes  name → argument values as written: `note`, and in a drawing `color`
     piece_of  the path of the primitive that is made of it: it has no name by itself
+    filled    it is a letter that a drawing fills
     """
 
     name: str
@@ -99,6 +100,7 @@ class SolvedGeometry:
     source: str | None = None
     attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
     piece_of: str | None = None
+    filled: bool = False
 
     def walk(self) -> Iterator[SolvedGeometry]:
         """Yields this geometry and all its parts."""

@@ -108,7 +108,9 @@ def _straight(p: Any, q: Any) -> Curve:
 
 
 def read_svg(data: bytes) -> dict[str, Body]:
-    """Filled paths by the path of their structure; in mm as the physical size of the document has it."""
+    """Filled paths with an outline, as bodies have, by the path of their structure; in mm as the physical
+    size of the document has it.
+    """
     import svgelements
 
     # To the reader a millimetre is 0.0393701 inches: with so many pixels an inch it is one pixel.
@@ -116,9 +118,9 @@ def read_svg(data: bytes) -> dict[str, Body]:
     bodies: dict[str, Body] = defaultdict(Body)
     for group in document.select(lambda e: isinstance(e, svgelements.Group) and "data-path" in e.values):
         for path in group.select(lambda e: isinstance(e, svgelements.Path)):
-            if (
-                path.values.get("class") in ("seam", "open", "hole", "engrave")
-                or path.values["fill"] == "none"
+            if path.values.get("class") in ("seam", "open", "hole", "engrave") or "none" in (
+                path.values["fill"],
+                path.values["stroke"],
             ):
                 continue
             body = bodies[group.values["data-path"]]
@@ -216,7 +218,7 @@ def _chained(curves: Iterable[Curve]) -> list[list[Curve]]:
 
 
 def read_pdf(data: bytes) -> list[Body]:
-    """One body for each filled path of the first page, in order of drawing; mm, y upwards."""
+    """One body for each filled path with an outline on the first page, in order of drawing; mm, y upwards."""
     import pypdfium2.raw as pdfium
     from pypdfium2 import PdfDocument
 
@@ -227,7 +229,7 @@ def read_pdf(data: bytes) -> list[Body]:
             continue
         mode, stroke = pdfium.c_int(), pdfium.c_int()  # type: ignore[attr-defined]
         pdfium.FPDFPath_GetDrawMode(item.raw, mode, stroke)
-        if mode.value != pdfium.FPDF_FILLMODE_NONE:
+        if mode.value != pdfium.FPDF_FILLMODE_NONE and stroke.value:
             found.append(Body(_of_pdf(item.raw, item.get_matrix()), faces=1))
     document.close()
     return found

@@ -328,3 +328,43 @@ def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
         PdfDocument(written(".pdf", program[program.index("solid") :]).data).get_metadata_dict()["Title"]
         == "plate"
     )
+
+
+# --- Letters -----------------------------------------------------------------------------------------
+
+LETTERS = """
+assembly a {
+    @color("yellow") solid plate { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
+    @color("red") drawing marks {
+        ring = text("O", center: fixed((-20, 0)), height: 30)
+        bare = text("I", center: fixed((20, 0)), height: 30, bold: true, outline: true)
+    }
+}
+"""
+
+
+def test_letters_are_filled_and_their_counters_open() -> None:
+    filled, outlined = re.findall("<path .*?/>", group(written(".svg", LETTERS).data.decode(), "a.marks"))
+    assert 'fill="red" fill-rule="evenodd" stroke="none"' in filled
+    assert filled.count("Z") == 2
+    assert 'fill="none" stroke="red"' in outlined
+    picture = Image.open(io.BytesIO(written(".png", LETTERS, pixels=1060).data)).convert("RGB")
+    page = PdfDocument(written(".pdf", LETTERS).data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+    for image in (picture, page):
+        assert near(image.getpixel((530 - 200, 330)), (255, 255, 0))  # within the O
+        assert near(image.getpixel((530 - 200 + 125, 330)), (255, 0, 0))  # its right side
+        assert near(image.getpixel((530 + 200, 330)), (255, 255, 0))  # within the outlined I
+
+
+def test_letters_take_the_lines_of_a_theme() -> None:
+    svg = written(".svg", LETTERS, theme="ink").data.decode()
+    assert group(svg, "a.marks").count('fill="#000000"') == 1
+
+
+def test_a_cutter_gets_the_outlines_of_letters() -> None:
+    svg = group(written(".svg", LETTERS, cut=True).data.decode(), "a.marks")
+    assert set(re.findall('fill="(.*?)"', svg)) == {"none"}
+    made = ezdxf.read(io.StringIO(written(".dxf", LETTERS).data.decode()))
+    entities = [e for e in made.modelspace() if e.dxf.layer == "drawing"]
+    assert {e.dxftype() for e in entities} == {"LWPOLYLINE", "SPLINE"}
+    assert all(e.closed for e in entities if e.dxftype() == "LWPOLYLINE")

@@ -1,0 +1,65 @@
+"""The areas of letters that a drawing fills, with their counters open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.evaluate import ends, points, reverse
+from aidl_lang.geometry.measures import loop_area
+from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.region import Face, Loop
+
+_STEPS = np.linspace(0, 1, 9)
+
+
+def letter_faces(outline: Sequence[Piece]) -> tuple[Face, ...]:
+    """Returns the faces of one character, whose contours follow one another and alternate where they are
+    nested; none if one of them is open.
+    """
+    checkpoint()
+    contours = list(_contours(outline))
+    if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
+        return ()
+    around = _nesting(contours)
+    holes: dict[int, list[Loop]] = {k: [] for k, outer in enumerate(around) if len(outer) % 2 == 0}
+    for k, outer in enumerate(around):
+        if k not in holes:
+            # Of the contours around a hole that are no holes, the innermost has the most around itself.
+            holder = max((other for other in outer if other in holes), key=lambda other: len(around[other]))
+            holes[holder].append(_turning(contours[k], -1.0))
+    return tuple(Face(_turning(contours[k], 1.0), tuple(inner)) for k, inner in holes.items())
+
+
+def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
+    """Yields the runs of curves of which each begins where the one before it ends."""
+    first = 0
+    for k, piece in enumerate(outline):
+        is_closed = ends(outline[first])[0] == ends(piece)[1]
+        if is_closed or k + 1 == len(outline) or ends(outline[k + 1])[0] != ends(piece)[1]:
+            yield tuple(outline[first : k + 1])
+            first = k + 1
+
+
+def _nesting(contours: Sequence[Sequence[Piece]]) -> list[list[int]]:
+    """Returns for each contour the numbers of those that it lies in."""
+    if len(contours) == 1:
+        return [[]]
+    polygons = [np.concatenate([points(piece, _STEPS)[:-1] for piece in contour]) for contour in contours]
+    spots = np.array([polygon[0] for polygon in polygons])
+    within = [inside([polygon], spots) for polygon in polygons]
+    return [
+        [other for other in range(len(contours)) if other != k and within[other][k]]
+        for k in range(len(contours))
+    ]
+
+
+def _turning(contour: tuple[Piece, ...], sense: float) -> Loop:
+    """Returns a contour as a loop, counter-clockwise if `sense` is positive."""
+    loop = Loop(contour)
+    if loop_area(loop) * sense < 0:
+        return Loop(tuple(reverse(piece) for piece in reversed(contour)))
+    return loop
