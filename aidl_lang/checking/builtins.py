@@ -149,6 +149,9 @@ COPYING = frozenset({"mirror", "copy"}) | EDITS
 DERIVING = COPYING | OUTLINES | FILLINGS
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
 
+CONNECTING = frozenset({"coil", "spring", "chain", "cord"})
+"""Curves of the library that follow two points, an ancestor's included, and hold no equations."""
+
 FINISHES = frozenset({"fillet", "chamfer"})
 """Statements that change the corners of outlines after solving."""
 
