@@ -4,8 +4,8 @@
 /// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
 ///
 /// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
-/// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain point is a
-/// `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
+/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain
+/// point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
 /// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
 /// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
 ///
@@ -61,7 +61,31 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             assert written(move.radius) > 0, "the radius of an arc is more than 0"
         }
 
-        if move.kind == "bezier_to" {
+        if move.kind == "smooth_to" {
+            assert norm(written(to - pen)) > 0.000001, "`smooth_to` goes to another point than where it is"
+            let chord = to - pen
+            let next = if i < len(drawn) - 1 then drawn[i + 1] else record(kind: "none")
+            let has_image = ending.kind == "mirrored"
+            let goes_home = is_home and not has_image
+            let goes_over = has_image and ending.smooth and i == len(drawn) - 1
+            let comes_home = i == 0 and not has_image and comes_smoothly(drawn, from)
+            let arrival = if move.is_aimed then polar(1mm, move.heading) else if next.kind == "smooth_to" and not next.is_leaving then circle_way(
+                chord, next.to - to
+            ) else if next.kind in straight_kinds then step_end(next, to, chord, from) - to else if goes_home then entering(
+                segment[0]
+            ) else if goes_over then across(
+                if ending.is_told then ending.about.end - ending.about.start else to - from, chord
+            ) else chord
+            let is_arrival_free = not (move.is_aimed or goes_home or goes_over or next.kind in straight_kinds)
+                and (next.kind != "smooth_to" or next.is_leaving)
+            let departure = if move.is_leaving then polar(1mm, move.leaving) else if i > 0 then way else if comes_home then circle_way(
+                from - drawn[-2].to, chord
+            ) else mirrored_way(unit(arrival), chord)
+            let last = if is_arrival_free then mirrored_way(unit(departure), chord) else arrival
+            segment[i] = bezier(
+                pen, pen + smooth_handle(departure, chord), to - smooth_handle(last, chord), to
+            )
+        } else if move.kind == "bezier_to" {
             segment[i] = bezier(pen, move.first, move.second, to)
         } else if move.kind == "quadratic_to" {
             segment[i] = bezier(pen, lerp(pen, move.by, 2 / 3), lerp(to, move.by, 2 / 3), to)
@@ -123,7 +147,7 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             let home = if j == 0 and starts_there then from else corner[joint + i + 1]
             segment[joint + i] = mirrored_back(segment[j], axis, corner[joint + i], home)
         }
-        if ending.smooth { constrain squarely(segment[half - 1], axis) }
+        if ending.smooth and drawn[-1].kind != "smooth_to" { constrain squarely(segment[half - 1], axis) }
         if ending.closed and not starts_there { segment[joint + half] = line(corner[joint + half], from) }
     }
     let end = segment[-1].end
@@ -144,10 +168,24 @@ fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
     path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
-    "line_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
+    "line_to", "smooth_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
 ]
 
 let last_kinds = ["close", "mirrored"]
+
+// The steps whose direction is known before they are drawn.
+let straight_kinds = ["line_to", "line_by", "line_along", "level_to", "upright_to"]
+
+// Whether the last of some steps goes smoothly into the first one.
+fn comes_smoothly(drawn: list, start: point) = len(drawn) > 2 and drawn[-1].kind == "smooth_to" and drawn[
+    -2
+].kind in placed_kinds and not drawn[-1].is_aimed and meets(drawn[-1].to, start)
+// The direction square to an axis on the side to which a way leads.
+fn across(axis: point, way: point) = turned(
+    axis, if cross(written(axis), written(way)) >= 0mm * 1mm then 90deg else -90deg
+)
+fn smooth_handle(way: point, chord: point) =
+    unit(way) * (norm(chord) * 2 / 3 / max(0.5mm, 1mm + dot(unit(way), unit(chord)) / 1mm))
 
 fn as_step(move: record) = move
 fn as_step(p: point) = line_to(p)
@@ -346,6 +384,38 @@ fn arc_by(turn: angle, radius: length, smooth: bool = true) =
 /// ```
 fn tangent_arc_to(to: point, smooth: bool = true) =
     record(kind: "arc_tangent", to: to, smooth: false)
+
+/// A step of a path: a smooth curve to a point, which leaves and arrives without a corner where nothing else is said.
+///
+/// Several are one smooth curve through their points, its knots. It goes on from the step before and into a straight
+/// step behind it; into the first step where it closes the outline, and square to the axis of `mirrored(smooth: true)`.
+/// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then.
+///
+/// ```aidl
+/// solid pear {
+///     body = path(
+///         from: (0, 0),
+///         smooth_to((22, 18), leaving: 0deg),
+///         smooth_to((9, 46)),
+///         smooth_to((0, 56), heading: 180deg),
+///         mirrored(about: y_axis)
+///     )
+/// }
+/// ```
+fn smooth_to(to: point) = smooth_step(to, 0deg, false, 0deg, false)
+fn smooth_to(to: point, heading: angle) = smooth_step(to, heading, true, 0deg, false)
+fn smooth_to(to: point, leaving: angle) = smooth_step(to, 0deg, false, leaving, true)
+fn smooth_to(to: point, heading: angle, leaving: angle) =
+    smooth_step(to, heading, true, leaving, true)
+fn smooth_step(to: point, heading: angle, is_aimed: bool, leaving: angle, is_leaving: bool) = record(
+    kind: "smooth_to",
+    to: to,
+    heading: heading,
+    is_aimed: is_aimed,
+    leaving: leaving,
+    is_leaving: is_leaving,
+    smooth: false
+)
 
 /// A step of a path: a cubic Bézier by its two control points and its end.
 ///
