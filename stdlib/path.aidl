@@ -4,8 +4,8 @@
 /// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
 ///
 /// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
-/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain
-/// point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
+/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `wave_to`, `zigzag_to`,
+/// `scallops_to`, `close` and `mirrored`; a plain point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
 /// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
 /// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
 ///
@@ -37,7 +37,12 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         let move = drawn[i]
         let pen = corner[i]
         let way = if i == 0 then polar(1mm, heading) else leaving(segment[i - 1])
-        let reached = step_end(move, pen, way, from)
+        let run = if move.kind in run_kinds then drawn[i + move.left[0]] else move
+        let is_run_home = move.kind in run_kinds and i + move.left[0] == len(drawn) - 1 and meets(run.to, from)
+        let goal = if is_run_home then from else if move.kind in run_kinds then run.to else pen
+        let reached = if move.kind in run_kinds then run_end(
+            move, if move.kind == "tooth_fall" then corner[i - 1] else pen, goal, run.height
+        ) else step_end(move, pen, way, from)
         let is_home = i == len(drawn) - 1 and meets(reached, from)
         // What ends at a point of its own ends at the start itself; what ends after a way is made to meet it.
         let is_there = is_home and move.kind in placed_kinds
@@ -87,6 +92,22 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             )
         } else if move.kind == "bezier_to" {
             segment[i] = bezier(pen, move.first, move.second, to)
+        } else if move.kind in ["wave_left", "wave_right"] {
+            let aside = to_left(to - pen) * (run.height / 0.75mm)
+            let up = if move.kind == "wave_left" then aside else -aside
+            let along = (to - pen) * (4 / 3 / pi)
+            segment[i] = bezier(pen, pen + along + up, to - along + up, to)
+        } else if move.kind == "half_circle" {
+            segment[i] = arc(center: (pen + to) / 2, start: pen, end: to, clockwise: true)
+        } else if move.kind == "scallop" {
+            let chord = to - pen
+            segment[i] = arc(
+                center: (pen + to) / 2
+                    + to_left(chord) * ((run.height ^ 2 - dot(chord, chord) / 4) / (2 * run.height) / 1mm),
+                start: pen,
+                end: to,
+                clockwise: written(run.height) > 0mm
+            )
         } else if move.kind == "quadratic_to" {
             segment[i] = bezier(pen, lerp(pen, move.by, 2 / 3), lerp(to, move.by, 2 / 3), to)
         } else if is_half {
@@ -169,7 +190,24 @@ fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
 
 let placed_kinds = [
     "line_to", "smooth_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
-]
+] + run_kinds
+
+// The steps of a run of equal ones. `left` has how many steps and how many periods are left of it; the last step has what
+// holds for all.
+let run_kinds = ["wave_left", "wave_right", "tooth_rise", "tooth_fall", "half_circle", "scallop"]
+fn run_end(move: record, start: point, goal: point, height: length) = if move.kind == "tooth_rise" then lerp(
+    start, goal, 0.5 / move.left[1]
+) + to_left(goal - start) * (height / 1mm) else lerp(
+    start, goal, 1 / (if move.kind == "tooth_fall" then move.left[1] else move.left[0] + 1)
+)
+fn run_to(kinds: list, to: point, height: length, periods: integer) = [run_step(
+    kinds[k % len(kinds)], [len(kinds) * periods - 1 - k, periods - floor(k / len(kinds))], to, height
+) for k in 0..<len(kinds) * periods]
+fn run_step(
+    kind: text, left: list, to: point, height: length
+) = if left[0] == 0 then record(
+    kind: kind, left: left, to: to, height: height, smooth: false
+) else record(kind: kind, left: left, smooth: false)
 
 let last_kinds = ["close", "mirrored"]
 
@@ -415,6 +453,49 @@ fn smooth_step(to: point, heading: angle, is_aimed: bool, leaving: angle, is_lea
     leaving: leaving,
     is_leaving: is_leaving,
     smooth: false
+)
+
+/// A step of a path: in `waves` whole waves to a point, each first to the left of its way by `amplitude`, then to the right.
+///
+/// ```aidl
+/// assembly sea {
+///     @color("steelblue")
+///     solid water {
+///         body = path(from: (0, 0), right(90), up(20), wave_to((0, 20), amplitude: 3, waves: 5), close())
+///     }
+/// }
+/// ```
+fn wave_to(to: point, amplitude: length, waves: integer = 4) = if waves >= 1 then run_to(
+    ["wave_left", "wave_right"], to, amplitude, waves
+) else refuse("a wave has at least one period")
+
+/// A step of a path: to a point over `teeth` pointed teeth, `height` high on the left of its way, on the right if negative.
+///
+/// ```aidl
+/// solid crown {
+///     body = path(from: (0, 0), right(50), up(18), zigzag_to((0, 18), height: -14, teeth: 5), close())
+/// }
+/// ```
+fn zigzag_to(to: point, height: length, teeth: integer = 4) = if teeth >= 1 then run_to(
+    ["tooth_rise", "tooth_fall"], to, height, teeth
+) else refuse("a zigzag has at least one tooth")
+
+/// A step of a path: to a point over `n` equal arcs that bulge by `depth` to the left of its way, to the right if negative.
+///
+/// Without a depth they are half circles.
+///
+/// ```aidl
+/// solid awning {
+///     body = path(from: (0, 0), line_to((8, 30)), right(64), line_to((80, 0)), scallops_to((0, 0), n: 8, depth: 4))
+/// }
+/// ```
+fn scallops_to(to: point, n: integer) = if n >= 1 then run_to(
+    ["half_circle"], to, 0mm, n
+) else refuse("there is at least one scallop")
+fn scallops_to(to: point, n: integer, depth: length) = if n < 1 then refuse(
+    "there is at least one scallop"
+) else if abs(written(depth)) > 0.000001 then run_to(["scallop"], to, depth, n) else refuse(
+    "scallops bulge: their depth is not 0"
 )
 
 /// A step of a path: a cubic Bézier by its two control points and its end.
