@@ -21,16 +21,18 @@
 /// }
 /// ```
 shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
-    let drawn = [as_step(s) for s in steps if as_step(s).kind not in last_kinds]
+    let drawn = [as_step(s) for s in steps if not as_step(s).kind in last_kinds]
     assert len(drawn) >= 1, "a path has at least one step that draws"
     let endings = [as_step(s) for s in steps if as_step(s).kind in last_kinds]
     let ending = if len(endings) > 0 then endings[0] else record(kind: "none")
     let closes = closed or ending.kind == "close"
     if ending.kind == "mirrored" {
         let is_last = len(endings) == 1 or len(endings) == 2 and endings[1].kind == "close"
-        assert is_last and as_step(steps[len(drawn)]).kind == "mirrored", "`mirrored()` is the last step"
+        assert is_last and as_step(steps[len(drawn)]).kind == "mirrored",
+            "`mirrored()` is the last step"
     } else if len(endings) > 0 {
-        assert len(endings) == 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
+        assert len(endings) == 1 and as_step(steps[-1]).kind == "close",
+            "`close()` is the last step"
     }
     corner[0] = from
     for i in 0..<len(drawn) {
@@ -38,7 +40,9 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         let pen = corner[i]
         let way = if i == 0 then polar(1mm, heading) else leaving(segment[i - 1])
         let run = if move.kind in run_kinds then drawn[i + move.left[0]] else move
-        let is_run_home = move.kind in run_kinds and i + move.left[0] == len(drawn) - 1 and meets(run.to, from)
+        let is_run_home = move.kind in run_kinds and i + move.left[0] == len(drawn) - 1 and meets(
+            run.to, from
+        )
         let goal = if is_run_home then from else if move.kind in run_kinds then run.to else pen
         let reached = if move.kind in run_kinds then run_end(
             move, if move.kind == "tooth_fall" then corner[i - 1] else pen, goal, run.height
@@ -67,23 +71,27 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         }
 
         if move.kind == "smooth_to" {
-            assert norm(written(to - pen)) > 0.000001, "`smooth_to` goes to another point than where it is"
+            assert norm(written(to - pen)) > 0.000001,
+                "`smooth_to` goes to another point than where it is"
             let chord = to - pen
             let next = if i < len(drawn) - 1 then drawn[i + 1] else record(kind: "none")
             let has_image = ending.kind == "mirrored"
             let goes_home = is_home and not has_image
             let goes_over = has_image and ending.smooth and i == len(drawn) - 1
             let comes_home = i == 0 and not has_image and comes_smoothly(drawn, from)
-            let arrival = if move.is_aimed then polar(1mm, move.heading) else if next.kind == "smooth_to" and not next.is_leaving then circle_way(
+            let arrival = if move.is_aimed then polar(
+                1mm, move.heading
+            ) else if next.kind == "smooth_to" and not next.is_leaving then circle_way(
                 chord, next.to - to
-            ) else if next.kind in straight_kinds then step_end(next, to, chord, from) - to else if goes_home then entering(
-                segment[0]
-            ) else if goes_over then across(
+            ) else if next.kind in straight_kinds then step_end(
+                next, to, chord, from
+            ) - to else if goes_home then entering(segment[0]) else if goes_over then across(
                 if ending.is_told then ending.about.end - ending.about.start else to - from, chord
             ) else chord
-            let is_arrival_free = not (move.is_aimed or goes_home or goes_over or next.kind in straight_kinds)
-                and (next.kind != "smooth_to" or next.is_leaving)
-            let departure = if move.is_leaving then polar(1mm, move.leaving) else if i > 0 then way else if comes_home then circle_way(
+            let is_arrival_free = not (move.is_aimed or goes_home or goes_over or next.kind in straight_kinds) and (next.kind != "smooth_to" or next.is_leaving)
+            let departure = if move.is_leaving then polar(
+                1mm, move.leaving
+            ) else if i > 0 then way else if comes_home then circle_way(
                 from - drawn[-2].to, chord
             ) else mirrored_way(unit(arrival), chord)
             let last = if is_arrival_free then mirrored_way(unit(departure), chord) else arrival
@@ -102,8 +110,9 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         } else if move.kind == "scallop" {
             let chord = to - pen
             segment[i] = arc(
-                center: (pen + to) / 2
-                    + to_left(chord) * ((run.height ^ 2 - dot(chord, chord) / 4) / (2 * run.height) / 1mm),
+                center: (pen + to) / 2 + to_left(chord) * ((run.height ^ 2 - dot(
+                    chord, chord
+                ) / 4) / (2 * run.height) / 1mm),
                 start: pen,
                 end: to,
                 clockwise: written(run.height) > 0mm
@@ -168,13 +177,16 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             let home = if j == 0 and starts_there then from else corner[joint + i + 1]
             segment[joint + i] = mirrored_back(segment[j], axis, corner[joint + i], home)
         }
-        if ending.smooth and drawn[-1].kind != "smooth_to" { constrain squarely(segment[half - 1], axis) }
-        if ending.closed and not starts_there { segment[joint + half] = line(corner[joint + half], from) }
+        if ending.smooth and drawn[-1].kind != "smooth_to" {
+            constrain squarely(segment[half - 1], axis)
+        }
+        if ending.closed and not starts_there {
+            segment[joint + half] = line(corner[joint + half], from)
+        }
     }
     let end = segment[-1].end
     if half > 0 and drawn[0].smooth {
-        assert meets(end, from),
-            "the first step of an open path has nothing to go on from smoothly"
+        assert meets(end, from), "the first step of an open path has nothing to go on from smoothly"
         constrain smoothly(segment[-1], segment[0])
     }
     let start = from
@@ -189,23 +201,33 @@ fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
     path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
-    "line_to", "smooth_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
+    "line_to",
+    "smooth_to",
+    "bezier_to",
+    "quadratic_to",
+    "arc_radius",
+    "arc_center",
+    "arc_through",
+    "arc_tangent"
 ] + run_kinds
 
 // The steps of a run of equal ones. `left` has how many steps and how many periods are left of it; the last step has what
 // holds for all.
 let run_kinds = ["wave_left", "wave_right", "tooth_rise", "tooth_fall", "half_circle", "scallop"]
-fn run_end(move: record, start: point, goal: point, height: length) = if move.kind == "tooth_rise" then lerp(
-    start, goal, 0.5 / move.left[1]
-) + to_left(goal - start) * (height / 1mm) else lerp(
+fn run_end(
+    move: record, start: point, goal: point, height: length
+) = if move.kind == "tooth_rise" then lerp(start, goal, 0.5 / move.left[1]) + to_left(
+    goal - start
+) * (height / 1mm) else lerp(
     start, goal, 1 / (if move.kind == "tooth_fall" then move.left[1] else move.left[0] + 1)
 )
 fn run_to(kinds: list, to: point, height: length, periods: integer) = [run_step(
-    kinds[k % len(kinds)], [len(kinds) * periods - 1 - k, periods - floor(k / len(kinds))], to, height
+    kinds[k % len(kinds)],
+    [len(kinds) * periods - 1 - k, periods - floor(k / len(kinds))],
+    to,
+    height
 ) for k in 0..<len(kinds) * periods]
-fn run_step(
-    kind: text, left: list, to: point, height: length
-) = if left[0] == 0 then record(
+fn run_step(kind: text, left: list, to: point, height: length) = if left[0] == 0 then record(
     kind: kind, left: left, to: to, height: height, smooth: false
 ) else record(kind: kind, left: left, smooth: false)
 
@@ -215,13 +237,14 @@ let last_kinds = ["close", "mirrored"]
 let straight_kinds = ["line_to", "line_by", "line_along", "level_to", "upright_to"]
 
 // Whether the last of some steps goes smoothly into the first one.
-fn comes_smoothly(drawn: list, start: point) = len(drawn) > 2 and drawn[-1].kind == "smooth_to" and drawn[
-    -2
-].kind in placed_kinds and not drawn[-1].is_aimed and meets(drawn[-1].to, start)
-// The direction square to an axis on the side to which a way leads.
-fn across(axis: point, way: point) = turned(
-    axis, if cross(written(axis), written(way)) >= 0mm * 1mm then 90deg else -90deg
+fn comes_smoothly(drawn: list, start: point) = len(
+    drawn
+) > 2 and drawn[-1].kind == "smooth_to" and drawn[-2].kind in placed_kinds and not drawn[-1].is_aimed and meets(
+    drawn[-1].to, start
 )
+// The direction square to an axis on the side to which a way leads.
+fn across(axis: point, way: point) =
+    turned(axis, if cross(written(axis), written(way)) >= 0mm * 1mm then 90deg else -90deg)
 fn smooth_handle(way: point, chord: point) =
     unit(way) * (norm(chord) * 2 / 3 / max(0.5mm, 1mm + dot(unit(way), unit(chord)) / 1mm))
 
@@ -233,12 +256,8 @@ fn meets(a: point, b: point) = norm(written(a - b)) < 0.000001
 
 // The mirror image of a segment, which runs the other way.
 fn mirrored_back(l: line, axis: line, start: point, end: point) = line(start, end)
-fn mirrored_back(a: arc, axis: line, start: point, end: point) = arc(
-    center: mirror(a.center, about: axis),
-    start: start,
-    end: end,
-    clockwise: is_clockwise(a)
-)
+fn mirrored_back(a: arc, axis: line, start: point, end: point) =
+    arc(center: mirror(a.center, about: axis), start: start, end: end, clockwise: is_clockwise(a))
 fn mirrored_back(b: bezier, axis: line, start: point, end: point) =
     bezier(start, mirror(b.p2, about: axis), mirror(b.p1, about: axis), end)
 
@@ -445,7 +464,9 @@ fn smooth_to(to: point, heading: angle) = smooth_step(to, heading, true, 0deg, f
 fn smooth_to(to: point, leaving: angle) = smooth_step(to, 0deg, false, leaving, true)
 fn smooth_to(to: point, heading: angle, leaving: angle) =
     smooth_step(to, heading, true, leaving, true)
-fn smooth_step(to: point, heading: angle, is_aimed: bool, leaving: angle, is_leaving: bool) = record(
+fn smooth_step(
+    to: point, heading: angle, is_aimed: bool, leaving: angle, is_leaving: bool
+) = record(
     kind: "smooth_to",
     to: to,
     heading: heading,
@@ -489,9 +510,8 @@ fn zigzag_to(to: point, height: length, teeth: integer = 4) = if teeth >= 1 then
 ///     body = path(from: (0, 0), line_to((8, 30)), right(64), line_to((80, 0)), scallops_to((0, 0), n: 8, depth: 4))
 /// }
 /// ```
-fn scallops_to(to: point, n: integer) = if n >= 1 then run_to(
-    ["half_circle"], to, 0mm, n
-) else refuse("there is at least one scallop")
+fn scallops_to(to: point, n: integer) =
+    if n >= 1 then run_to(["half_circle"], to, 0mm, n) else refuse("there is at least one scallop")
 fn scallops_to(to: point, n: integer, depth: length) = if n < 1 then refuse(
     "there is at least one scallop"
 ) else if abs(written(depth)) > 0.000001 then run_to(["scallop"], to, depth, n) else refuse(

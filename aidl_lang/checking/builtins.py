@@ -138,7 +138,7 @@ CUTS = frozenset(
 FILLINGS = frozenset(
     (
         *("hatching", "crosshatch", "bricks", "tiles", "shingles", "planks", "ribs", "knurling", "dots"),
-        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers"),
+        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers", "rays"),
     )
 )
 """Patterns of the library that fill an outline: each is made by `tiled`."""
@@ -149,7 +149,7 @@ COPYING = frozenset({"mirror", "copy"}) | EDITS
 DERIVING = COPYING | OUTLINES | FILLINGS
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"coil", "spring", "chain", "cord"})
+CONNECTING = frozenset({"coil", "spring", "chain", "cord", "ray_lines"})
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 FINISHES = frozenset({"fillet", "chamfer"})
