@@ -133,4 +133,3 @@ alias s_bend = s_curve
 alias cyma = s_curve
 alias scroll = spiral
 alias volute = spiral
-alias coil = spiral

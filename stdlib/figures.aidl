@@ -230,6 +230,60 @@ shape squircle(center: point = (0, 0), size: length, angle: turn = 0deg, rotatab
     lower_right = bezier(bottom, place(k, -1), place(1, -k), right)
 }
 
+/// A leaf: round at its `foot`, widest below its middle, and pointed at its `tip`.
+///
+/// Lies tip up.
+///
+/// ```aidl
+/// solid basil {
+///     blade = leaf(width: 26, height: 50)
+///     drawing veins { rib = line((0, -25), (0, 20)) }
+/// }
+/// ```
+shape leaf(
+    center: point = (0, 0),
+    width: length,
+    height: length,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
+    // In shares of half the width and half the height.
+    fn place(x, y) = center + turned((x * width / 2, y * height / 2), angle)
+    foot = place(0, -1)
+    tip = place(0, 1)
+    right_side = bezier(foot, place(0.55, -1), place(1, -0.7), place(1, -0.25))
+    right_rise = bezier(right_side.end, place(1, 0.2), place(0.3, 0.6), tip)
+    left_rise = bezier(tip, place(-0.3, 0.6), place(-1, 0.2), place(-1, -0.25))
+    left_side = bezier(left_rise.end, place(-1, -0.7), place(-0.55, -1), foot)
+}
+
+/// A cloud of five lobes on a straight `bottom`, as a child draws it.
+///
+/// ```aidl
+/// assembly sky {
+///     @color("white") solid weather { body = cloud(width: 60, height: 32) }
+/// }
+/// ```
+shape cloud(
+    center: point = (0, 0),
+    width: length,
+    height: length,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
+    // In shares of half the width and half the height.
+    fn place(x, y) = center + turned((x * width / 2, y * height / 2), angle)
+    bottom = line(place(-0.7, -1), place(0.7, -1))
+    right_end = bezier(bottom.end, place(0.87, -1), place(1, -0.83), place(1, -0.57))
+    right_lobe = bezier(right_end.end, place(1, -0.3), place(0.92, -0.1), place(0.78, -0.1))
+    right_rise = bezier(right_lobe.end, place(0.92, 0.45), place(0.62, 0.75), place(0.4, 0.5))
+    right_top = bezier(right_rise.end, place(0.36, 0.82), place(0.2, 1), place(0, 1))
+    left_top = bezier(right_top.end, place(-0.2, 1), place(-0.36, 0.82), place(-0.4, 0.5))
+    left_rise = bezier(left_top.end, place(-0.62, 0.75), place(-0.92, 0.45), place(-0.78, -0.1))
+    left_lobe = bezier(left_rise.end, place(-0.92, -0.1), place(-1, -0.3), place(-1, -0.57))
+    left_end = bezier(left_lobe.end, place(-1, -0.83), place(-0.87, -1), bottom.start)
+}
+
 alias teardrop = drop
 alias superellipse = squircle
 alias two_headed_arrow = double_arrow

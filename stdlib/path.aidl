@@ -4,8 +4,8 @@
 /// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
 ///
 /// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
-/// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain point is a
-/// `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
+/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `wave_to`, `zigzag_to`,
+/// `scallops_to`, `close` and `mirrored`; a plain point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
 /// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
 /// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
 ///
@@ -21,23 +21,32 @@
 /// }
 /// ```
 shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
-    let drawn = [as_step(s) for s in steps if as_step(s).kind not in last_kinds]
+    let drawn = [as_step(s) for s in steps if not as_step(s).kind in last_kinds]
     assert len(drawn) >= 1, "a path has at least one step that draws"
     let endings = [as_step(s) for s in steps if as_step(s).kind in last_kinds]
     let ending = if len(endings) > 0 then endings[0] else record(kind: "none")
     let closes = closed or ending.kind == "close"
     if ending.kind == "mirrored" {
         let is_last = len(endings) == 1 or len(endings) == 2 and endings[1].kind == "close"
-        assert is_last and as_step(steps[len(drawn)]).kind == "mirrored", "`mirrored()` is the last step"
+        assert is_last and as_step(steps[len(drawn)]).kind == "mirrored",
+            "`mirrored()` is the last step"
     } else if len(endings) > 0 {
-        assert len(endings) == 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
+        assert len(endings) == 1 and as_step(steps[-1]).kind == "close",
+            "`close()` is the last step"
     }
     corner[0] = from
     for i in 0..<len(drawn) {
         let move = drawn[i]
         let pen = corner[i]
         let way = if i == 0 then polar(1mm, heading) else leaving(segment[i - 1])
-        let reached = step_end(move, pen, way, from)
+        let run = if move.kind in run_kinds then drawn[i + move.left[0]] else move
+        let is_run_home = move.kind in run_kinds and i + move.left[0] == len(drawn) - 1 and meets(
+            run.to, from
+        )
+        let goal = if is_run_home then from else if move.kind in run_kinds then run.to else pen
+        let reached = if move.kind in run_kinds then run_end(
+            move, if move.kind == "tooth_fall" then corner[i - 1] else pen, goal, run.height
+        ) else step_end(move, pen, way, from)
         let is_home = i == len(drawn) - 1 and meets(reached, from)
         // What ends at a point of its own ends at the start itself; what ends after a way is made to meet it.
         let is_there = is_home and move.kind in placed_kinds
@@ -61,8 +70,53 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             assert written(move.radius) > 0, "the radius of an arc is more than 0"
         }
 
-        if move.kind == "bezier_to" {
+        if move.kind == "smooth_to" {
+            assert norm(written(to - pen)) > 0.000001,
+                "`smooth_to` goes to another point than where it is"
+            let chord = to - pen
+            let next = if i < len(drawn) - 1 then drawn[i + 1] else record(kind: "none")
+            let has_image = ending.kind == "mirrored"
+            let goes_home = is_home and not has_image
+            let goes_over = has_image and ending.smooth and i == len(drawn) - 1
+            let comes_home = i == 0 and not has_image and comes_smoothly(drawn, from)
+            let arrival = if move.is_aimed then polar(
+                1mm, move.heading
+            ) else if next.kind == "smooth_to" and not next.is_leaving then circle_way(
+                chord, next.to - to
+            ) else if next.kind in straight_kinds then step_end(
+                next, to, chord, from
+            ) - to else if goes_home then entering(segment[0]) else if goes_over then across(
+                if ending.is_told then ending.about.end - ending.about.start else to - from, chord
+            ) else chord
+            let is_arrival_free = not (move.is_aimed or goes_home or goes_over or next.kind in straight_kinds) and (next.kind != "smooth_to" or next.is_leaving)
+            let departure = if move.is_leaving then polar(
+                1mm, move.leaving
+            ) else if i > 0 then way else if comes_home then circle_way(
+                from - drawn[-2].to, chord
+            ) else mirrored_way(unit(arrival), chord)
+            let last = if is_arrival_free then mirrored_way(unit(departure), chord) else arrival
+            segment[i] = bezier(
+                pen, pen + smooth_handle(departure, chord), to - smooth_handle(last, chord), to
+            )
+        } else if move.kind == "bezier_to" {
             segment[i] = bezier(pen, move.first, move.second, to)
+        } else if move.kind in ["wave_left", "wave_right"] {
+            let aside = to_left(to - pen) * (run.height / 0.75mm)
+            let up = if move.kind == "wave_left" then aside else -aside
+            let along = (to - pen) * (4 / 3 / pi)
+            segment[i] = bezier(pen, pen + along + up, to - along + up, to)
+        } else if move.kind == "half_circle" {
+            segment[i] = arc(center: (pen + to) / 2, start: pen, end: to, clockwise: true)
+        } else if move.kind == "scallop" {
+            let chord = to - pen
+            segment[i] = arc(
+                center: (pen + to) / 2 + to_left(chord) * ((run.height ^ 2 - dot(
+                    chord, chord
+                ) / 4) / (2 * run.height) / 1mm),
+                start: pen,
+                end: to,
+                clockwise: written(run.height) > 0mm
+            )
         } else if move.kind == "quadratic_to" {
             segment[i] = bezier(pen, lerp(pen, move.by, 2 / 3), lerp(to, move.by, 2 / 3), to)
         } else if is_half {
@@ -123,13 +177,16 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             let home = if j == 0 and starts_there then from else corner[joint + i + 1]
             segment[joint + i] = mirrored_back(segment[j], axis, corner[joint + i], home)
         }
-        if ending.smooth { constrain squarely(segment[half - 1], axis) }
-        if ending.closed and not starts_there { segment[joint + half] = line(corner[joint + half], from) }
+        if ending.smooth and drawn[-1].kind != "smooth_to" {
+            constrain squarely(segment[half - 1], axis)
+        }
+        if ending.closed and not starts_there {
+            segment[joint + half] = line(corner[joint + half], from)
+        }
     }
     let end = segment[-1].end
     if half > 0 and drawn[0].smooth {
-        assert meets(end, from),
-            "the first step of an open path has nothing to go on from smoothly"
+        assert meets(end, from), "the first step of an open path has nothing to go on from smoothly"
         constrain smoothly(segment[-1], segment[0])
     }
     let start = from
@@ -144,10 +201,52 @@ fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
     path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
-    "line_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
-]
+    "line_to",
+    "smooth_to",
+    "bezier_to",
+    "quadratic_to",
+    "arc_radius",
+    "arc_center",
+    "arc_through",
+    "arc_tangent"
+] + run_kinds
+
+// The steps of a run of equal ones. `left` has how many steps and how many periods are left of it; the last step has what
+// holds for all.
+let run_kinds = ["wave_left", "wave_right", "tooth_rise", "tooth_fall", "half_circle", "scallop"]
+fn run_end(
+    move: record, start: point, goal: point, height: length
+) = if move.kind == "tooth_rise" then lerp(start, goal, 0.5 / move.left[1]) + to_left(
+    goal - start
+) * (height / 1mm) else lerp(
+    start, goal, 1 / (if move.kind == "tooth_fall" then move.left[1] else move.left[0] + 1)
+)
+fn run_to(kinds: list, to: point, height: length, periods: integer) = [run_step(
+    kinds[k % len(kinds)],
+    [len(kinds) * periods - 1 - k, periods - floor(k / len(kinds))],
+    to,
+    height
+) for k in 0..<len(kinds) * periods]
+fn run_step(kind: text, left: list, to: point, height: length) = if left[0] == 0 then record(
+    kind: kind, left: left, to: to, height: height, smooth: false
+) else record(kind: kind, left: left, smooth: false)
 
 let last_kinds = ["close", "mirrored"]
+
+// The steps whose direction is known before they are drawn.
+let straight_kinds = ["line_to", "line_by", "line_along", "level_to", "upright_to"]
+
+// Whether the last of some steps goes smoothly into the first one.
+fn comes_smoothly(drawn: list, start: point) = len(
+    drawn
+) > 2 and drawn[-1].kind == "smooth_to" and drawn[-2].kind in placed_kinds and not drawn[-1].is_aimed and meets(
+    drawn[-1].to, start
+)
+// The direction square to an axis on the side to which a way leads.
+fn across(axis: point, way: point) =
+    turned(axis, if cross(written(axis), written(way)) >= 0mm * 1mm then 90deg else -90deg)
+fn smooth_handle(way: point, chord: point) =
+    unit(way) * (norm(chord) * 2 / 3 / max(0.5mm, 1mm + dot(unit(way), unit(chord)) / 1mm))
 
 fn as_step(move: record) = move
 fn as_step(p: point) = line_to(p)
@@ -157,12 +256,8 @@ fn meets(a: point, b: point) = norm(written(a - b)) < 0.000001
 
 // The mirror image of a segment, which runs the other way.
 fn mirrored_back(l: line, axis: line, start: point, end: point) = line(start, end)
-fn mirrored_back(a: arc, axis: line, start: point, end: point) = arc(
-    center: mirror(a.center, about: axis),
-    start: start,
-    end: end,
-    clockwise: is_clockwise(a)
-)
+fn mirrored_back(a: arc, axis: line, start: point, end: point) =
+    arc(center: mirror(a.center, about: axis), start: start, end: end, clockwise: is_clockwise(a))
 fn mirrored_back(b: bezier, axis: line, start: point, end: point) =
     bezier(start, mirror(b.p2, about: axis), mirror(b.p1, about: axis), end)
 
@@ -346,6 +441,82 @@ fn arc_by(turn: angle, radius: length, smooth: bool = true) =
 /// ```
 fn tangent_arc_to(to: point, smooth: bool = true) =
     record(kind: "arc_tangent", to: to, smooth: false)
+
+/// A step of a path: a smooth curve to a point, which leaves and arrives without a corner where nothing else is said.
+///
+/// Several are one smooth curve through their points, its knots. It goes on from the step before and into a straight
+/// step behind it; into the first step where it closes the outline, and square to the axis of `mirrored(smooth: true)`.
+/// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then.
+///
+/// ```aidl
+/// solid pear {
+///     body = path(
+///         from: (0, 0),
+///         smooth_to((22, 18), leaving: 0deg),
+///         smooth_to((9, 46)),
+///         smooth_to((0, 56), heading: 180deg),
+///         mirrored(about: y_axis)
+///     )
+/// }
+/// ```
+fn smooth_to(to: point) = smooth_step(to, 0deg, false, 0deg, false)
+fn smooth_to(to: point, heading: angle) = smooth_step(to, heading, true, 0deg, false)
+fn smooth_to(to: point, leaving: angle) = smooth_step(to, 0deg, false, leaving, true)
+fn smooth_to(to: point, heading: angle, leaving: angle) =
+    smooth_step(to, heading, true, leaving, true)
+fn smooth_step(
+    to: point, heading: angle, is_aimed: bool, leaving: angle, is_leaving: bool
+) = record(
+    kind: "smooth_to",
+    to: to,
+    heading: heading,
+    is_aimed: is_aimed,
+    leaving: leaving,
+    is_leaving: is_leaving,
+    smooth: false
+)
+
+/// A step of a path: in `waves` whole waves to a point, each first to the left of its way by `amplitude`, then to the right.
+///
+/// ```aidl
+/// assembly sea {
+///     @color("steelblue")
+///     solid water {
+///         body = path(from: (0, 0), right(90), up(20), wave_to((0, 20), amplitude: 3, waves: 5), close())
+///     }
+/// }
+/// ```
+fn wave_to(to: point, amplitude: length, waves: integer = 4) = if waves >= 1 then run_to(
+    ["wave_left", "wave_right"], to, amplitude, waves
+) else refuse("a wave has at least one period")
+
+/// A step of a path: to a point over `teeth` pointed teeth, `height` high on the left of its way, on the right if negative.
+///
+/// ```aidl
+/// solid crown {
+///     body = path(from: (0, 0), right(50), up(18), zigzag_to((0, 18), height: -14, teeth: 5), close())
+/// }
+/// ```
+fn zigzag_to(to: point, height: length, teeth: integer = 4) = if teeth >= 1 then run_to(
+    ["tooth_rise", "tooth_fall"], to, height, teeth
+) else refuse("a zigzag has at least one tooth")
+
+/// A step of a path: to a point over `n` equal arcs that bulge by `depth` to the left of its way, to the right if negative.
+///
+/// Without a depth they are half circles.
+///
+/// ```aidl
+/// solid awning {
+///     body = path(from: (0, 0), line_to((8, 30)), right(64), line_to((80, 0)), scallops_to((0, 0), n: 8, depth: 4))
+/// }
+/// ```
+fn scallops_to(to: point, n: integer) =
+    if n >= 1 then run_to(["half_circle"], to, 0mm, n) else refuse("there is at least one scallop")
+fn scallops_to(to: point, n: integer, depth: length) = if n < 1 then refuse(
+    "there is at least one scallop"
+) else if abs(written(depth)) > 0.000001 then run_to(["scallop"], to, depth, n) else refuse(
+    "scallops bulge: their depth is not 0"
+)
 
 /// A step of a path: a cubic Bézier by its two control points and its end.
 ///

@@ -381,6 +381,46 @@ fn vein(y: length, height: length, length: length, crest: number) = path(
     )
 )
 
+/// Rays over an outline, `n` lines from a `center`, that of the outline if none is said; wedges if they get a `share`.
+///
+/// The first ray goes to `angle`. A wedge takes a `share` of the angle from ray to ray, on both sides of its ray.
+///
+/// ```aidl
+/// assembly flag {
+///     @color("gold") solid cloth { body = rectangle(width: 60, height: 40) }
+///     @color("firebrick") solid sun { beams = rays(cloth.body, n: 16, share: 0.5) }
+/// }
+/// ```
+fn rays(
+    of,
+    n: integer,
+    center: point = of.center,
+    share: number = 0,
+    angle: angle = 0deg,
+    margin: length = 0
+) = if not 0 <= written(share) < 1 then refuse(
+    "a ray takes a share of the angle to the next one, less than 1"
+) else clip(
+    ray_lines(center, norm((of.width, of.height)) + norm(of.center - center), n, share, angle),
+    by: offset(of, -margin)
+)
+shape ray_lines(center: point, reach: length, n: integer, share: number, angle: angle) {
+    assert n >= 1, "there is at least one ray"
+    let pitch = 360deg / n
+    for i in 0..<n {
+        if written(share) > 0 {
+            let edge = [center + polar(
+                2 * reach, angle + pitch * (i + side * share / 2)
+            ) for side in [-1, 1]]
+            first[i] = line(center, edge[0])
+            outer[i] = line(edge[0], edge[1])
+            last[i] = line(edge[1], center)
+        } else {
+            ray[i] = line(center, center + polar(2 * reach, angle + pitch * i))
+        }
+    }
+}
+
 // The outline less a margin. What is written says whether there is one.
 fn inset(of, margin: length) = if is_some(margin) then offset(of, -margin) else of
 fn is_some(size: length) = written(size) > 0mm

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.boxes import box_of
-from aidl_lang.building.coerce import all_within, as_point, edge_coordinate
+from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, owners_of
 from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
-from aidl_lang.building.model import Condition, Geometry
+from aidl_lang.building.model import Condition, Geometry, all_parts, reach_of
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
 from aidl_lang.building.placing import placing
@@ -99,9 +99,9 @@ def _env_of_arguments(site: CallSite, env: Env) -> Env:
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         return Env(env.scope, env.here, Reach.SUBTREE)
-    if env.reach is Reach.OWN and site.derives:
+    if env.reach is Reach.OWN and (site.derives or site.connects):
         return Env(env.scope, env.here, Reach.ABOVE)
-    if env.reach is Reach.ABOVE and site.draws:
+    if env.reach is Reach.ABOVE and site.draws and not site.connects:
         return Env(env.scope, env.here, Reach.OWN)
     return env
 
@@ -319,7 +319,21 @@ def _shape(
         return NOTHING
     _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
     run_block(it, definition.body.statements, scope, env.here)
+    _bind_above(it, geometry, given, env)
     return geometry
+
+
+def _bind_above(it: Interpreter, geometry: Geometry, given: Mapping[str, Value], env: Env) -> None:
+    """Binds a shape, with all its parts, to the structure that holds all that its arguments refer to."""
+    if env.reach is not Reach.ABOVE:
+        return
+    owners = (owner for value in given.values() for owner in owners_of(value, env.here))
+    reach = reach_of(owners, env.here)
+    if reach is None:
+        return
+    for g in (geometry, *all_parts(geometry)):
+        g.reach = reach
+        it.following.append(g)
 
 
 def _defaults_filled(

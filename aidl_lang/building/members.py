@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from aidl_lang.building import boxes, curves, primitives
 from aidl_lang.building.boxes import Box
@@ -265,13 +266,26 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
     if key is None:
         return None
     value = box.field(key)
-    if env.reach is Reach.ABOVE and any(isinstance(s, Structure) for s in box.sources):
-        env = Env(env.scope, env.here, Reach.OWN)  # a structure's box is no geometry
+    if env.reach is Reach.ABOVE:
+        if any(isinstance(s, Structure) and env.here.is_within(s) for s in box.sources):
+            env = Env(env.scope, env.here, Reach.OWN)  # it follows from what is made here
+        else:
+            value = _at_once(value)
     if value is not None and env.reach is Reach.OWN and env.here in box.sources:
         return as_written(value) if it.watched else _refuse_own_box(it, node, env)
     owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)
     reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
     return value if reached or value is None else as_written(value)
+
+
+def _at_once(value: Num | PointVal | None) -> Num | PointVal | None:
+    """Returns a side, a measure or a point of a box over the unknowns of what is in it by now."""
+    if isinstance(value, Num):
+        return replace(value, expression=boxes.spelled_out(value.expression)[0])
+    if isinstance(value, PointVal):
+        x, y = boxes.spelled_out(value.x.expression, value.y.expression)
+        return PointVal(replace(value.x, expression=x), replace(value.y, expression=y))
+    return value
 
 
 def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:

@@ -307,6 +307,13 @@ def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> It
                 yield geometry
 
 
+def all_parts(g: Geometry) -> Iterator[Geometry]:
+    """Yields the named geometry inside a compound shape, at any depth."""
+    for part in own_geometry(g.parts, g):
+        yield part
+        yield from all_parts(part)
+
+
 def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:
     if isinstance(value, Geometry):
         if value.container is container:

@@ -9,7 +9,7 @@ from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.values import Namespace, TextVal, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
+from aidl_lang.checking.builtins import CONNECTING, CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
 from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
@@ -30,6 +30,7 @@ class CallSite:
     instantiates   whether an overload is a template
     makes_outline  whether the overloads are those of an outline made of others
     derives        whether they derive for good: an outline of others, or a copy
+    connects       whether they follow points that may be those of other structures
     draws          whether one of them makes geometry that the solver may move
     """
 
@@ -47,6 +48,7 @@ class CallSite:
         self.instantiates = any(s.kind is ast.Structure for s in signatures)
         self.makes_outline = bool(signatures) and signatures[0].name in OUTLINES
         self.derives = bool(signatures) and signatures[0].name in DERIVING
+        self.connects = bool(signatures) and all(s.standard and s.name in CONNECTING for s in signatures)
         self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
         self._names = tuple(a.name.text if a.name else None for a in node.arguments)
         if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:

@@ -140,7 +140,7 @@ CUTS = frozenset(
 FILLINGS = frozenset(
     (
         *("hatching", "crosshatch", "bricks", "tiles", "shingles", "planks", "ribs", "knurling", "dots"),
-        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers"),
+        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers", "rays"),
     )
 )
 """Patterns of the library that fill an outline: each is made by `tiled`."""
@@ -153,6 +153,9 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
+
+CONNECTING = frozenset({"coil", "spring", "chain", "cord", "ray_lines"})
+"""Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 FINISHES = frozenset({"fillet", "chamfer"})
 """Statements that change the corners of outlines after solving."""

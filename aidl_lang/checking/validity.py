@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import DERIVING, FOLLOWED, PATTERNS
+from aidl_lang.checking.builtins import CONNECTING, DERIVING, FOLLOWED, PATTERNS
 from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.facts import Fact, ReadPlace, is_point
 from aidl_lang.checking.fields import PRIMITIVE
@@ -115,7 +115,8 @@ class _Walker:
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
             return
         reach = name in DERIVING | PATTERNS
-        derives = name in DERIVING and not is_point(fact.type)
+        connects = name in CONNECTING and fact.of is not None and self.infer.is_standard(fact.of)
+        derives = (name in DERIVING and not is_point(fact.type)) or connects
         path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
             is_thing = self._is_thing(node)

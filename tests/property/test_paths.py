@@ -348,6 +348,18 @@ def test_a_spiral_grows_evenly(sense: int) -> None:
         assert abs(p - (3 + 4j)) == pytest.approx(2 + 18 * angle / turned[-1], abs=5e-3)
 
 
+@pytest.mark.parametrize(("call", "side"), [("coil", 4), ("spring", 4)])
+@pytest.mark.parametrize("turns", [1, 2, 5])
+def test_a_cord_is_as_wide_as_said_and_unbroken(call: str, side: float, turns: int) -> None:
+    told = f"start: fixed((2, 1)), end: fixed((38, 28)), width: {2 * side}, turns: {turns}"
+    segments = indexed(geometry(f"drawing d {{ w = {call}({told}) }}")["w"]["parts"], "segment")
+    way = 0.8 + 0.6j
+    aside = [((p - (2 + 1j)) / way).imag for p in sampled([s for s in segments if s["type"] == "bezier"], 50)]
+    assert [min(aside), max(aside)] == pytest.approx([-side, side], abs=0.02)
+    for a, b in pairwise(sampled(segments, 2000)):
+        assert abs(a - b) < 0.1
+
+
 @pytest.mark.parametrize(("dx", "dy"), [(40, 15), (-40, 15), (40, -15), (-10, -30)])
 @pytest.mark.parametrize("upright", [False, True])
 def test_an_s_is_smooth(dx: int, dy: int, upright: bool) -> None:

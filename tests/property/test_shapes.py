@@ -912,6 +912,8 @@ BEZIER_FIGURES: dict[str, tuple[str, Callable[[float, float], float] | None, flo
     "heart": ("width: {w}, height: {h}", None, 0),
     "egg": ("width: {w}, height: {h}", lambda w, h: math.pi * w * h / 4, 5e-4),
     "squircle": ("width: {w}, height: {h}", lambda w, h: w * h * SUPERELLIPSE, 7e-3),
+    "leaf": ("width: {w}, height: {h}", None, 0),
+    "cloud": ("width: {w}, height: {h}", None, 0),
     "squircle of a size": ("size: {w}", lambda w, h: w * w * SUPERELLIPSE, 7e-3),
 }
 """Arguments, the area of what the figure stands for, and how near it comes."""
@@ -986,7 +988,12 @@ def test_figures_of_bezier_curves(name: str, data: st.DataObject) -> None:
     assert box["right"] - box["left"] == pytest.approx(w)
     assert box["top"] - box["bottom"] == pytest.approx(h)
     parts = document["root"]["geometry"]["body"]["parts"].values()
-    outline = [p for part in parts if part["type"] == "bezier" for p in sampled(part["points"])]
+    outline = [
+        p
+        for part in parts
+        if part["type"] == "bezier"
+        for p in (*sampled(part["points"]), part["points"][-1])
+    ]
     area, perimeter = polygon_measures(outline)
     region = document["regions"]["s"]
     assert region["area"] == pytest.approx(area, rel=1e-5)

@@ -129,7 +129,7 @@ class Reference:
 
 TOPICS = (
     *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
-    *("arcs", "arches", "wheels", "figures", "profiles", "curves", "path", "spline", "text"),
+    *("arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "path", "spline", "text"),
     *("outlines", "patterns", "operations"),
     *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
     *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "colors", "exactness"),
