@@ -16,6 +16,7 @@ from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry,
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import Span
+from aidl_lang.explaining.leaving import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
@@ -54,6 +55,7 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
+    found += leaving_notes(lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
         from aidl_lang.explaining.repetitions import repetition_notes
