@@ -303,6 +303,75 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
             yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
 
 
+def foreseen(*roots: Expression) -> tuple[Expression, ...]:
+    """Returns expressions with each side of a box that only the drawing has replaced by what it will be in
+    most cases: what is cut keeps its box, a part in common has the common part of the boxes, and what is
+    moved in or out has its sides moved as far.
+    """
+    replaced: dict[Expression, Expression] = {}
+    for node in list(ex.nodes(roots, only_open=True)):
+        if isinstance(node.payload, Measurement):
+            replaced[node] = _foreseen_side(node.payload)
+        elif any(a in replaced for a in node.args):
+            replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
+    return tuple(replaced.get(root, root) for root in roots)
+
+
+def _foreseen_side(measured: Measurement) -> Expression:
+    side, (outline,), here = measured.kind, measured.of, measured.here
+    assert isinstance(outline, Geometry)
+    assert outline.recipe is not None
+    assert here is not None
+    recipe, is_high = outline.recipe, side in ("right", "top")
+    extents = foreseen(*[_extent_of(operand, here, side) for operand in recipe.operands])
+    match recipe.kind:
+        case "clip" | "intersect":
+            return ex.apply("minimum" if is_high else "maximum", *extents)
+        case "offset":
+            out = recipe.numbers["distance"].expression
+        case "thick":
+            out = ex.half(recipe.numbers["width"].expression)
+        case _:
+            return extents[0]
+    return ex.apply("add" if is_high else "sub", extents[0], out)
+
+
+def _extent_of(operand: Iterable[Geometry], here: Structure, side: str) -> Expression:
+    found = dict.fromkeys(e for source in operand for e in _extremes(source, here, side, frozenset()))
+    return _extreme_of(list(found), side)
+
+
+def constrain_sources(outline: Geometry, here: Structure) -> str:
+    """Returns the hint that names what an outline is made of, to be constrained in its place."""
+    assert outline.recipe is not None
+    source = outline.recipe.sources[0]
+    known_as = source.name if source.owner is outline.owner else source.path.removeprefix(f"{here.path}.")
+    if source.container is outline and outline.name is not None:
+        known_as = source.path.removeprefix(f"{here.path}.")
+    hint = f"constrain what it is made of: `{known_as or source.type}`"
+    if outline.recipe.kind == "difference":
+        hint += ", or cut with a `hole`, which leaves the box as it is"
+    return hint
+
+
+def unmoved(*roots: Expression) -> frozenset[Unknown]:
+    """Returns the unknowns that place what outlines, whose boxes only the drawing has, are clipped by or cut
+    with: a constraint on such an outline does not move these.
+    """
+    held: set[Unknown] = set()
+    for node in ex.nodes(roots, only_open=True):
+        if isinstance(node.payload, Measurement):
+            (outline,), here = node.payload.of, node.payload.here
+            assert isinstance(outline, Geometry)
+            assert outline.recipe is not None
+            assert here is not None
+            first, *others = (
+                {u for g in operand for u in source_unknowns(g, here)} for operand in outline.recipe.operands
+            )
+            held |= set().union(*others) - first
+    return frozenset(held)
+
+
 def box_of(value: object, here: Structure) -> Box | None:
     """Returns the box of a value; None if it has none."""
     if isinstance(value, Box):

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building import primitives
-from aidl_lang.building.boxes import SIDES
+from aidl_lang.building.boxes import SIDES, Box
 from aidl_lang.building.model import Geometry, Structure, common_ancestor
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
@@ -121,7 +121,9 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
 
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
-    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for."""
+    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for; a slanted one
+    that is named as a side of its shape stands for that side of the shape's box.
+    """
     core = look(it, edge, node, env)
     (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
     dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
@@ -130,6 +132,8 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
         return length(x0)
     if dy <= tolerance < dx:
         return length(y0)
+    if isinstance(node, ast.Member) and node.name.text in SIDES and isinstance(edge.container, Geometry):
+        return length(Box((edge.container,), env.here).side(node.name.text))
     it.report(
         "E0303",
         f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -11,7 +11,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.expression import Expression, Unknown
-from aidl_lang.building.model import Comparison, Condition, Structure
+from aidl_lang.building.model import Comparison, Condition, Geometry, Structure
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
@@ -47,7 +47,9 @@ def compare(
     left_node: ast.Node,
     right_node: ast.Node,
 ) -> Value:
-    """Returns `left relation right` as a condition, or as a truth if both are constants."""
+    """Returns `left relation right` as a condition, or as a truth if both are constants; of a list it is
+    asked of each member.
+    """
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     if isinstance(left, TextVal | bool) or isinstance(right, TextVal | bool):
@@ -55,6 +57,12 @@ def compare(
             return _incomparable(it, relation, left, right, node, left_node, right_node)
         one, other = (side.value if isinstance(side, TextVal) else side for side in (left, right))
         return (one == other) == (relation == "==")
+    if (pairs := _one_by_one(relation, left, right)) is not None:
+        every: Value = True
+        for first, second in pairs:
+            pair = compare(it, relation, first, second, node, env, left_node, right_node)
+            every = conjunction(it, "and", every, pair, node)
+        return every
     a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
     if a is not None and b is not None:
         return _compare_points(it, relation, a, b, node)
@@ -62,6 +70,31 @@ def compare(
         return _incomparable(it, relation, left, right, node, left_node, right_node)
     x, y = numeric(it, left, left_node, env), numeric(it, right, right_node, env)
     return compare_numbers(it, relation, x, y, node) if x is not None and y is not None else NOTHING
+
+
+def _one_by_one(relation: str, left: Value, right: Value) -> list[tuple[Value, Value]] | None:
+    """Returns the pairs that a relation with a list in it is asked of: each member and the other side, or
+    those of two lists of one length in their order; None where two values compare as they are.
+    """
+    lists = [members(side) if isinstance(side, ListVal | Array) else None for side in (left, right)]
+    one, other = lists
+    if relation == "!=" or (one is None and other is None):
+        return None
+    if one is not None and other is not None:
+        return list(zip(one, other, strict=True)) if len(one) == len(other) else None
+    if one is not None:
+        return None if _is_pair(one) and _is_point(right) else [(each, right) for each in one]
+    assert other is not None
+    return None if _is_pair(other) and _is_point(left) else [(left, each) for each in other]
+
+
+def _is_pair(values: Sequence[Value]) -> bool:
+    """Tells whether the members of a list may be the coordinates of a point."""
+    return len(values) == 2 and all(isinstance(value, Num) for value in values)
+
+
+def _is_point(value: Value) -> bool:
+    return isinstance(value, PointVal) or (isinstance(value, Geometry) and value.type == "point")
 
 
 def _incomparable(

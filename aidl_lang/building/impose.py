@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
-from aidl_lang.building.boxes import SIDES, Box
+from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
@@ -178,10 +179,7 @@ def _impose_condition(
         ask_to_turn(comparisons)
     measured = ex.nodes((e for c in comparisons for e in (c.left, c.right) if e.is_open), only_open=True)
     found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
-    if found and found[0].kind in SIDES:
-        _box_unknown(it, found[0], node, env)
-        return
-    if found:
+    if any(measurement.kind not in SIDES for measurement in found):
         it.report(
             "E0512",
             "areas, perimeters and clearances of outlines are known after solving only",
@@ -192,6 +190,8 @@ def _impose_condition(
             ],
         )
         return
+    if found:
+        comparisons = _with_foreseen_boxes(it, comparisons, found[0], node, env, weight)
     shape = _library_shape(it, node, env)
     if comparisons and shape is not None:
         _impose_within(it, shape, tuple(comparisons), node, env)
@@ -210,6 +210,50 @@ def _impose_condition(
                 Wording(node, it, env, _read),
             )
         )
+
+
+def _with_foreseen_boxes(
+    it: Interpreter,
+    comparisons: list[Comparison],
+    box: Measurement,
+    node: ast.Expression,
+    env: Env,
+    weight: float | None,
+) -> list[Comparison]:
+    """Returns comparisons that speak of the boxes of outlines made of others with these as they can be
+    foreseen; they are looked at again in the drawing, but for a wish.
+    """
+    if weight is None:
+        _check_when_drawn(it, comparisons, box, node, env)
+    return [_foreseen(comparison) for comparison in comparisons]
+
+
+def _foreseen(comparison: Comparison) -> Comparison:
+    """Returns a comparison with the boxes of outlines made of others as they can be foreseen."""
+    left, right = foreseen(comparison.left, comparison.right)
+    changed = replace(comparison, left=left, right=right)
+    moved = changed.placed - unmoved(comparison.left, comparison.right)
+    return replace(changed, moved=moved) if moved else changed
+
+
+def _check_when_drawn(
+    it: Interpreter, comparisons: list[Comparison], box: Measurement, node: ast.Expression, env: Env
+) -> None:
+    """Keeps a constraint on the box of an outline that was foreseen, to be looked at again in the drawing."""
+    (outline,) = box.of
+    assert isinstance(outline, Geometry)
+    it.assertions.append(
+        Assertion(
+            env.here,
+            Condition("and", tuple(comparisons)),
+            None,
+            node.span.one_line,
+            it.place(node) or node.span,
+            ", ".join(env.scope.labels),
+            wording=Wording(node, it, env, _read),
+            outline=outline,
+        )
+    )
 
 
 def _is_angle(node: ast.Node) -> bool:
@@ -251,25 +295,6 @@ def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env:
         f"of geometry outside of `{env.here.path}`",
         span,
         hints=[f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"],
-    )
-
-
-def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression, env: Env) -> None:
-    """Reports a side of the box of an outline that is worked out after solving."""
-    (outline,) = box.of
-    assert isinstance(outline, Geometry)
-    assert outline.recipe is not None
-    source = outline.recipe.sources[0]
-    known_as = source.name if source.owner is outline.owner else source.path.removeprefix(f"{env.here.path}.")
-    hint = f"constrain what it is made of: `{known_as or source.type}`"
-    if outline.recipe.kind == "difference":
-        hint += ", or cut with a `hole`, which leaves the box as it is"
-    it.report(
-        "E0519",
-        f"`{node.span.one_line}` needs the box of `{outline.path}`, which is known after solving only",
-        node,
-        label=f"`{outline.name}` is worked out by `{outline.type}` when everything has its place",
-        hints=[hint, "an `assert` may speak of the box"],
     )
 
 

@@ -486,6 +486,8 @@ class Assertion:
     """the shape that demands this of its arguments"""
     wording: object = field(default=None, repr=False)
     """the condition, to be read again in parts (see building.wording)"""
+    outline: Geometry | None = None
+    """the outline whose box a constraint foresaw to be as this asks"""
 
 
 @record(eq=False)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.arithmetic import differences, givens
-from aidl_lang.building.boxes import SIDES
+from aidl_lang.building.boxes import SIDES, constrain_sources
 from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
@@ -16,7 +16,9 @@ from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry,
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import Span
+from aidl_lang.explaining.leaving import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
+from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import bounds, inward
 from aidl_lang.geometry.measures import area, perimeter
@@ -53,6 +55,7 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
+    found += leaving_notes(lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
         from aidl_lang.explaining.repetitions import repetition_notes
@@ -91,8 +94,9 @@ def assertion_notes(
     """
     if not solved_fully:
         return []
-    evaluator.measure = _Measure(solved, drawing)
-    return [d for a in model.assertions if (d := assertion_note(a, evaluator)) is not None]
+    evaluator.measure = measure = _Measure(solved, drawing)
+    asked = [a for a in model.assertions if a.outline is None or measure.is_drawn(a.outline)]
+    return [d for a in asked if (d := assertion_note(a, evaluator)) is not None]
 
 
 def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
@@ -106,6 +110,8 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
     false = list(_false_parts(assertion.condition, evaluate))
     wording = assertion.wording
     shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
+    if assertion.outline is not None:
+        return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
     return Diagnostic(
         "E0604",
@@ -115,6 +121,21 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         places,
         (_hint(assertion, false, places),),
         _stated(assertion),
+    )
+
+
+def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
+    """Returns the diagnostic for a constraint on the box of an outline that came out otherwise."""
+    where = f" [{assertion.label}]" if assertion.label else ""
+    return Diagnostic(
+        "E0607",
+        f"`{assertion.text}`{where} does not hold for `{outline.path}` as it is drawn",
+        assertion.span,
+        "; ".join(shown),
+        hints=(
+            f"it was solved with the boxes of what goes into `{outline.type}`, and less is left of them",
+            constrain_sources(outline, assertion.holder),
+        ),
     )
 
 
@@ -217,8 +238,7 @@ class _Measure:
         structure.
         """
         assert payload.here is not None
-        found = [g for g in all_geometry(self.model.root) if g.path == payload.of[0].path]
-        curves = [c for g in found for c in replace(g, construction=False).curves()]
+        curves = self._curves(payload.of[0].path)
         frames, here = [], self.model.root
         while here.path != payload.here.path:
             here = next(s for s in here.structures if f"{payload.here.path}.".startswith(f"{s.path}."))
@@ -227,6 +247,14 @@ class _Measure:
             curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
         left, bottom, right, top = union_bounds([bounds(c) for c in curves])
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
+
+    def is_drawn(self, outline: Geometry) -> bool:
+        """Tells whether an outline did not come out empty, which is told by itself."""
+        return bool(self._curves(outline.path))
+
+    def _curves(self, path: str) -> list[Piece]:
+        found = [g for g in all_geometry(self.model.root) if g.path == path]
+        return [c for g in found for c in replace(g, construction=False).curves()]
 
     def _region(self, thing: Structure | Geometry) -> Region:
         """Returns the region that a structure covers in the drawing, or that a geometry would cover as a

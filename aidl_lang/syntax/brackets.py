@@ -15,11 +15,12 @@ _VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 
 def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
-    """Reports E0125 for each line such as `[a, b].above(c)`, which would go on with the line above as an
-    index, and E0101 for a statement that begins with a list. Rewrites both as the statements they were meant
-    to be.
+    """Puts `constrain` before each list that begins a statement, such as `[a, b].above(c)`, where the grammar
+    wants it. Among constraints that says nothing new; elsewhere E0125 tells of a line that would go on with
+    the one above as an index, and E0101 of another statement that begins with a list.
     """
-    found: list[tuple[int, Diagnostic]] = []
+    found: list[tuple[int, Diagnostic | None]] = []
+    among_constraints: list[bool] = []  # for each open block
     opened: list[str] = []  # a block in a call is one of arguments, which may be lists
     asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
@@ -35,15 +36,33 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
             close = closing(tokens, n) if joined or ends else -1
             after = [t.kind for t in tokens[close + 1 : close + 3]]
-            if close > 0 and (after == [".", "CALL"] or (not joined and after[0] in _GO_ON)):
-                found.append((n, _list_as_statement(source, token, joined)))
+            among = among_constraints[-1:] == [True]
+            may_go_on = not joined or (among and tokens[n + 1].kind != "NUMBER")
+            if close > 0 and (after == [".", "CALL"] or (may_go_on and after[0] in _GO_ON)):
+                found.append((n, None if among else _list_as_statement(source, token, joined)))
         if token.kind in _CLOSER:
+            if token.kind == "{":
+                among_constraints.append(among_constraints[-1:] == [True] or _holds_constraints(tokens, n))
             opened.append(token.kind)
-        elif token.kind in _CLOSER.values() and opened:
-            opened.pop()
+        elif token.kind in _CLOSER.values() and opened and opened.pop() == "{":
+            among_constraints.pop()
     for n, _ in reversed(found):
         tokens.insert(n, Token("constrain", "constrain", tokens[n].start, tokens[n].start))
-    return [diagnostic for _, diagnostic in found]
+    return [diagnostic for _, diagnostic in found if diagnostic is not None]
+
+
+def _holds_constraints(tokens: list[Token], brace: int) -> bool:
+    """Tells whether a block is that of `constrain { … }` or of the definition of a constraint."""
+    if brace and tokens[brace - 1].kind == "constrain":
+        return True
+    if not brace or tokens[brace - 1].kind != ")":
+        return False
+    depth = 0
+    for n in range(brace - 1, max(brace - LONGEST, 0), -1):
+        depth += (tokens[n].kind in (")", "]", "}")) - (tokens[n].kind in _CLOSER)
+        if depth == 0:
+            return tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
+    return False
 
 
 _MOST_LISTS = 100
