@@ -1,15 +1,10 @@
 /// A sideboard on turned legs: rows of drawers over two panelled doors.
 assembly cabinet {
-    /// Width of the case.
-    param width = 900mm in 700..1200
-    /// Height of the case without its legs.
-    param height = 720mm in 600..900
-    /// Rows of drawers.
+    param width = 900mm in 675..1200
+    param height = 720mm in 540..900
     param rows = 2 in 1..3 step 1
-    /// Drawers in a row.
     param columns = 3 in 2..4 step 1
-    /// How much of the height the drawers take.
-    param share = 0.45 in 0.35..0.6
+    param share = 0.45 in 0.33..0.6
 
     let wood = "#b9814a"
     let dark = darker(wood, 0.4)
@@ -23,6 +18,22 @@ assembly cabinet {
     let door_w = (inner - gap) / 2
     let door_h = height - deep - 2 * post
 
+    @color("#f2ead8")
+    solid wall { v = rectangle((0, 0.12 * height), 1.5 * width, 1.9 * height + 160) }
+    @color("#dfd0b0")
+    solid paper { v = ribs(wall.v, pitch: 0.1 * width, width: 0.04 * width) }
+    @color("#3b2a1e")
+    @opacity(0.5)
+    solid shadow { v = ellipse((30, -height / 2 - 150), 0.56 * width, 34) }
+    /// What stands on it: a plant in its pot, and books.
+    @color(tint)
+    solid slab(tint = dark, w = 100, h = 100) { v = rounded_rectangle((0, 0), w, h, 6) }
+    @color("#4f7f4a")
+    solid leaves { v = [lens(polar(95, a), 190, 60, angle: a) for a in 20..160 step 20] }
+    @color("#b8623c")
+    solid pot { v = trapezoid((0, 0), 84, 130, 120) }
+    let bindings = ["#7a2e2e", "#35566e", "#c29a45"]
+    for i in 0..4 { book[i] = slab(bindings[i % 3], 36, 190 - 25 * (i % 3)) }
     @color(darker(wood, 0.2))
     solid plate { v = rounded_rectangle(width: width + 70, height: 26, radius: 8) }
     @color(wood)
@@ -35,24 +46,16 @@ assembly cabinet {
     solid inside { v = rectangle(width: inner + 2 * gap, height: height - post - gap) }
     @color(darker(wood, 0.2))
     solid skirt { v = rectangle(center: (0, -height / 2), width: width, height: 32) }
-    /// A tapering leg on a brass shoe.
-    assembly leg() {
-        @color(dark)
-        solid shaft { v = trapezoid(center: (0, 0), bottom_width: 22, top_width: 44, height: 120) }
-        @color(brass)
-        solid shoe { v = trapezoid(center: (0, -72), bottom_width: 18, top_width: 22, height: 24) }
-    }
+    @color(dark)
+    solid leg() { shaft = trapezoid((0, 0), 22, 44, 130) }
     right_leg = leg() at (width / 2 - 40, -500)
     left_leg = leg() at (40 - width / 2, -500)
 
-    /// A drawer front with a bevelled edge, a sunk field and a cup handle.
     assembly drawer(w = 100mm, h = 80mm) {
         @color(lighter(wood, 0.15))
         solid front { v = rectangle(center: origin, width: w, height: h) }
         @color(lighter(wood, 0.3))
-        solid field {
-            v = rounded_rectangle(center: origin, width: w - 24, height: h - 24, radius: 6)
-        }
+        solid field { v = rounded_rectangle(origin, w - 24, h - 24, 6) }
         @color(wood)
         drawing veins { v = wood_grain(field.v, pitch: 28) }
         @color(brass)
@@ -68,7 +71,6 @@ assembly cabinet {
         }
     }
 
-    /// A door with an arched panel, a knob towards the middle and two hinges.
     assembly door() {
         @color(lighter(wood, 0.15))
         solid leaf { v = rectangle(center: origin, width: door_w, height: door_h) }
@@ -93,5 +95,12 @@ assembly cabinet {
         right_leg.below(skirt, gap: 0)
         left_leg.below(skirt, gap: 0)
         inside.centered_in(case)
+        pot.on_top_of(plate)
+        pot.center_x == -0.36 * width
+        leaves.bottom == pot.top - 20
+        leaves.center_x == pot.center_x
+        row(book[0], book[1], book[2], book[3], book[4], gap: 2, align: bottom)
+        book[4].on_top_of(plate)
+        book[4].right == plate.right - 70
     }
 }
