@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.colors import color_of
@@ -33,7 +33,7 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
-        elif _fits(it, name, values, attribute):
+        elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 
 
@@ -47,7 +47,7 @@ def read_own_attributes(
         is_stroke = name in STROKED and here is container and here.kind == "drawing"
         if not things or not (name == "note" or is_stroke):
             _misplaced(it, node, name, attribute, value, container)
-        elif _fits(it, name, values, attribute):
+        elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
             for thing in things:
                 thing.attributes = thing.attributes | {name: tuple(values)}
 
@@ -113,6 +113,9 @@ def _read(
 ORIENTATIONS = ("top", "front", "side")
 THINNEST, WIDEST = 0.01, 1000.0
 """mm, of lines, dashes and gaps that can be seen."""
+EDGES = ("seams", "outline")
+NO_OUTLINE = TextVal("none")
+"""What `@stroke` says of solids without outline; a width of 0 says the same."""
 
 
 def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute) -> bool:
@@ -129,13 +132,43 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
     return not wanted
 
 
+def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
+    """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
+    if name == "edges" and of.kind in ("drawing", "hole"):
+        it.report(
+            "E0517",
+            f"`@{attribute.name.text}` is said of what has material, and `{of.name}` is a {of.kind}",
+            attribute,
+            hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
+        )
+        return False
+    if name != "stroke" or of.kind != "drawing" or values != [NO_OUTLINE]:
+        return True
+    it.report(
+        "E0517",
+        f"`@{attribute.name.text}` of a drawing takes a width: it is nothing but strokes",
+        attribute,
+        hints=[f"give a width, as in `@stroke(0.3mm)`, or leave `{attribute.span.one_line}` out"],
+    )
+    return False
+
+
 def _orientation(values: list[Value]) -> str:
+    is_one = _is_one_of(values, ORIENTATIONS)
+    return "" if is_one else "one of `top`, `front` and `side`, as in `@orientation(front)`"
+
+
+def _edges(values: list[Value]) -> str:
+    return "" if _is_one_of(values, EDGES) else "`seams` or `outline`, as in `@edges(seams)`"
+
+
+def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
+    """Tells whether the one value is one of some words, and corrects its spelling."""
     word = values[0] if len(values) == 1 else None
-    meant = find(word.value, dict.fromkeys(ORIENTATIONS)) if isinstance(word, TextVal) else None
-    if meant is None:
-        return "one of `top`, `front` and `side`, as in `@orientation(front)`"
-    values[:] = [TextVal(meant)]
-    return ""
+    meant = find(word.value, dict.fromkeys(words)) if isinstance(word, TextVal) else None
+    if meant is not None:
+        values[:] = [TextVal(meant)]
+    return meant is not None
 
 
 def _thickness(values: list[Value]) -> str:
@@ -152,8 +185,13 @@ def _elevation(values: list[Value]) -> str:
 
 def _stroke(values: list[Value]) -> str:
     lengths = _numbers(values, units.LENGTH)
+    word = values[0].value if len(values) == 1 and isinstance(values[0], TextVal) else None
+    if lengths == [0] or word == NO_OUTLINE.value:
+        values[:] = [NO_OUTLINE]
+        return ""
     is_one = lengths is not None and len(lengths) == 1 and THINNEST <= lengths[0] <= WIDEST
-    return "" if is_one else f"a width of {THINNEST:g} to {WIDEST:g} mm, as in `@stroke(0.3mm)`"
+    widths = f"a width of {THINNEST:g} to {WIDEST:g} mm, as in `@stroke(0.3mm)`"
+    return "" if is_one else f"{widths}, or `none` for a solid without outline"
 
 
 def _dash(values: list[Value]) -> str:
@@ -201,5 +239,6 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "stroke": _stroke,
     "dash": _dash,
     "opacity": _opacity,
+    "edges": _edges,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 _TABLE = """
@@ -56,7 +56,12 @@ def css_color(values: Sequence[object]) -> str | None:
         numbers = [255 * v for v in numbers]
     if not all(0 <= v <= 255 for v in numbers):
         return None
-    return "#" + "".join(f"{round(v):02x}" for v in numbers)
+    return hexadecimal(numbers)
+
+
+def hexadecimal(parts: Iterable[float]) -> str:
+    """Returns red, green and blue, from 0 to 255, as `#rrggbb`."""
+    return "#" + "".join(f"{round(part):02x}" for part in parts)
 
 
 def similar_colors(name: str) -> list[str]:

@@ -78,10 +78,11 @@ def _blurred(mark: Mark, pixel: float) -> Mark:
 def _plain(mark: Mark) -> Mark | None:
     match mark:
         case Area(ink=ink):
-            if ink is None:
+            if mark.is_sign:
                 return replace(mark, fill=_BLACK, opacity=1.0)
             is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH
-            return replace(mark, fill=_WHITE if is_hiding else None, opacity=1.0, ink=_solid(ink))
+            fill = _WHITE if is_hiding else None
+            return replace(mark, fill=fill, opacity=1.0, ink=None if ink is None else _solid(ink))
         case Curves(role="seam"):
             return None
         case Curves(ink=ink):

@@ -24,8 +24,8 @@ class Lines:
     def attributes(self, style: Style) -> dict[str, Any]:
         """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
         found: dict[str, Any] = {}
-        if style.stroke is not None:
-            wanted = 100 * style.stroke
+        if style.width is not None:
+            wanted = 100 * style.width
             found["lineweight"] = min(WEIGHTS, key=lambda weight: abs(weight - wanted))
         if (dashes := style.dashes(self._size)) is not None:
             found["linetype"] = self._linetype(dashes, is_named=bool(style.dash))

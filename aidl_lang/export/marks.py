@@ -38,6 +38,11 @@ class Area:
     role: str = ""
     opacity: float = 1.0
 
+    @property
+    def is_sign(self) -> bool:
+        """True for a mark of its own, such as the head of an arrow; false for a solid without outline."""
+        return self.ink is None and self.role != ""
+
 
 def polygon(*corners: Vec) -> Face:
     """Returns the face with these corners, counter-clockwise."""

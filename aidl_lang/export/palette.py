@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aidl_lang.common.colors import rgb
+from aidl_lang.common.colors import hexadecimal, rgb
 
 FILLS = (
     "#a7bcd6",  # slate blue
@@ -16,7 +16,6 @@ FILLS = (
 )
 OUTLINE = "#2f3b4a"
 LIGHT = "#b4bfcc"
-SEAM = "#2f3b4a"
 LOOSE = "#c2410c"
 CUT = "#ff0000"
 ENGRAVE = "#0000ff"
@@ -29,6 +28,10 @@ GOOD = "#15803d"
 BAD = "#dc2626"
 FREE = "#b45309"
 
+_SHADE = 0.55
+"""What is left of the brightness of a fill in its outline."""
+_LIGHTEST_OUTLINE = 128
+"""Brightness, of 255, up to which an outline is seen well on white paper."""
 _DARK = 112
 """Brightness, of 255, up to which a dark line is hard to see."""
 
@@ -38,7 +41,23 @@ def body_fill(index: int) -> str:
     return FILLS[index % len(FILLS)]
 
 
+def outline_of(fill: str) -> str:
+    """Returns the colour of the outline of a body that the author gave a fill: a darker tone of it, and as
+    much darker again as it takes to be seen on white.
+    """
+    share = _SHADE
+    if (bright := _brightness(rgb(fill))) > 0:
+        share = min(share, _LIGHTEST_OUTLINE / bright)
+    red, green, blue = (share * part for part in rgb(fill))
+    return hexadecimal((red, green, blue))
+
+
 def contrasting(fill: str) -> str:
     """Returns an ink that is visible on a fill of this colour, and on white beside it."""
-    red, green, blue = rgb(fill)
-    return OUTLINE if 0.299 * red + 0.587 * green + 0.114 * blue > _DARK else LIGHT
+    return OUTLINE if _brightness(rgb(fill)) > _DARK else LIGHT
+
+
+def _brightness(parts: tuple[int, int, int]) -> float:
+    """Returns how bright red, green and blue, from 0 to 255, are together."""
+    red, green, blue = parts
+    return 0.299 * red + 0.587 * green + 0.114 * blue

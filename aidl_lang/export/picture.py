@@ -24,6 +24,7 @@ from aidl_lang.geometry.styles import DASH, GAP, Style
 MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
+_SEAM_OPACITY = 0.55
 HAIRLINE = 0.1
 """Width in mm of the lines that a cutter follows."""
 NAME_SIZE = 5.0
@@ -61,7 +62,7 @@ def _whole(job: Job) -> Picture:
 def _overhang(drawing: Drawing) -> float:
     """Returns how far the widest line of a stated width reaches beyond its middle."""
     styles = [*(body.style for body in drawing.bodies), *(stroke.style for stroke in drawing.strokes)]
-    return max((style.stroke / 2 for style in styles if style.stroke is not None), default=0.0)
+    return max((style.width / 2 for style in styles if style.width is not None), default=0.0)
 
 
 def pages(job: Job) -> list[Picture]:
@@ -131,8 +132,10 @@ def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
     for index, body in enumerate(drawing.bodies):
         for area in _areas(body, index, size):
             yield body.path, area
+    styles = {body.path: body.style for body in drawing.bodies}
     for seam in drawing.seams:
-        yield seam.path, _seam(seam, size)
+        if seam.is_asked or not styles[seam.body].is_unlined:
+            yield seam.path, _seam(seam, styles[seam.body], size)
     for stroke in drawing.strokes:
         yield stroke.path, _stroke(stroke, size)
 
@@ -150,13 +153,20 @@ def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
     fill = body.style.color or palette.body_fill(index)
-    ink = _line(body.style, palette.OUTLINE, OUTLINE_WIDTH, size)
+    ink = (
+        None if body.style.is_unlined else _line(body.style, _outline_color(body.style), OUTLINE_WIDTH, size)
+    )
     for face in body.region.faces:
         yield Area(face, fill, ink, opacity=_opacity(body.style))
 
 
-def _seam(seam: Seam, size: float) -> Curves:
-    return Curves(seam.pieces, Ink(palette.SEAM, SEAM_WIDTH * size, opacity=0.55), "seam")
+def _outline_color(style: Style) -> str:
+    return palette.OUTLINE if style.color is None else palette.outline_of(style.color)
+
+
+def _seam(seam: Seam, style: Style, size: float) -> Curves:
+    ink = Ink(_outline_color(style), SEAM_WIDTH * size, opacity=1.0 if seam.is_asked else _SEAM_OPACITY)
+    return Curves(seam.pieces, ink, "seam")
 
 
 def _stroke(stroke: Stroke, size: float) -> Curves:
@@ -173,7 +183,7 @@ def _stroke(stroke: Stroke, size: float) -> Curves:
 
 def _line(style: Style, color: str, width: float, size: float) -> Ink:
     """Returns the ink of lines of a style; their width relative to a size where the style has none."""
-    stated, dash = style.stroke, style.dashes(size)
+    stated, dash = style.width, style.dashes(size)
     # Round ends would make dashes longer than stated.
     return Ink(color, width * size if stated is None else stated, dash, is_round=dash is None)
 

@@ -46,9 +46,10 @@ def _reduced(mark: Mark, theme: Theme) -> Mark:
 
 @_reduced.register
 def _(mark: Area, theme: Theme) -> Mark:
-    if mark.ink is None:  # a mark of its own, such as the head of an arrow
+    if mark.is_sign:
         return replace(mark, fill=theme.line)
-    return replace(mark, fill=mark.fill and theme.fill, ink=_ink(mark.ink, theme))
+    ink = None if mark.ink is None else _ink(mark.ink, theme)
+    return replace(mark, fill=mark.fill and theme.fill, ink=ink)
 
 
 @_reduced.register

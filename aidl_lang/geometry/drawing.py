@@ -11,7 +11,7 @@ from functools import cached_property, partial
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
-from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
+from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
@@ -30,7 +30,7 @@ from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.seams import visible_seams
+from aidl_lang.geometry.seams import inner_seams, visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
@@ -49,11 +49,14 @@ class Body:
 
 @record()
 class Seam:
-    """The edges of a structure that was united with the body around it, where they run inside that body."""
+    """The edges of a structure that was united with the body around it, or of geometries that it is united
+    of, where they run inside that body. `is_asked`: the program asks for seams.
+    """
 
     path: str
     body: str
     pieces: tuple[Piece, ...]
+    is_asked: bool = False
 
 
 @record()
@@ -130,13 +133,22 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     )
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
     touching = contacts(network, solids)
-    notes += [note for f in walk.findings if (note := finding_note(f, network)) is not None]
+    found = [
+        f for f in walk.findings if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams)
+    ]
+    notes += [note for f in found if (note := finding_note(f, network)) is not None]
     notes += detached_notes(model.root, [b.path for b in bodies], touching)
     notes += loose_piece_notes(model.root, walk, masses, solids, touching.near)
     seams = tuple(
-        Seam(path, m.structure.path, pieces)
+        Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
         for path, pieces in visible_seams(network, m, traced)
+    )
+    asked = {path: faces for path, faces in walk.faces.items() if styles[path].has_seams}
+    seams += tuple(
+        Seam(path, m.structure.path, pieces, is_asked=True)
+        for m in (masses if asked else ())
+        for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
     order = {structure.path: place for place, structure in enumerate(stacked(model.root))}
     lying = [

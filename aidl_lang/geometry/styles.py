@@ -25,9 +25,10 @@ class Style:
     """The looks that the attributes of a structure, or of the nearest one around it that has them, ask
     for.
 
-    stroke   width of its lines, mm
+    stroke   width of its lines, mm; 0 for solids without outline, whose drawings have lines as ever
     dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
     opacity  how much of what lies behind is covered, from 0 to 1
+    edges    `seams` if the borders between the geometries of a solid are drawn
     """
 
     color: str | None = None
@@ -37,11 +38,27 @@ class Style:
     stroke: float | None = None
     dash: tuple[float, ...] | None = None
     opacity: float | None = None
+    edges: str | None = None
 
     @property
     def is_clear(self) -> bool:
         """True if what lies behind shows through."""
         return self.opacity is not None and self.opacity < 1
+
+    @property
+    def width(self) -> float | None:
+        """The width of its strokes, mm; None if they go by the size of the drawing."""
+        return self.stroke or None
+
+    @property
+    def has_seams(self) -> bool:
+        """True if the borders between geometries that are united are drawn."""
+        return self.edges == "seams"
+
+    @property
+    def is_unlined(self) -> bool:
+        """True if its solids have no outline."""
+        return self.stroke == 0
 
     def dashes(self, size: float) -> tuple[float, ...] | None:
         """Returns dashes and gaps by turns, mm, in a drawing of a size; None for whole lines."""
@@ -70,15 +87,21 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
     return _within(style, geometry.attributes)
 
 
+def is_unlined(stated: Attributes) -> bool:
+    """Tells whether attributes ask for solids without outline."""
+    return stated.get("stroke") == ("none",)
+
+
 def _within(around: Style, stated: Attributes) -> Style:
     return Style(
         css_color(stated.get("color", ())) or around.color,
         _text(stated.get("layer")) or around.layer,
         _text(stated.get("material")) or around.material,
         _number(stated.get("thickness"), around.thickness),
-        _number(stated.get("stroke"), around.stroke),
+        0.0 if is_unlined(stated) else _number(stated.get("stroke"), around.stroke),
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
+        _text(stated.get("edges")) or around.edges,
     )
 
 

@@ -12,7 +12,7 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import Exported, Job, Options, export
+from aidl_lang.export import Exported, Job, Options, export, palette
 from tests.compiled import compiled
 from tests.export.colours import near
 
@@ -152,6 +152,129 @@ def test_reduced_pictures_keep_lines_and_opacity(name: str) -> None:
 
 def _looks(svg: str) -> list[str]:
     return re.findall(r'(?:stroke-width|stroke-dasharray|opacity)="[^"]*"', svg)
+
+
+# --- Outlines --------------------------------------------------------------------------------------
+
+
+BALL = """
+@stroke(0.4)
+assembly a {
+    @color("crimson") solid skin { rim = circle(center: fixed((0, 0)), radius: 30) }
+    @color("white") @opacity(0.6) @stroke(none)
+    solid shine {
+        spot = circle(center: fixed((0, 0)), radius: 10)
+        drawing mark { cross = line(fixed((-5, 0)), fixed((5, 0))) }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("theme", ["colour", "blueprint", "ink"])
+def test_a_solid_without_outline(theme: str) -> None:
+    svg = written(".svg", BALL, theme=theme).data.decode()
+    assert 'stroke="none"' in group(svg, "a.shine")
+    assert 'stroke-width="0.4"' in group(svg, "a.skin")
+    assert re.search(r'stroke-width="0\.\d+"', group(svg, "a.shine.mark"))
+
+
+def test_pixels_of_a_solid_without_outline() -> None:
+    program = BALL.replace('"crimson"', '"white"').replace("@opacity(0.6) @stroke(none)", "@stroke(WIDTH)")
+    for stroke, darkest in (("none", 255), ("2", 128)):
+        picture = Image.open(
+            io.BytesIO(written(".png", program.replace("WIDTH", stroke), pixels=640).data)
+        ).convert("L")
+        edge = [picture.getpixel((x, 320)) for x in range(200, 250)]
+        assert min(edge) == darkest
+
+
+def test_contours_are_cut_without_an_outline_too() -> None:
+    for options in ({"cut": True}, {"theme": "cutter"}):
+        assert 'stroke-width="0.1"' in group(written(".svg", BALL, **options).data.decode(), "a.shine")
+    made = written(".dxf", BALL)
+    entities = list(ezdxf.read(io.StringIO(made.data.decode())).modelspace())
+    assert sorted(e.dxftype() for e in entities) == ["CIRCLE", "CIRCLE", "LINE"]
+    assert sorted(e.dxf.lineweight for e in entities) == [-1, -1, 40]
+    (note,) = made.notes
+    assert note.message == (
+        "`@opacity` and `@stroke(none)` count for nothing in this file: "
+        "DXF holds outlines, and nothing is filled"
+    )
+
+
+def test_outlines_are_a_darker_tone_of_the_fill() -> None:
+    program = """
+    assembly a {
+        solid plain { body = square(center: fixed((0, 0)), size: 5) }
+        @color("black") solid dark { body = square(center: fixed((10, 0)), size: 5) }
+        @color("#c86428") solid toned { body = square(center: fixed((20, 0)), size: 5) }
+        @color("white") solid pale { body = square(center: fixed((30, 0)), size: 5) }
+    }
+    """
+    svg = written(".svg", program).data.decode()
+    found = dict(re.findall(r'data-path="a\.(\w+)".*?stroke="([^"]*)"', svg, re.DOTALL))
+    assert found.pop("plain") == palette.OUTLINE
+    assert found == {"dark": "#000000", "toned": "#6e3716", "pale": "#808080"}
+    for theme, line in (("blueprint", "#eaf2ff"), ("ink", "#000000"), ("cutter", "#ff0000")):
+        lines = re.findall(r'stroke="(#[^"]*)"', written(".svg", program, theme=theme).data.decode())
+        assert set(lines) == {line}
+
+
+def test_a_part_more_at_the_end_changes_no_other_part() -> None:
+    def fills(count: int) -> list[str]:
+        solids = "".join(
+            f"solid s{k} {{ b = square(center: fixed(({9 * k}, 0)), size: 5) }}\n" for k in range(count)
+        )
+        return re.findall(r' fill="(#[^"]*)"', written(".svg", f"assembly a {{ {solids} }}").data.decode())
+
+    assert fills(5)[:4] == fills(4)
+    assert len(set(fills(5))) == 5
+
+
+# --- Seams -----------------------------------------------------------------------------------------
+
+TURRET = """
+@color("#c86428") @edges(seams)
+solid a {
+    shaft = rectangle(center: fixed((0, 0)), width: 20, height: 40)
+    collar = rectangle(center: fixed((0, 20)), width: 30, height: 10)
+    hole slit { gap = rectangle(center: fixed((0, 15)), width: 10, height: 4) }
+    solid knob { rim = rectangle(center: fixed((10, 0)), width: 6, height: 6) }
+}
+"""
+
+
+def test_borders_between_geometries_are_fine_lines() -> None:
+    made = compiled(TURRET)
+    assert made.drawing is not None
+    knob, seams = made.drawing.seams
+    assert (seams.path, seams.body, knob.path) == ("a", "a", "a.knob")
+    # The collar lies over the end of the shaft, the knob over its side, the hole cut the collar's edge.
+    found = sorted(tuple(sorted((_near(p.start), _near(p.end)))) for p in seams.pieces)  # type: ignore[union-attr]
+    assert found == [((-10, 15), (-5, 15)), ((5, 15), (10, 15))]
+    svg = written(".svg", TURRET).data.decode()
+    assert 'class="seam"' in group(svg, "a")
+    assert 'stroke="#6e3716"' in group(svg, "a.knob")
+    assert "seam" not in written(".svg", TURRET, cut=True).data.decode()
+    plain = written(".svg", TURRET.replace("seams", "outline")).data.decode()
+    assert 'class="seam"' not in group(plain, "a")
+    assert 'stroke-opacity="0.55"' in group(plain, "a.knob")
+
+
+def _near(p: tuple[float, float]) -> tuple[float, float]:
+    return round(p[0], 6), round(p[1], 6)
+
+
+def test_a_solid_without_outline_has_the_seams_it_asks_for() -> None:
+    svg = written(".svg", TURRET.replace("@edges", "@stroke(none) @edges")).data.decode()
+    assert svg.count('class="seam"') == 2
+    assert "seam" not in written(".svg", TURRET.replace("@edges(seams)", "@stroke(none)")).data.decode()
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".stl", ".step", ".3mf"])
+def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
+    (note,) = [n for n in written(suffix, "@thickness(2)" + TURRET).notes if n.code == "N0741"]
+    assert note.message.startswith("`@edges` counts for nothing in this file: ")
 
 
 # --- What has no place -----------------------------------------------------------------------------

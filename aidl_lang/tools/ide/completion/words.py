@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 
-from aidl_lang.building.attributes import ORIENTATIONS
+from aidl_lang.building.attributes import EDGES, NO_OUTLINE, ORIENTATIONS
 from aidl_lang.building.outlines import CORNER_WORDS
 from aidl_lang.checking import library
 from aidl_lang.checking.builtins import WORDED
@@ -75,6 +75,10 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
             listed, kind = sorted(COLOR_NAMES), "color"
         case "orientation":
             listed = ORIENTATIONS
+        case "stroke":
+            listed = [NO_OUTLINE.value]
+        case "edges":
+            listed = EDGES
         case "material":
             listed = sorted(densities())
     for word in listed:
