@@ -1,15 +1,10 @@
 /// An acoustic guitar: a waisted spruce top, a rosette, frets by their true law, strings and pegs.
 assembly acoustic_guitar {
-    /// Width of the lower bout.
-    param size = 380mm in 320..440
-    /// Width of the waist, as a share of that of the lower bout.
-    param waist = 0.62 in 0.54..0.72
-    /// From the nut to the saddle, as a share of the width of the body.
-    param reach = 1.95 in 1.8..2.2
-    /// Frets on the neck.
-    param frets = 17 in 12..19 step 1
-    /// Strings on each side of the neck, with a peg each.
-    param pairs = 3 in 2..3 step 1
+    param size = 380mm in 285..475
+    param waist = 0.62 in 0.46..0.78
+    param reach = 1.95 in 1.45..2.45
+    param frets = 17 in 12..22 step 1
+    param pairs = 3 in 2..4 step 1
 
     let u = size / 100
     let w = 50 * waist * u
@@ -36,8 +31,12 @@ assembly acoustic_guitar {
     }
     @color(bone)
     solid binding { v = offset(body.v, -1.2 * u) }
+    @color("#8c4a22")
+    solid burst { v = offset(body.v, -2.4 * u) }
+    @color(darker(spruce, 0.25))
+    solid blend { v = offset(body.v, -6 * u) }
     @color(spruce)
-    solid top { v = offset(body.v, -2.4 * u) }
+    solid top { v = offset(body.v, -10.5 * u) }
     @color(darker(spruce, 0.14))
     drawing grain { v = hatching(top.v, pitch: 7 * u, angle: 90deg, margin: u) }
     @color("#7a3b22")
@@ -54,7 +53,9 @@ assembly acoustic_guitar {
     @color("#d8d8d0")
     drawing wires {
         for i in 1..frets {
-            fret[i] = clip(line((-8 * u, fret_y(i)), (8 * u, fret_y(i))), by: board.v)
+            if fret_y(i) > 95 * u {
+                fret[i] = clip(line((-8 * u, fret_y(i)), (8 * u, fret_y(i))), by: board.v)
+            }
         }
     }
     @color(ebony)

@@ -1,9 +1,9 @@
 /// A town bicycle from the side: spoked wheels, diamond frame, chain drive, leather saddle and basket.
 assembly bicycle {
     /// Diameter of the wheels with their tyres.
-    param wheel_diameter = 66mm in 49..78
+    param wheel_diameter = 66mm in 49..83
     /// From axle to axle.
-    param wheelbase = 108mm in 94..135
+    param wheelbase = 108mm in 81..135
     param spokes = 18 in 12..24 step 2
     /// How far the saddle stands out of the frame.
     param saddle_height = 12 in 7..20

@@ -1,99 +1,100 @@
-/// A turned wooden chess rook on its board: rings, a hollow shaft and battlements, each on the one below.
+/// A turned chess rook on its board in lamplight: rings, a hollow shaft, a crown of stones, battlements.
 assembly chess_rook {
-    /// Height of the piece, from its felt to the battlements.
-    param height = 100mm in 86..130
-    /// Diameter of the foot.
-    param base = 56mm in 46..64
-    /// How slender the shaft is at its narrowest, as a share of the foot.
-    param waist = 0.46 in 0.38..0.56
-    /// Battlements that are seen from the front.
-    param merlons = 3 in 3..5 step 1
+    param height = 100mm in 75..125
+    param base = 56mm in 42..70
+    param waist = 0.46 in 0.34..0.58
+    param merlons = 3 in 2..5 step 1
 
     let u = base / 100
-    let tall = height - 83 * u - 2
-    let wood = "#b9773c"
+    let h = height / 100
+    let ivory = "#ecd9b0"
+    let dark = darker(ivory, 0.55)
+    fn far(k) = 1 / (1 + 0.14 * k)
+    fn knot(i, k) = (far(k) * 35 * u * (i - 4), 170 * u * (1 - far(k)) - 44 * u)
 
-    @color("#8a5a33")
-    solid border { bar = rectangle(center: (0, -18), width: 210 * u + 8, height: 6) }
-    @color("#e9dcc0")
-    solid board { plank = rectangle(center: (0, -6), width: 210 * u, height: 12) }
-    @color("#4a3426")
-    solid fields { squares = ribs(board.plank, pitch: 42 * u) }
-    @color("#2f5d3a")
-    solid felt { pad = rectangle(center: (0, 1), width: 95 * u, height: 2) }
-    @color(darker(wood, 0.45))
-    solid inside { far_side = rectangle(center: (0, height), width: 68 * u, height: 8 * u) }
-
-    @color(wood)
-    solid piece {
-        foot = rounded_rectangle(center: (0, 6), width: base, height: 16 * u, radius: 5 * u)
-        cushion = path(
-            from: (0, 16),
-            right(40 * u),
-            bezier_to((40 * u, 16 + 7 * u), (33 * u, 16 + 10 * u), (32 * u, 16 + 13 * u)),
-            left(32 * u),
-            mirrored(about: y_axis)
-        )
-        shaft = path(
-            from: (0, 30),
-            right(31 * u),
-            bezier_to(
-                (waist * 50 * u, 30 + tall / 4),
-                (waist * 48 * u, 30 + 0.6 * tall),
-                (29 * u, 30 + tall)
-            ),
-            left(29 * u),
-            mirrored(about: y_axis)
-        )
-        bell = trapezoid(center: (0, 80), bottom_width: 56 * u, top_width: 68 * u, height: 10 * u)
-        drum = rounded_rectangle(center: (0, 85), width: 74 * u, height: 10 * u, radius: 2 * u)
-        for i in 0..<merlons {
-            merlon[i] = rectangle(
-                center: (20 * i - 20, 90), width: 44 * u / merlons, height: 14 * u
-            )
+    @color(tint)
+    solid bar(tint = "#2c3a4d", low = 0, high = 9) {
+        v = rectangle(left: -156 * u, right: 156 * u, bottom: low, top: high)
+    }
+    wall = bar(low: -62 * u, high: 1.4 * height)
+    @color("#41536c")
+    solid halo { v = circle(radius: 0.42 * height + 26 * u) }
+    @color("#d8b988")
+    solid board {
+        v = polygon([(-156 * u, -48 * u), (156 * u, -48 * u), knot(8.3, 5.2), knot(-0.3, 5.2)])
+    }
+    @color("#3f2a1c")
+    solid fields {
+        for k in 0..4 {
+            for i in k % 2..7 step 2 {
+                v[i][k] = polygon(knot(i, k), knot(i + 1, k), knot(i + 1, k + 1), knot(i, k + 1))
+            }
         }
+    }
+    edge = bar("#5d371d", low: -62 * u, high: -48 * u)
+    @color("gold")
+    drawing names {
+        for i, s in enumerate(["a", "b", "c", "d", "e", "f", "g", "h"]) {
+            n[i] = text(s, center: (35 * u * (i - 3.5), -55 * u), height: 8 * u)
+        }
+    }
+    @color("#1d130c")
+    @opacity(0.6)
+    solid shadow { v = ellipse((38 * u, 3 * u), 78 * u, 12 * u) }
+    @color(dark)
+    solid inside { far_side = rectangle((0, height), 70 * u, 9 * h) }
+    @color(ivory)
+    solid rook {
+        foot = rounded_rectangle((0, 6), base, 9 * h, 3 * h)
+        plinth = rounded_rectangle((0, 14), 90 * u, 5 * h, 2 * h)
+        ogee = path(
+            (0, 0),
+            right(42 * u),
+            bezier_to((42 * u, 5 * h), (34 * u, 7 * h), (33 * u, 9 * h)),
+            left(33 * u),
+            mirrored()
+        )
+        bead = slot((0, 27), 74 * u, 5 * h)
+        shaft = path(
+            (0, 0),
+            right(32 * u),
+            bezier_to((waist * 50 * u, 11 * h), (waist * 48 * u, 28 * h), (30 * u, 42 * h)),
+            left(30 * u),
+            mirrored()
+        )
+        collar = slot((0, 75), 72 * u, 5 * h)
+        bell = trapezoid((0, 80), 60 * u, 74 * u, 6 * h)
+        drum = rounded_rectangle((0, 85), 78 * u, 12 * h, h)
+        merlon = [rectangle((i, 0), 50 * u / merlons, 10 * h) for i in 1..merlons]
         constrain {
+            column(drum, bell, collar, shaft, bead, ogee, plinth, foot, gap: 0, align: center)
             evenly_spaced(merlon, axis: x)
             for m in merlon { m.bottom == drum.top }
             merlon[0].left == drum.left
             merlon[-1].right == drum.right
         }
     }
-
-    /// What the lathe has cut a groove around is a little darker.
-    @color(darker(wood, 0.12))
-    solid rings {
-        plinth = rounded_rectangle(center: (0, 14), width: 90 * u, height: 6 * u, radius: 2 * u)
-        bead = slot(center: (0, 27), length: 68 * u, width: 7 * u)
-        collar = slot(center: (0, 75), length: 66 * u, width: 7 * u)
+    let stem = [rook.foot, rook.plinth, rook.ogee, rook.bead, rook.shaft, rook.collar, rook.bell]
+    for i, p in enumerate(stem) {
+        @color(ivory)
+        solid part[i] { v = offset(p, 0) }
     }
-
-    @color(darker(wood, 0.2))
-    drawing grain { lines = wood_grain(piece.shaft, pitch: 9 * u, angle: 90deg, margin: 1) }
-    let turned = [piece.foot, piece.cushion, piece.shaft, piece.bell, piece.drum]
-    let parts = turned + [piece.merlon[-1], rings.plinth, rings.bead, rings.collar]
-
-    /// The light falls from the left.
-    @color(darker(wood, 0.35))
-    solid shade {
-        for i, p in enumerate(parts) {
-            side[i] = difference(p, copy(p, by: (-10 * u, 0)))
-        }
+    @color(darker(ivory, tone))
+    solid shade(tone = 0.2, share = 0.34) {
+        v = [difference(p, copy(p, by: (-share * 80 * u, 0))) for p in stem + [rook.drum]]
+        m = [difference(p, copy(p, by: (-share * 40 * u / merlons, 0))) for p in rook.merlon]
     }
-    @color(lighter(wood, 0.45))
-    solid shine {
-        drum = slot(center: (-18 * u, 86), length: 18 * u, width: 2.5 * u)
-        streak = clip(thick(copy(piece.shaft.segment[4], by: (10 * u, 0)), 4 * u), by: piece.shaft)
+    half_shade = shade()
+    full_shade = shade(0.38, 0.15)
+    @color(dark)
+    solid slit {
+        arms = cross_shape((0, 0), width: 10 * u, height: 17 * h, thickness: 3 * u)
+        drawing stones { v = bricks(rook.drum, 13 * u, 6 * h) }
     }
-
     constrain {
-        column(piece.drum, piece.bell, rings.collar, piece.shaft, gap: 0, align: center)
-        column(
-            piece.shaft, rings.bead, piece.cushion, rings.plinth, piece.foot, gap: 0, align: center
-        )
-        column(piece.foot, felt, board, border, gap: 0, align: center)
-        inside.on_top_of(piece.drum, align: center)
-        shine.drum.center == piece.drum.center + (-18 * u, 1.5 * u)
+        rook.foot.bottom_center == (0, 0)
+        inside.on_top_of(rook.drum, align: center)
+        slit.arms.center == rook.shaft.bb.center + (-7 * u, 3 * h)
+        halo.v.center == rook.shaft.bb.center + (0, 10 * h)
     }
-    assert piece.top - felt.bottom == height, "the piece is as tall as asked for"
 }

@@ -3,7 +3,7 @@ assembly coffee_mug {
     param width = 78mm in 58..98
     param height = 80mm in 60..100
     /// Dots from side to side.
-    param dots_across = 5 in 4..7 step 1
+    param dots_across = 5 in 3..7 step 1
     param wisps_of_steam = 3 in 2..5 step 1
     param glaze = "#3a7d8c" in ["#3a7d8c", "#c0504d", "#e0a030"]
     let w = width / 100

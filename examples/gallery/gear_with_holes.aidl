@@ -1,15 +1,10 @@
 /// A spur gear with mounting holes: involute teeth, a sunk web with lightening holes, bolts, a keyed bore.
 assembly gear_with_holes {
-    /// Teeth of the gear.
-    param teeth = 36 in 28..48 step 1
-    /// Size of a tooth: the pitch diameter over the number of teeth.
+    param teeth = 36 in 27..48 step 1
     param module = 4mm in 3..5
-    /// Mounting holes around the bore; every other one has its bolt in it.
     param bolts = 6 in 4..8 step 2
-    /// Lightening holes in the web.
     param lights = 6 in 4..8 step 1
-    /// Diameter of the bore, as a share of the pitch diameter.
-    param bore = 0.16 in 0.12..0.18
+    param bore = 0.16 in 0.12..0.2
 
     let r = teeth * module / 2
     let rim = r - 2.8 * module
@@ -20,6 +15,24 @@ assembly gear_with_holes {
     let shaft = bore * r
     let steel = "#8d99a6"
     let brass = "#d9a441"
+
+    let s = 1.24 * r
+    @color("#f3f7fa")
+    solid sheet { v = rectangle((0, -0.06 * r), 2.6 * s, 2.6 * s) }
+    @color("#c3d2de")
+    drawing squares { v = crosshatch(sheet.v, pitch: 0.1 * s, angle: 0deg, margin: 0.08 * s) }
+    @color("#33475c")
+    drawing border {
+        edge = rectangle((0, -0.06 * r), 2.44 * s, 2.44 * s)
+        lines = [line((-1.16 * s * c, -1.16 * s * d), (1.16 * s * c, 1.16 * s * d)) for c, d in [
+            [0, 1], [1, 0]
+        ]]
+        title = text("SPUR GEAR", start: (-1.16 * s, 1.05 * s), height: 0.07 * s)
+        data = text(str(teeth) + " TEETH", start: (-1.16 * s, 0.96 * s), height: 0.05 * s)
+    }
+    @color("#5f7386")
+    @opacity(0.5)
+    solid shadow { v = circle((0.04 * r, -0.05 * r), r) }
 
     /// The openings go through all that lies on each other here.
     assembly blank {

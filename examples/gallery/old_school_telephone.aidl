@@ -4,7 +4,7 @@ assembly old_school_telephone {
     param width = 180mm in 135..225
     param height = 104mm in 78..130
     /// Diameter of the dial, as a share of what the casing has room for.
-    param dial = 0.84 in 0.63..1
+    param dial = 0.8 in 0.6..1
     param curls_of_cord = 21 in 14..28 step 1
     param tint = "firebrick" in ["firebrick", "teal", "goldenrod", "darkslategray"]
 

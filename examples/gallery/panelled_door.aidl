@@ -1,9 +1,9 @@
 /// A front door: a panelled leaf under a fanlight in a brick wall, with a knob, hinges and steps.
 assembly panelled_door {
     /// Width of the leaf.
-    param width = 900mm in 760..1050
+    param width = 900mm in 675..1125
     /// Height of the leaf.
-    param height = 1950mm in 1800..2300
+    param height = 1950mm in 1460..2440
     /// Rows of panels.
     param rows = 3 in 2..4 step 1
     /// Panes of the fanlight.

@@ -1,20 +1,37 @@
 /// A pair of scissors: two ground blades that turn about a screw, with handles for a thumb and for fingers.
 assembly scissors {
-    /// From the screw to the tips.
-    param reach = 110mm in 85..140
-    /// How far they are open.
+    param reach = 110mm in 82..140
     param opening = 36deg in 14..50
-    /// Width of a blade at the screw.
     param blade = 20mm in 15..25
-    /// Width of the eye for the thumb.
-    param thumb = 34mm in 28..42
-    /// Ribs of the grip on each handle.
+    param thumb = 34mm in 25..43
     param ribs = 5 in 3..7 step 1
 
     let red = "#d8392f"
-    let steel = "#c3ccd4"
-
-    /// One half, closed and upright: it turns about its origin; `side` tells to which side the handle bends.
+    let steel = "#aab6c0"
+    let low = 0.32 * reach
+    let high = 1.12 * reach + 14
+    let wide = 0.85 * reach
+    @color(tint)
+    solid sheet(tint = "#fdfbf3") {
+        v = path(
+            (-wide, low),
+            polyline_to([(-7, low), (0, 0.6 * reach), (7, low), (wide, low), (wide, high)]),
+            left(2 * wide),
+            close()
+        )
+    }
+    cast = sheet("#b5ada0") at (3, -4)
+    paper = sheet()
+    @color("#9db7cf")
+    drawing rules { v = hatching(paper.v, pitch: 0.1 * reach, angle: 0deg, margin: 4) }
+    @color("#d86a6a")
+    drawing margin { v = line((-0.75 * wide, low), (-0.75 * wide, high)) }
+    @dash(5, 3)
+    drawing way { v = line((0, 0.62 * reach), (0, high)) }
+    @color("#fdfbf3")
+    solid chips {
+        v = [equilateral_triangle((x, low - y), 6) for x, y in [[-14, 7], [9, 12], [20, 4]]]
+    }
     assembly half(side = 1, eye = 34mm, long = 1) {
         let wide = eye / 2
         let tall = wide * long
@@ -68,7 +85,6 @@ assembly scissors {
     }
     left = half(side: -1, eye: thumb + 2, long: 1.45) rotated -opening / 2
     right = half(side: 1, eye: thumb, long: 1.1) rotated opening / 2
-
     @color("#8b97a3")
     solid washer { rim = circle(center: origin, radius: 0.34 * blade) }
     @color("#5c6672")
@@ -77,7 +93,6 @@ assembly scissors {
     solid groove {
         v = slot(center: origin, length: 0.4 * blade, width: 0.07 * blade, angle: 35deg)
     }
-
     constrain {
         concentric(screw.head, washer.rim)
         groove.centered_in(screw)

@@ -2,9 +2,7 @@
 assembly table_lamp {
     param shade_width = 130mm in 97..163
     param shade_height = 58mm in 43..73
-    /// Height of the turned stem.
     param stem_height = 74mm in 55..95
-    /// Panes of the shade that are seen.
     param panes = 8 in 5..11 step 1
     param glass = "#e0a526" in ["#e0a526", "#4f9d8f", "#b5566b"]
     let s = shade_width / 2

@@ -1,13 +1,9 @@
 /// A wall clock: a wooden case, a brass ring, minute ticks, twelve numerals and three hands.
 assembly wall_clock {
-    /// Diameter of the case.
     param size = 240mm in 180..320
-    /// The time that it shows.
-    param hour = 10 in 1..12 step 1
+    param hour = 9 in 1..12 step 1
     param minute = 9 in 0..59 step 1
-    /// How much of the radius the wooden case takes.
     param case = 0.13 in 0.08..0.18
-    /// Height of the numerals, as a share of the radius.
     param numerals = 0.13 in 0.09..0.16
 
     let r = size / 2
