@@ -11,12 +11,15 @@
 /// are those of one font, DejaVu Sans, in two faces, one behind the other without kerning.
 ///
 /// ```aidl
-/// solid sign {
-///     plate = rounded_rectangle(width: 76, height: 44, radius: 4)
+/// solid badge {
+///     disc = circle(radius: 40)
 ///     drawing label {
-///         name = text("Hello\nAIDL 42", center: fixed((0, 7)), height: 7)
-///         maker = text("SINCE 1931", center: fixed((0, -14)), height: 5, bold: true, outline: true)
+///         construction way = circle(center: fixed((0, 0)), radius: 30)
+///         name = text("HARBOUR BAKERY", along: way, height: 6, bold: true)
+///         what = text("Bread\n& buns", center: fixed((0, 0)), height: 8)
+///         year = text("1931", center: fixed((0, -26)), height: 7, outline: true)
 ///     }
+///     constrain disc.center == (0, 0)
 /// }
 /// ```
 shape text(

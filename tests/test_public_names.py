@@ -23,6 +23,7 @@ ENTRIES = list(reference().entries.values())
 FOR_THE_LIBRARY = {
     "glyphs",
     "ink",
+    "lettered",
     "where",
     "shown",
     "sizes",

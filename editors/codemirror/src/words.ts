@@ -790,7 +790,7 @@ export const about: Record<string, string> = {
   "move_to": "The start of a path, as its first argument.",
   "rectilinear_polygon": "A closed outline of level and upright edges through its corners; it stays so whatever is asked of it.",
   "spline": "A smooth curve through points, its knots: `segment[i]` runs from `knot[i]` to `knot[i + 1]`.",
-  "text": "Lettering as outlines, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.",
+  "text": "Lettering, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.",
   "fillet": "Rounds corners: one corner, a list of corners, or all corners of an outline.",
   "chamfer": "Cuts corners off, `size` along both edges.",
   "offset": "The outline moved outwards by a distance, or inwards by a negative one.",
