@@ -1,7 +1,7 @@
 /// A lighthouse on a rock in the sea, with its keeper's cottage: stacked parts, stripes that follow the taper.
 assembly lighthouse {
     param tower_height = 150mm in 110..200
-    param taper = 0.6 in 0.45..0.75
+    param taper = 0.6 in 0.44..0.76
     param stripes = 3 in 2..5 step 1
     param rays = 4 in 2..6 step 1
     let foot = 62mm

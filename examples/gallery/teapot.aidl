@@ -2,7 +2,7 @@
 assembly teapot {
     param width = 120mm in 90..150
     param height = 86mm in 64..108
-    param flowers = 5 in 3..6 step 1
+    param flowers = 5 in 3..7 step 1
     param reach = 42mm in 31..53
     param glaze = "#3f7cac" in ["#3f7cac", "#b5483a", "#4f8a5b"]
     let w = width / 100
