@@ -1,11 +1,8 @@
 /// A town bicycle from the side: spoked wheels, diamond frame, chain drive, leather saddle and basket.
 assembly bicycle {
-    /// Diameter of the wheels with their tyres.
     param wheel_diameter = 66mm in 49..83
-    /// From axle to axle.
     param wheelbase = 108mm in 81..135
     param spokes = 18 in 12..24 step 2
-    /// How far the saddle stands out of the frame.
     param saddle_height = 12 in 7..20
     param paint = "teal" in ["teal", "crimson", "darkorange"]
     let r = wheel_diameter / 2
@@ -22,7 +19,7 @@ assembly bicycle {
     @color(tint)
     solid tube(a = (0, 0), b = (10, 0), size = 3.6, tint = paint) { v = slot(a, b, size) }
     assembly tyred_wheel() {
-        @color("silver")
+        @color("#6b7078")
         drawing wires {
             let t = 360 / spokes
             v = [line(
@@ -40,6 +37,7 @@ assembly bicycle {
     solid mudguard(from = 20, to = 170) { v = ring_sector(origin, r + 3.6, r + 1.6, from, to) }
     @color("#2e2e33")
     solid pedal(angle = 0) { v = rounded_rectangle(crank + polar(15, angle), 11, 3.4, 1.2) }
+    road = tube((-46, -r - 2), (wheelbase + 46, -r - 2), 4, "#9aa0a6")
     back_wheel = tyred_wheel() at rear
     front_wheel = tyred_wheel() at front
     back_guard = mudguard(32, 178) at rear

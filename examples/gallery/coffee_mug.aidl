@@ -2,19 +2,25 @@
 assembly coffee_mug {
     param width = 78mm in 58..98
     param height = 80mm in 60..100
-    /// Dots from side to side.
     param dots_across = 5 in 3..7 step 1
     param wisps_of_steam = 3 in 2..5 step 1
     param glaze = "#3a7d8c" in ["#3a7d8c", "#c0504d", "#e0a030"]
     let w = width / 100
     let h = height / 100
-
     /// A round thing lying flat.
     @color(tint)
     solid dish(radius = 10, tint = "white", flat = 0.24) {
         v = ellipse((0, 0), radius, flat * radius)
     }
-
+    @color("#a9794f")
+    solid table {
+        board = rectangle((0, -14 * w), 236 * w, 84 * w)
+        drawing d { v = planks(board, width: 21 * w, length: 130 * w) }
+    }
+    @color("black")
+    @opacity(0.3)
+    @stroke(none)
+    solid cast { v = ellipse((6 * w, -8 * w), 106 * w, 27 * w) }
     underside = dish(104 * w, "#b9b2a3")
     saucer = dish(104 * w, "#f4efe4")
     @color(glaze)
@@ -40,17 +46,16 @@ assembly coffee_mug {
     }
     @color("#fdf8ec")
     solid spots {
-        v = dots(
-            mug.body,
-            pitch: width / dots_across,
-            diameter: 0.42 * width / dots_across,
-            margin: 2 * w
-        )
+        v = dots(mug.body, width / dots_across, 0.42 * width / dots_across, margin: 2 * w)
     }
     @color(darker(glaze, 0.3))
     solid foot { v = clip(rectangle((0, -8 * w), width, 22 * w), by: mug.body) }
     @color(lighter(glaze, 0.5))
     drawing shine { v = line((-39.5 * w, 26 * h), (-43 * w, 66 * h)) }
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    solid side { v = difference(mug.body, copy(mug.body, by: (-13 * w, 0))) }
     lip = dish(51.5 * w, lighter(glaze, 0.25), flat: 0.26)
     inside = dish(46.5 * w, darker(glaze, 0.5), flat: 0.25)
     coffee = dish(45 * w, "#5a3420", flat: 0.23)
@@ -73,11 +78,7 @@ assembly coffee_mug {
     @color("#9aa7b3")
     @detached
     drawing steam {
-        for i in 0..<wisps_of_steam {
-            v[i] = wave(
-                (12 * i, 4 * (i % 2)), (12 * i + 4, 40 + 8 * (i % 2)), amplitude: 4, waves: 1.5
-            )
-        }
+        v = [wave((12 * i, 0), (12 * i + 4, 44), 4, 1.5) for i in 0..<wisps_of_steam]
     }
     constrain {
         underside.center == saucer.center - (0, 4 * w)

@@ -3,12 +3,10 @@ assembly house_with_chimney {
     param width = 124mm in 93..155
     param wall_height = 56mm in 42..70
     param roof_height = 44mm in 33..56
-    /// Windows to either side of the door.
     param windows = 1 in 1..2 step 1
     param roof_color = "#9c4a3c" in ["#9c4a3c", "#5b6b7a", "#6f7f4f"]
     let bay = (width / 2 - 16) / windows
     let pane = min(18, 0.48 * bay)
-
     @color(tint)
     solid block(w = 10, h = 4, tint = "white") { v = rectangle((0, 0), w, h) }
     assembly window(w = pane, h = 0.44 * wall_height) {
@@ -25,6 +23,9 @@ assembly house_with_chimney {
         @color("tomato")
         solid blossoms { v = [circle((k * w / 4, -h / 2), w / 9) for k in -2..2] }
     }
+    sky = block(2.1 * width, wall_height + roof_height + 66, "#d5e8f2")
+    @color("white")
+    solid clouds { v = [ellipse((15 * i, 3 * (i % 2)), 14, 6) for i in 0..2] }
     @color("gold")
     @detached
     solid sun { v = star(origin, outer_radius: 15, inner_radius: 11, points: 14) }
@@ -49,6 +50,9 @@ assembly house_with_chimney {
         @color(darker(roof_color))
         drawing cover { v = shingles(slope, width: 9, height: 6) }
     }
+    @color("black")
+    @opacity(0.3)
+    solid eaves { v = rectangle((0, wall_height - 3), width, 7) }
     gutter = block(width + 18, 3)
     plinth = block(width + 6, 6, "#8b9096")
     for i in 0..<windows { right[i] = window() at (16 + (i + 0.5) * bay, 0.56 * wall_height) }
@@ -71,14 +75,15 @@ assembly house_with_chimney {
         rails = [rectangle((16, y), 42, 2.4) for y in [-6, 3]]
     }
     constrain {
+        sky.on_top_of(lawn, align: center)
+        clouds.top_right == sky.top_right - (12, 14)
         plinth.bottom == wall.face.bottom
         lawn.below(wall.face, gap: 0, align: center)
         gutter.stacked_on(wall.face)
         roof.slope.stacked_on(gutter)
         chimney.stack.bb.center == roof.slope.bb.center + (0.26 * width, 0.5 * roof_height)
         pot.stacked_on(chimney.stack)
-        smoke.left == pot.left + 5
-        smoke.bottom == pot.top - 1
+        smoke.bottom_left == pot.top_left + (5, -1)
         porch.stacked_on(lawn)
         frame_.stacked_on(porch)
         door.leaf.bb.bottom == frame_.bottom

@@ -1,17 +1,13 @@
 /// A lighthouse on a rock in the sea, with its keeper's cottage: stacked parts, stripes that follow the taper.
 assembly lighthouse {
     param tower_height = 150mm in 110..200
-    /// Width of the tower's head as a share of its foot.
-    param taper = 0.6 in 0.45..0.75
-    /// Red stripes, with a window between them.
+    param taper = 0.6 in 0.44..0.76
     param stripes = 3 in 2..5 step 1
-    /// Rays of the light to either side.
     param rays = 4 in 2..6 step 1
     let foot = 62mm
     let head = taper * foot
     let room = 0.74 * head
     let course = tower_height / (2 * stripes + 1)
-
     @color(tint)
     solid block(tint = "dimgray", w = 20, h = 4) { v = rectangle(width: w, height: h) }
     @color(tint)
@@ -21,7 +17,23 @@ assembly lighthouse {
         pane = arch(width: w, height: h)
         drawing bars { v = clip([line((0, -9), (0, 9)), line((-9, 0), (9, 0))], offset(pane, 0)) }
     }
-
+    @color("#2b3b57")
+    solid sky { v = rectangle(left: -120, right: 160, bottom: -36, top: tower_height + 90) }
+    @color("#f4eecb")
+    @stroke(none)
+    solid moon { v = crescent((132, tower_height + 62), 15, 13, 8) }
+    @color("white")
+    solid stars {
+        v = [star((97 * i * i % 250 - 105, 30 + 61 * i * i % 170), 2.2, 0.9, 4) for i in 1..16]
+    }
+    @color("#ffe98a")
+    @opacity(0.3)
+    @stroke(none)
+    solid light {
+        let ways = [56 / rays * (i - (rays - 1) / 2) for i in 0..<rays]
+        right = [strip(origin, polar(108, a), 4, 120 / rays / 1.6) for a in ways]
+        left = mirror(right, about: y_axis)
+    }
     @color("#7a858e")
     solid rock {
         let shore = [(-60, -8), (-46, -5), (-40, 0), (106, 0), (114, -10), (124, -24)]
@@ -38,11 +50,15 @@ assembly lighthouse {
             stripe[i] = clip(band[i], by: tower.v)
         }
     }
+    @color("black")
+    @opacity(0.25)
+    @stroke(none)
+    @detached
+    solid shade { v = difference(tower.v, copy(tower.v, by: (-0.3 * head, 0))) }
     for i in 1..<stripes { windows[i] = window() at (0, (2 * i + 0.5) * course) }
     step_ = block("#7a858e", w: 24, h: 3)
     @color("peru")
     solid door { leaf = arch(width: 13, height: 18); drawing d { v = ribs(leaf, 3.8, width: 0) } }
-
     gallery = block(w: head + 22, h: 5)
     brackets = cone(foot: head, head: head + 16)
     @color("dimgray")
@@ -51,13 +67,6 @@ assembly lighthouse {
         for i in 0..1 { rail[i] = rectangle((0, 6 * i), width: head + 18, height: 1.4) }
         constrain spread(post, inside: rail[1], axis: x)
     }
-    @color("gold")
-    @detached
-    drawing light {
-        let ways = [56 / rays * (i - (rays - 1) / 2) for i in 0..<rays]
-        right = [line(polar(34, a), polar(78, a)) for a in ways]
-        left = mirror(right, about: y_axis)
-    }
     @color("#ffe98a")
     solid lantern { glass = rectangle((0, 0), room, 25); drawing d { v = crosshatch(glass, 7) } }
     eaves = block("firebrick", w: room + 8, h: 3)
@@ -65,7 +74,6 @@ assembly lighthouse {
     solid roof { cap = dome(width: room + 3, height: 16) }
     @color("dimgray")
     solid vane { rod = rectangle((0, 8), width: 1.6, height: 16); ball = circle((0, 3), radius: 3) }
-
     cottage = block("whitesmoke", w: 50, h: 21)
     chimney = block("#9c6b52", w: 7, h: 14)
     thatch = cone("#c05a40", foot: 58, head: 44, h: 17)
@@ -76,18 +84,12 @@ assembly lighthouse {
     solid sea {
         swell = wave((-120, -20), (160, -20), amplitude: 3, waves: 7)
         bed = polyline([swell.end, (160, -36), (-120, -36), swell.start])
-        @color("lightcyan")
-        drawing foam { v = [wave((x, -29), (x + 28, -29), 1.6, 1.5) for x in [-104, -30, 30, 104]] }
     }
-    @color("dimgray")
-    @detached
-    drawing gull() { v = path((0, 0), heading: 40, arc_by(-80, 6), arc_by(80, 1), arc_by(-80, 6)) }
-    for i, p in enumerate([(-84, 62), (-62, 76), (88, 58)]) { gulls[i] = gull() at p }
     constrain {
         brackets.top == tower.top
         column(vane, roof, eaves, lantern.glass, gallery, tower, gap: 0, align: center)
         railing.on_top_of(gallery, align: center)
-        light.center == lantern.glass.center
+        light.origin == lantern.glass.center
         step_.bottom == tower.bottom
         door.leaf.on_top_of(step_, align: center)
         cottage.right_of(tower, gap: 12, align: bottom)

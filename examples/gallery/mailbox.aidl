@@ -2,7 +2,6 @@
 assembly mailbox {
     param width = 48mm in 36..60
     param height = 58mm in 43..73
-    /// How far the box reaches back.
     param depth = 76mm in 57..95
     param post_height = 96mm in 72..120
     param flowers = 4 in 2..6 step 1
@@ -10,7 +9,6 @@ assembly mailbox {
     let back = (depth, 0.28 * depth)
     let mouth = (-0.36 * depth, -0.22 * depth)
     let side = (width / 2, 0)
-
     /// The box from one share of its depth to another: what an arch passes over on its way back.
     @color(tint)
     solid tunnel(tint = paint, from = 0, to = 1, grow = 0) {
@@ -40,7 +38,6 @@ assembly mailbox {
         @color("gold")
         solid eye { v = circle((2, tall), radius: 1.8) }
     }
-
     @color("#a87a4f")
     solid post {
         beam = rectangle(
@@ -49,6 +46,10 @@ assembly mailbox {
         @color("#7a5431")
         drawing grain { v = wood_grain(beam, pitch: 3, angle: 90) }
     }
+    @color("black")
+    @opacity(0.25)
+    @stroke(none)
+    solid dusk { v = difference(post.beam, copy(post.beam, by: (-5, 0))) }
     @color("#8a6039")
     solid shelf {
         v = hull(
@@ -57,6 +58,10 @@ assembly mailbox {
     }
     back_rim = tunnel(lighter(paint), from: 0.93, grow: 1.4)
     body = tunnel(to: 0.93)
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    solid belly { v = difference(body.v, copy(body.v, by: (0, 0.16 * height))) }
     front_rim = tunnel(lighter(paint), to: 0.08, grow: 1.4)
     @color("#26303c")
     solid inside { v = arch(bottom_center: (0, 2), width: width - 6, height: height - 5) }
@@ -79,6 +84,8 @@ assembly mailbox {
     @color("#6aa84f")
     solid grass {
         v = dome(width: 150, height: 20)
+        @color("#4c8336")
+        drawing blades { v = scales(grass.v, width: 7) }
     }
     for i in 0..<flowers {
         plants[i] = flower(

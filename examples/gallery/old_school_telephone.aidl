@@ -1,18 +1,14 @@
 /// A rotary telephone from the front: casing, finger wheel over its digits, handset in the cradle, curly cord.
 assembly old_school_telephone {
-    /// Width of the casing at its foot; the handset grows with it.
     param width = 180mm in 135..225
     param height = 104mm in 78..130
-    /// Diameter of the dial, as a share of what the casing has room for.
     param dial = 0.8 in 0.6..1
     param curls_of_cord = 21 in 14..28 step 1
     param tint = "firebrick" in ["firebrick", "teal", "goldenrod", "darkslategray"]
-
     let w = width / 100
     let h = height / 100
     let r = dial / 2 * min(94 * h, 60 * w)
     let shadow = darker(tint, 0.4)
-
     @color(tint)
     solid roundel(tint = "gainsboro", radius = 20) { rim = circle(center: origin, radius: radius) }
     @color(tint)
@@ -20,7 +16,6 @@ assembly old_school_telephone {
         left = rounded_rectangle((-x, 0), width: width, height: height, radius: 0.4 * height)
         right = mirror(left, about: y_axis)
     }
-
     @color("#33333a")
     solid cord {
         let swing = arc((-48 * w, height), (-45 * w, 6), mid: (-60 * w - 20, 42 * h))
@@ -47,7 +42,10 @@ assembly old_school_telephone {
     }
     @color(shadow)
     solid skirt { rim = clip(rectangle(width: 2 * width, height: 20), by: casing.outline) }
-
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    solid shade { v = difference(casing.outline, copy(casing.outline, by: (-8 * w, 0))) }
     /// The dial, about its own origin; the digits show through the holes of the wheel.
     assembly face {
         bezel = roundel(radius: r)
@@ -67,7 +65,6 @@ assembly old_school_telephone {
         @color("silver")
         solid stop { hook = strip(polar(0.97 * r, -34), polar(0.6 * r, -24), 0.14 * r, 0.09 * r) }
     }
-
     @color(shadow)
     solid saddle { block = trapezoid(bottom_width: 46 * w, top_width: 36 * w, height: 14) }
     @color(tint)
@@ -83,6 +80,10 @@ assembly old_school_telephone {
         @color(lighter(tint, 0.4))
         drawing shine { gleam = arc((-24 * w, 25 * w), (-51 * w, 17 * w), mid: (-39 * w, 25 * w)) }
     }
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    solid under { v = difference(handset.body, copy(handset.body, by: (0, 4 * w))) }
     caps = pads(shadow, x: 44 * w, width: 28 * w, height: 4.5 * w)
     @color(darker(tint, 0.2))
     solid horns {

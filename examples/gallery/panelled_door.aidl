@@ -1,14 +1,9 @@
 /// A front door: a panelled leaf under a fanlight in a brick wall, with a knob, hinges and steps.
 assembly panelled_door {
-    /// Width of the leaf.
     param width = 900mm in 675..1125
-    /// Height of the leaf.
     param height = 1950mm in 1460..2440
-    /// Rows of panels.
     param rows = 3 in 2..4 step 1
-    /// Panes of the fanlight.
     param panes = 5 in 3..8 step 1
-    /// Which side the hinges are on.
     param hinged = "left" in ["left", "right"]
 
     let u = width / 100
@@ -18,11 +13,19 @@ assembly panelled_door {
     let paint = "#2f6b5a"
     let stone = "#e9e4d8"
     let brass = "#dcae4a"
-
     @color("#b5543c")
     solid wall { v = rectangle(width: 220 * u, height: height + 100 * u) }
     @color("#e6cdb6")
     drawing mortar { v = bricks(wall.v, width: 26 * u, height: 10 * u) }
+    assembly planter() {
+        @color("#5d8f56")
+        solid shrub { v = [circle((0, (34 + 21 * i) * u), (17 - 3 * i) * u) for i in 0..2] }
+        @color("#e6b34a")
+        solid fruit { v = [circle((4 * (-1) ^ i * u, (28 + 9 * i) * u), 1.6 * u) for i in 0..5] }
+        @color("#c98a5a")
+        solid pot { v = trapezoid((0, 11 * u), 20 * u, 30 * u, 22 * u) }
+    }
+    for k in [-1, 1] { planters[k] = planter() at (92 * k * u, -height) }
     @color(stone)
     solid surround {
         arch = arch(width: 140 * u, height: height + 78 * u)
@@ -40,7 +43,6 @@ assembly panelled_door {
         }
         curve = thick(arc(radius: 32 * u, start_angle: 0deg, end_angle: 180deg), 2.5 * u)
     }
-
     /// A sunk panel: its upper left side is in the shade, its lower right one in the light.
     assembly panel(w = 30mm, h = 60mm) {
         let b = 5 * u
@@ -66,7 +68,6 @@ assembly panelled_door {
             ) at (s * 21 * u, (cell + 8 * u) * (i - (rows - 1) / 2) + 4 * u)
         }
     }
-
     @color(brass)
     solid brasses {
         plate = slot(center: (-side * 44 * u, rail), length: 22 * u, width: 7 * u, angle: 90deg)
@@ -89,11 +90,11 @@ assembly panelled_door {
     solid upper_step { v = rectangle(width: 160 * u, height: 9 * u) }
     @color(darker(stone, 0.3))
     solid lower_step { v = rectangle(width: 190 * u, height: 9 * u) }
-
     constrain {
         align_center_x(surround.foot, surround.arch, frame, wall, leaf)
         column(glass, transom, leaf, upper_step, lower_step, gap: 0, align: center)
         sunburst.hub.bb.bottom_center == glass.v.bb.bottom_center
+        for k in [-1, 1] { planters[k].origin == wall.v.bottom.midpoint + (92 * k * u, 0) }
         align_bottom(surround.foot, surround.arch, frame.v, wall, leaf)
     }
 }

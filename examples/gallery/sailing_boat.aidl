@@ -1,16 +1,13 @@
 /// A wooden sailing boat under way: planked hull, cabin with portholes, striped mainsail, jib, pennant and waves.
 assembly sailing_boat {
-    /// Length of the hull.
     param length = 130mm in 97..163
     param mast_height = 140mm in 105..175
-    /// Coloured stripes of the mainsail.
     param stripes = 3 in 2..5 step 1
     param portholes = 3 in 2..4 step 1
     param sail_color = "#c8473c" in ["#c8473c", "#2f6f9f", "#d99a2b"]
     let l = length / 100
     let m = mast_height / 100
     let tip = (3 * l, 97 * m)
-
     @color(tint)
     solid roundel(radius = 10, tint = "#8fc1dd") { v = circle(origin, radius) }
     assembly porthole() { rim = roundel(3.6, "#b98a3a"); pane = roundel(2.2) }
@@ -22,9 +19,10 @@ assembly sailing_boat {
     @color("dimgray")
     @detached
     drawing gull() { v = path((0, 0), heading: 40, arc_by(-80, 6), arc_by(80, 1), arc_by(-80, 6)) }
-
+    @color("#dbe9f3")
+    solid sky { v = rectangle(left: -95 * l, right: 95 * l, bottom: -20, top: mast_height + 24) }
     @color("#ffd34d")
-    @detached
+    @stroke(none)
     solid sun at (-66 * l, 84 * m) { v = star(origin, 17, inner_radius: 13, points: 16) }
     @color("#eef3f7")
     @detached
@@ -83,6 +81,10 @@ assembly sailing_boat {
     }
     @color("#fbf7ec")
     solid rail { v = thick(hull.body.segment[0], 3) }
+    @color("black")
+    @opacity(0.22)
+    @stroke(none)
+    solid shade { v = difference(hull.body, copy(hull.body, by: (0, 8))) }
     near_sea = sea(high: -3, waves: 6)
     front_sea = sea("#3a7cab", high: -15, waves: 5)
     @color("white")

@@ -8,7 +8,6 @@ assembly table_lamp {
     let s = shade_width / 2
     let h = shade_height
     let bronze = "#6b4f35"
-
     @color(tint)
     solid part(w = 10, h = 4, r = 1, tint = bronze) { v = rounded_rectangle((0, 0), w, h, r) }
     /// The glass between two meridians of the shade, each a share of its half width.
@@ -24,14 +23,25 @@ assembly table_lamp {
     }
     @color("#b8322a")
     solid jewel(width = 10) { v = ellipse(origin, 0.34 * width, 0.075 * h) }
-
+    wall = part(max(4 * s, 230), h + stem_height + 96, 0, "#4a4253")
+    @color("#544b5e")
+    @stroke(none)
+    solid paper { v = ribs(wall.v, pitch: 18, width: 8) }
+    @color("#8f7a55")
+    @stroke(none)
+    solid halo { v = circle((0, 0), 1.25 * s) }
     @color("#fff3c4")
+    @opacity(0.85)
+    @stroke(none)
     solid glow {
         v = trapezoid(bottom_width: 3.4 * s, top_width: 1.84 * s, height: stem_height + 13)
     }
     table = part(max(4 * s, 230), 10, 2, "#b07c4f")
     @color("#7d5330")
     drawing grain { v = wood_grain(table.v, pitch: 3) }
+    front = part(max(4 * s, 230) - 12, 32, 1, "#8a5c3c")
+    drawer = part(120, 22, 2, "#9c6b47")
+    knob = part(9, 9, 4.5, "#d9b25f")
     foot = part(70, 6, 3)
     @color(bronze)
     solid stem {
@@ -73,6 +83,11 @@ assembly table_lamp {
     other_pages = part(48, 5, 1, "#fbf3df")
     constrain {
         column(finial, cap, shade, rim, socket, collar, stem, foot, table, gap: -1, align: center)
+        wall.above(table, gap: 0, align: center)
+        halo.center == shade.center
+        front.below(table, gap: 0, align: center)
+        drawer.centered_in(front)
+        knob.centered_in(drawer)
         glow.above(table, gap: 0, align: center)
         chain.top == rim.bottom
         chain.center_x == stem.center_x + 0.36 * s

@@ -1,10 +1,8 @@
 /// A porcelain teapot with a painted band, gold rims, a lid, and steam over its curved spout.
 assembly teapot {
     param width = 120mm in 90..150
-    /// Height of the pot without foot and lid.
     param height = 86mm in 64..108
-    param flowers = 5 in 3..6 step 1
-    /// How far the spout reaches out.
+    param flowers = 5 in 3..7 step 1
     param reach = 42mm in 31..53
     param glaze = "#3f7cac" in ["#3f7cac", "#b5483a", "#4f8a5b"]
     let w = width / 100
@@ -23,6 +21,10 @@ assembly teapot {
         solid eye { v = circle(origin, radius: 0.36 * size) }
     }
 
+    @color("#d8cfc0")
+    @stroke(none)
+    @detached
+    solid cloth { v = ellipse((0, -5), 84 * w, 10) }
     @color(glaze)
     solid handle {
         way = path(
@@ -64,6 +66,11 @@ assembly teapot {
     garland = linear_array(flower(min(0.34 * pitch, 11 * h)), n: flowers, pitch: pitch)
     @color(lighter(glaze, 0.6))
     drawing shine { v = arc((-20 * w, 91 * h), (-35 * w, 70 * h), mid: (-29 * w, 83 * h)) }
+    @color("black")
+    @opacity(0.18)
+    @stroke(none)
+    @detached
+    solid shade { v = difference(pot.body, copy(pot.body, by: (-11 * w, 4 * h))) }
     foot = bar(glaze, 58 * w, 6)
     neck = bar("goldenrod", 44 * w, 4)
     @color("#fbf7ee")

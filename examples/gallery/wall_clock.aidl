@@ -4,13 +4,18 @@ assembly wall_clock {
     param hour = 9 in 1..12 step 1
     param minute = 9 in 0..59 step 1
     param case = 0.13 in 0.08..0.18
-    param numerals = 0.13 in 0.09..0.16
+    param numerals = 0.13 in 0.09..0.17
 
     let r = size / 2
     let wood = case * r
     let dial = r - wood
     let noon = 90deg
 
+    @color("black")
+    @opacity(0.3)
+    @stroke(none)
+    @detached
+    solid cast { v = circle((0.05 * r, -0.06 * r), r) }
     @color("#7a4a26")
     solid rim { v = ring(center: origin, outer_radius: r, inner_radius: dial) }
     @color("#a56a3a")
@@ -31,6 +36,11 @@ assembly wall_clock {
             mark[i] = strip(polar(from * dial, 6deg * i), polar(0.96 * dial, 6deg * i), width * r)
         }
     }
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    @detached
+    solid shade { v = difference(face.v, copy(face.v, by: (0.04 * r, -0.04 * r))) }
     @color("#2b2a33")
     drawing numbers {
         for i in 1..12 {
