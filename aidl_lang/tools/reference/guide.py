@@ -103,12 +103,13 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
 
 
 def _calls(variant: Variant, *topics: str) -> str:
-    """Returns a line for each name, with its parts (those shared with an earlier shape by that one's name)
-    and how it lies.
+    """Returns a line for each name, with its parts (those shared with an earlier shape by that one's name; not
+    the Béziers of a figure, to which nothing is joined) and how it lies.
     """
     lines, told = [], dict[str, set[str]]()
     for entry in _entries(variant, topics):
-        named = _gathered(dict.fromkeys(part.name for node in entry.nodes for part in parts(node)))
+        told_of = (part for node in entry.nodes for part in parts(node) if part.type != "bezier")
+        named = _gathered(dict.fromkeys(part.name for part in told_of))
         like = next((n for n, known in told.items() if len(known) > 3 and known <= set(named)), None)
         more = [part for part in named if like is None or part not in told[like]]
         if named:
