@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.geometry.arcs import TOLERANCE
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture
 
+DXF = ("arcs", "r12", "splines")
+"""Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 
 
@@ -34,6 +37,8 @@ class Options:
     tile       width and height in mm of the pages that a picture is printed over, 1:1
     overlap    of neighbouring pages, mm
     theme      the look of a picture as a whole, one of `themes.THEMES`
+    dxf        the kind of a DXF, one of `DXF`
+    tolerance  how far the arcs may be from the curves that they stand for where only arcs are understood, mm
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -48,6 +53,8 @@ class Options:
     tile: tuple[float, float] | None = None
     overlap: float = 10.0
     theme: str = "colour"
+    dxf: str = "arcs"
+    tolerance: float = TOLERANCE
 
     @property
     def for_cutter(self) -> bool:

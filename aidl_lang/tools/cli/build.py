@@ -112,6 +112,8 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         tile=arguments.tile,
         overlap=arguments.overlap,
         theme=arguments.theme,
+        dxf=arguments.dxf,
+        tolerance=arguments.tolerance,
     )
 
 
