@@ -104,10 +104,15 @@ class _HoleEdges:
         self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
 
     def owner(self, loop: Loop) -> str | None:
-        """Returns the hole that shares the loop's first edge, the innermost of several."""
-        if (path := self._same.get(loop.pieces[0])) is not None:
-            return path
-        p = point(loop.pieces[0], 0.5)
+        """Returns the hole that shares an edge with the loop, the innermost of several."""
+        shared = (path for piece in loop.pieces if (path := self._same.get(piece)) is not None)
+        found = next(shared, None)
+        # A piece may have been drawn anew in the loop, and not in the hole.
+        return found or next((path for piece in loop.pieces if (path := self._beside(piece))), None)
+
+    def _beside(self, piece: Piece) -> str | None:
+        """Returns the hole on whose edge the middle of a piece lies."""
+        p = point(piece, 0.5)
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
         return next((path for path, edge in found if locate(edge, p, self._tolerance) is not None), None)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import FIELDS, Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, ends, point, points, round_range
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.measures import length
@@ -50,19 +50,20 @@ _LEEWAY = 0.9
 
 def as_arcs(pieces: Sequence[Piece], closed: bool, tolerance: float) -> tuple[Piece, ...]:
     """Returns lines and arcs (or a circle) that are within a tolerance of the pieces, and these of them."""
-    return _Outline(pieces, closed, tolerance, (Line, Arc), JOINED).pieces()
+    return _Outline(pieces, closed, tolerance).pieces()
 
 
-def without_slivers(pieces: Sequence[Piece], closed: bool, tolerance: float) -> tuple[Piece, ...]:
-    """Returns pieces without those that are too short to be cut; the others stay what they are."""
-    return _Outline(pieces, closed, tolerance, tuple(FIELDS), SHORTEST).pieces()
+def has_slivers(pieces: Sequence[Piece], tolerance: float) -> bool:
+    """Tells whether some of several pieces are too short to be cut."""
+    return len(pieces) > 1 and min(map(length, pieces)) < SHORTEST * tolerance
 
 
 @record(slots=True)
 class _Stretch:
-    """Pieces that are drawn as one."""
+    """Pieces that are drawn as one; `has_corners`: they do not run on smoothly."""
 
     pieces: tuple[Piece, ...]
+    has_corners: bool = False
 
     @property
     def start(self) -> Vec:
@@ -78,21 +79,19 @@ class _Stretch:
 
 
 class _Outline:
-    """Pieces end to end, to be drawn anew within a tolerance. Those of the kinds `kept` stay what they are,
-    but where they run on smoothly from pieces of other kinds and are shorter than `least` tolerances.
+    """Pieces end to end, to be drawn anew within a tolerance. Lines and arcs stay what they are, but short
+    ones that run on smoothly from curves.
     """
 
-    def __init__(
-        self, pieces: Sequence[Piece], closed: bool, tolerance: float, kept: tuple[type, ...], least: float
-    ) -> None:
-        self._whole, self._closed, self._kept = tuple(pieces), closed, kept
+    def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
+        self._whole, self._closed = tuple(pieces), closed
         spots = np.concatenate([points(p, _PROBES) for p in pieces])
         size = float(np.ptp(spots, axis=0).max())
         self._tolerance = min(max(tolerance, FINEST * size), COARSEST * size)
-        self._shortest, self._least = SHORTEST * self._tolerance, least * self._tolerance
+        self._shortest, self._joined = SHORTEST * self._tolerance, JOINED * self._tolerance
 
     def pieces(self) -> tuple[Piece, ...]:
-        if len(self._whole) == 1 and isinstance(self._whole[0], (Circle, *self._kept)):
+        if len(self._whole) == 1 and isinstance(self._whole[0], Circle | Line | Arc):
             return self._whole
         stretches = self._with_few_short(self._stretches())
         places = self._places(stretches)
@@ -108,7 +107,7 @@ class _Outline:
         smoothly. A closed outline begins where one of them does.
         """
         pieces, count = self._whole, len(self._whole)
-        exact = [isinstance(p, self._kept) and length(p) >= self._least for p in pieces]
+        exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
         runs_on = [
             not (exact[k - 1] or exact[k]) and _bend(pieces[k - 1], pieces[k]) < _SMOOTH for k in range(count)
         ]
@@ -130,7 +129,7 @@ class _Outline:
         for number in range(first, first + len(stretches)):
             k = number % len(stretches)
             if found and is_short[k] and is_short[k - 1]:
-                found[-1] = _Stretch((*found[-1].pieces, *stretches[k].pieces))
+                found[-1] = _Stretch((*found[-1].pieces, *stretches[k].pieces), has_corners=True)
             else:
                 found.append(stretches[k])
         return found
@@ -171,10 +170,11 @@ class _Outline:
         first = stretch.pieces[0]
         if len(stretch.pieces) == 1 and isinstance(first, Line):
             yield Line(start, end)
-        elif len(stretch.pieces) == 1 and isinstance(first, self._kept) and ends(first) == (start, end):
+        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and ends(first) == (start, end):
             yield first
         else:
-            yield from _Fit(stretch.pieces, start, end, self._tolerance).arcs()
+            fit = _Fit(stretch.pieces, start, end, self._tolerance)
+            yield from fit.lines() if stretch.has_corners else fit.arcs()
 
 
 def _bend(before: Piece, after: Piece) -> float:
@@ -220,6 +220,18 @@ class _Fit:
             half = int(np.searchsorted(self._along, (self._along[i] + self._along[j]) / 2))
             half = min(max(half, i + 1), j - 1)
             stack += [(half, j), (i, half)]
+
+    def lines(self) -> Iterator[Line]:
+        """Yields lines as long as they can be."""
+        last, i = len(self._spots) - 1, 0
+        while i < last:
+            j = i + 1
+            while j < last and self._is_near(
+                [Line(self._place(i), self._place(j + 1))], self._spots[i : j + 2]
+            ):
+                j += 1
+            yield Line(self._place(i), self._place(j))
+            i = j
 
     def _place(self, k: int) -> Vec:
         if k == 0:
