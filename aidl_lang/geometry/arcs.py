@@ -42,6 +42,8 @@ _STRAIGHT = 1e-9
 _PROBES = np.linspace(0, 1, 17)
 _FEWEST, _MOST = 16, 4096
 """Samples of a piece that is fitted."""
+_GRAIN = 1 / 32
+"""Share of the tolerance by which a curve may depart from the chords between its samples."""
 _FEWEST_LEFT = 3
 """Stretches of an outline: with fewer it might be flat."""
 _LEEWAY = 0.9
@@ -197,7 +199,7 @@ class _Fit:
     """Arcs for pieces that run on smoothly; the first starts and the last ends where it is told to."""
 
     def __init__(self, pieces: Sequence[Piece], start: Vec, end: Vec, tolerance: float) -> None:
-        self._tolerance = tolerance
+        self._tolerance = (1 - _GRAIN) * tolerance
         spots, self._at = [], list[tuple[Piece, float]]()
         for piece in pieces:
             count = _samples(piece, tolerance)
@@ -270,11 +272,11 @@ def _samples(piece: Piece, tolerance: float) -> int:
     if isinstance(piece, Bezier):
         p = np.array((piece.p0, piece.p1, piece.p2, piece.p3))
         bend = float(np.hypot(*np.diff(p, n=2, axis=0).T).max())
-        count = math.sqrt(0.75 * bend / (tolerance / 32))
+        count = math.sqrt(0.75 * bend / (_GRAIN * tolerance))
     else:
         radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
         sweep = abs(round_range(piece)[1])
-        count = sweep * math.sqrt(radius / (8 * tolerance / 32))
+        count = sweep * math.sqrt(radius / (8 * _GRAIN * tolerance))
     return max(_FEWEST, min(_MOST, math.ceil(count)))
 
 
