@@ -17,7 +17,7 @@ from aidl_lang.common.source import Span
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.explaining.failures import Conflict
-    from aidl_lang.export import Exported, Options
+    from aidl_lang.export import Exported, Options, Progress
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
@@ -58,18 +58,30 @@ class Compiled:
         Raises KeyError for an unknown suffix, `ExportError` if the format cannot hold the drawing, and
         ValueError if there is nothing to export.
         """
-        from aidl_lang.export import ExportError, Job, Options, export
+        return self.exporting(options)(suffix)
 
-        job = Job(
-            *self._finished, tuple(self.diagnostics), Options(self.show) if options is None else options
-        )
-        try:
-            with limited_to(self.limit):
-                return export(job, suffix)
-        except OutOfTime:
-            hint = "write a format that holds less: pictures without `--show`, outlines alone"
-            message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
-            raise ExportError("E0955", message, hint) from None
+    def exporting(
+        self, options: Options | None = None, progress: Progress | None = None
+    ) -> Callable[[str], Exported]:
+        """Returns `exported` for several formats with the same options: what they have in common is worked
+        out once, and `progress` hears of it.
+        """
+        from aidl_lang.export import Exporter, ExportError, Job, Options
+
+        made = Options(self.show) if options is None else options
+        job = Job(*self._finished, tuple(self.diagnostics), made)
+        exporter = Exporter(job) if progress is None else Exporter(job, progress)
+
+        def write(suffix: str) -> Exported:
+            try:
+                with limited_to(self.limit):
+                    return exporter.write(suffix)
+            except OutOfTime:
+                hint = "write a format that holds less: pictures without `--show`, outlines alone"
+                message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
+                raise ExportError("E0955", message, hint) from None
+
+        return write
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
         """Returns the content of the file alone (see `exported`)."""

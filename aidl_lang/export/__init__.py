@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
+from functools import cached_property
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.geometry.arcs import TOLERANCE
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture
 
+DXF = ("arcs", "r12", "splines")
+"""Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
+
+
+Progress: TypeAlias = Callable[[int, int], None]
 
 
 @record()
@@ -35,6 +42,8 @@ class Options:
     tile       width and height in mm of the pages that a picture is printed over, 1:1
     overlap    of neighbouring pages, mm
     theme      the look of a picture as a whole, one of `themes.THEMES`
+    dxf        the kind of a DXF, one of `DXF`
+    tolerance  how far the arcs may be from the curves that they stand for where only arcs are understood, mm
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -50,6 +59,8 @@ class Options:
     tile: tuple[float, float] | None = None
     overlap: float = 10.0
     theme: str = "colour"
+    dxf: str = "arcs"
+    tolerance: float = TOLERANCE
 
     @property
     def for_cutter(self) -> bool:
@@ -102,20 +113,49 @@ class Format:
     write_all: Callable[[Sequence[Job]], Exported] | None = None
 
 
+class Exporter:
+    """Writes a job in several formats. What the options do to the drawing first is worked out once for all of
+    them; `progress` hears how many steps of that are done, and of how many.
+    """
+
+    def __init__(self, job: Job, progress: Progress = lambda done, count: None) -> None:
+        self._job, self._progress = job, progress
+
+    def write(self, suffix: str) -> Exported:
+        """Writes the drawing in the format of a file suffix (`.svg`). Raises as `export` does."""
+        wanted, job = FORMATS[suffix], self._job
+        if wanted.needs is not None and find_spec(wanted.needs) is None:
+            raise ExportError(
+                "E0913",
+                f"`{suffix}` needs a package that is not installed",
+                f"pip install 'aidl-lang[{wanted.extra}]'",
+            )
+        _check(job.options, suffix, wanted)
+        jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
+        unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
+        if job.options.sheet is not None or job.options.kerf:
+            jobs, notes = self._prepared
+        made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
+        return replace(made, notes=(*notes, *unsaid, *made.notes))
+
+    @cached_property
+    def _prepared(self) -> tuple[list[Job], list[Diagnostic]]:
+        from aidl_lang.export.sheets import prepared
+
+        return prepared(self._job, self._progress)
+
+
 def export(job: Job, suffix: str) -> Exported:
     """Writes the drawing in the format of a file suffix (`.svg`).
 
     Raises KeyError for an unknown suffix, ExportError where the format cannot hold the drawing or a package
     for it is missing.
     """
-    wanted = FORMATS[suffix]
-    if wanted.needs is not None and find_spec(wanted.needs) is None:
-        raise ExportError(
-            "E0913",
-            f"`{suffix}` needs a package that is not installed",
-            f"pip install 'aidl-lang[{wanted.extra}]'",
-        )
-    options = job.options
+    return Exporter(job).write(suffix)
+
+
+def _check(options: Options, suffix: str, wanted: Format) -> None:
+    """Raises ExportError if the options ask a format for what it cannot have."""
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
     if options.nest is not None and options.sheet is None:
@@ -136,14 +176,6 @@ def export(job: Job, suffix: str) -> Exported:
             "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
             "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
         )
-    jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
-    unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
-    if options.sheet is not None or options.kerf:
-        from aidl_lang.export.sheets import prepared
-
-        jobs, notes = prepared(job)
-    made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
-    return replace(made, notes=(*notes, *unsaid, *made.notes))
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:

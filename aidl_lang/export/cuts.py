@@ -7,7 +7,7 @@ another before that hole, so that nothing is cut in a piece that has come loose.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 import numpy as np
@@ -19,7 +19,7 @@ from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, union_bounds
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
@@ -35,6 +35,7 @@ class Outline:
     layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
     style  of its lines; what it says of a fill is said of none
     hole   path of the hole that an inner outline comes from; a ring has its inner one without any
+    clockwise  whether a whole curve, which has no direction of its own, is run through clockwise
     """
 
     pieces: tuple[Piece, ...]
@@ -43,6 +44,7 @@ class Outline:
     layer: str
     style: Style
     hole: str | None = None
+    clockwise: bool = False
 
 
 def outlines(model: SolvedModel, drawing: Drawing) -> list[Outline]:
@@ -56,12 +58,17 @@ def _lines(drawing: Drawing) -> Iterator[Outline]:
         layer = role if role == OPEN else style.layer or role
         if role == HOLE:
             for loop in drawing.regions[path].loops:
-                yield Outline(loop.pieces, True, path, layer, style)
+                yield Outline(loop.pieces, True, path, layer, style, clockwise=loop.reversed)
             continue
         for pieces in chains([piece for s in strokes for piece in s.pieces], tolerance):
             start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
-            closed = len(pieces) > 1 and math.dist(start, end) <= tolerance
+            closed = math.dist(start, end) <= tolerance < _extent(pieces)
             yield Outline(pieces, closed, path, layer, style)
+
+
+def _extent(pieces: Iterable[Piece]) -> float:
+    left, bottom, right, top = union_bounds([bounds(piece) for piece in pieces])
+    return max(right - left, top - bottom)
 
 
 def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
@@ -73,7 +80,9 @@ def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
         for loop in face.holes:
             hole = edges.owner(loop)
             style = drawing.styles[hole or body.path].with_lines_of(body.style)
-            yield Outline(loop.pieces, True, body.path, style.layer or HOLE, style, hole)
+            yield Outline(
+                loop.pieces, True, body.path, style.layer or HOLE, style, hole, clockwise=loop.reversed
+            )
         layer = body.style.layer or kinds[body.path]
         yield Outline(face.outer.pieces, True, body.path, layer, body.style)
 
@@ -95,10 +104,15 @@ class _HoleEdges:
         self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
 
     def owner(self, loop: Loop) -> str | None:
-        """Returns the hole that shares the loop's first edge, the innermost of several."""
-        if (path := self._same.get(loop.pieces[0])) is not None:
-            return path
-        p = point(loop.pieces[0], 0.5)
+        """Returns the hole that shares an edge with the loop, the innermost of several."""
+        shared = (path for piece in loop.pieces if (path := self._same.get(piece)) is not None)
+        found = next(shared, None)
+        # A piece may have been drawn anew in the loop, and not in the hole.
+        return found or next((path for piece in loop.pieces if (path := self._beside(piece))), None)
+
+    def _beside(self, piece: Piece) -> str | None:
+        """Returns the hole on whose edge the middle of a piece lies."""
+        p = point(piece, 0.5)
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
         return next((path for path, edge in found if locate(edge, p, self._tolerance) is not None), None)

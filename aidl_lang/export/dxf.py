@@ -1,6 +1,10 @@
-"""DXF R2010 for laser cutters, routers and other CAD systems: exact entities, 1:1 in mm, y upwards.
+"""DXF for laser cutters, routers and other CAD systems: 1:1 in mm, y upwards.
 
-An outline of lines and arcs is one LWPOLYLINE; with other curves in it, each piece is an entity of its own.
+Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
+other kinds are fitted by arcs (`geometry.arcs`). Outer outlines run counter-clockwise, inner ones clockwise.
+On request the file is one of R12, which says the same in older words; or it is exact, and an outline with
+other curves in it has an entity for each piece.
+
 The order is that of `cuts`, the layers those of `dxf_layers`, the lines those of `dxf_lines`.
 
 Each entity carries the path of its body as XDATA of the application AIDL, and that of the hole it comes from
@@ -21,9 +25,10 @@ from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
 from aidl_lang.export.dxf_lines import Lines
+from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import TAU, ends, point, round_range
+from aidl_lang.geometry.evaluate import TAU, ends, point, reverse, round_range
 
 BODY, HOLE = "AIDL", "AIDL_HOLE"
 MILLIMETRES, METRIC = 4, 1
@@ -33,7 +38,8 @@ THINNEST = 1e-6
 """Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
 DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
-TEXT_BYTES = 255
+TEXT_BYTES, ESCAPED = 255, 7
+"""Bytes of a text in XDATA, and of a character that the file's encoding lacks."""
 PATTERN_GOES_ON = 128
 """Flag of a polyline whose dashes do not begin anew at each corner."""
 
@@ -41,32 +47,37 @@ PATTERN_GOES_ON = 128
 def to_dxf(job: Job) -> Exported:
     """Writes the outlines and lines of a drawing as a DXF document."""
     import ezdxf
+    from ezdxf.document import Drawing as Document
 
     library: Any = ezdxf
     before = library.options.write_fixed_meta_data_for_testing
     # Else the document holds the time and random numbers.
     library.options.write_fixed_meta_data_for_testing = True
     try:
-        return _written(library.new("R2010", units=MILLIMETRES), job)
+        is_old = job.options.dxf == "r12"
+        # R12 has no place for the unit; `new` would set one, and complain on standard error.
+        document = Document.new("R12") if is_old else library.new("R2010", units=MILLIMETRES)
+        return _written(document, job, is_old)
     finally:
         library.options.write_fixed_meta_data_for_testing = before
 
 
-def _written(document: Any, job: Job) -> Exported:
+def _written(document: Any, job: Job, is_old: bool) -> Exported:
     found = outlines(job.model, job.drawing)
     for application in (BODY, HOLE):
         document.appids.new(application)
-    document.header["$MEASUREMENT"] = METRIC
-    entities, layers = _Entities(document.modelspace(), job.drawing), Layers(document, job.model)
-    lines = Lines(document, job.drawing.size)
+    if not is_old:
+        document.header["$MEASUREMENT"] = METRIC
+    tolerance = None if job.options.dxf == "splines" else job.options.tolerance
+    entities = _Entities(document.modelspace(), job.drawing, tolerance, is_old)
+    layers, lines = Layers(document, job.model, is_old), Lines(document, job.drawing.size, is_old)
     for outline in found:
         checkpoint()
         attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
         if not job.options.for_cutter:
             attributes |= lines.attributes(outline.style)
         if outline.style.color is not None:
-            red, green, blue = rgb(outline.style.color)
-            attributes["true_color"] = red << 16 | green << 8 | blue
+            attributes |= _color(rgb(outline.style.color), is_old)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):
             for application, path in names:
@@ -76,7 +87,18 @@ def _written(document: Any, job: Job) -> Exported:
     _order_classes(document)
     text = io.StringIO()
     document.write(text)
-    return Exported(text.getvalue().encode(), notes=tuple(layers.notes))
+    data = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
+    return Exported(data, notes=tuple(layers.notes))
+
+
+def _color(color: tuple[int, int, int], is_old: bool) -> dict[str, int]:
+    """Returns the attribute for a colour: R12 knows those of the AutoCAD Color Index alone."""
+    if not is_old:
+        red, green, blue = color
+        return {"true_color": red << 16 | green << 8 | blue}
+    from ezdxf.colors import aci2rgb
+
+    return {"color": min(range(1, 256), key=lambda index: math.dist(aci2rgb(index), color))}
 
 
 def _order_classes(document: Any) -> None:
@@ -93,20 +115,23 @@ def _set_view(document: Any, drawing: Drawing) -> None:
     space = document.modelspace()
     space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
+    for name, p in (("EXTMIN", (left, bottom, 0.0)), ("EXTMAX", (right, top, 0.0))):
+        document.header[f"${name}"] = p
+    document.header["$LIMMIN"], document.header["$LIMMAX"] = (left, bottom), (right, top)
     document.set_modelspace_vport(1.1 * drawing.size, ((left + right) / 2, (bottom + top) / 2))
 
 
 def _split(path: str) -> list[str]:
     """Splits a path into texts of the length that XDATA allows."""
-    count = TEXT_BYTES if path.isascii() else TEXT_BYTES // 4
+    count = TEXT_BYTES if path.isascii() else TEXT_BYTES // ESCAPED
     return [path[k : k + count] for k in range(0, len(path), count)]
 
 
 class _Entities:
-    """Writes outlines as entities."""
+    """Writes outlines as entities, of arcs within a `tolerance` or, without one, of the curves themselves."""
 
-    def __init__(self, space: Any, drawing: Drawing) -> None:
-        self._space = space
+    def __init__(self, space: Any, drawing: Drawing, tolerance: float | None, is_old: bool) -> None:
+        self._space, self._tolerance, self._is_old = space, tolerance, is_old
         self._decimals = DIGITS - 1 - math.floor(math.log10(drawing.size))
 
     def _rounded(self, value: float) -> float:
@@ -118,6 +143,10 @@ class _Entities:
     def add(self, outline: Outline, attributes: dict[str, Any]) -> Iterator[Any]:
         """Yields the entities of an outline, made one by one."""
         pieces = outline.pieces
+        if self._tolerance is not None:
+            pieces = as_arcs(pieces, outline.closed, self._tolerance)
+        if outline.clockwise:
+            pieces = tuple(reverse(piece) for piece in reversed(pieces))
         if len(pieces) > 1 and all(isinstance(piece, Line | Arc) for piece in pieces):
             yield self._polyline(pieces, outline.closed, attributes)
         else:
@@ -128,7 +157,8 @@ class _Entities:
         corners = [corner for piece in pieces for corner in self._corners(piece)]
         if not closed:
             corners.append((*self._at(ends(pieces[-1])[1]), 0.0))
-        made = self._space.add_lwpolyline(corners, "xyb", close=closed, dxfattribs=attributes)
+        add = self._space.add_polyline2d if self._is_old else self._space.add_lwpolyline
+        made = add(corners, format="xyb", close=closed, dxfattribs=attributes)
         if "linetype" in attributes:
             made.dxf.flags |= PATTERN_GOES_ON
         return made

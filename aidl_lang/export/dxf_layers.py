@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import SolvedModel
 
@@ -15,15 +16,32 @@ OWN = {"solid": 7, "assembly": 7, "hole": 1, "drawing": 5, "open": 6}
 """
 FURTHER = (3, 4, 30, 200, 140, 54, 8)
 """Colours for layers of the author, in turn, since some programs tell layers apart by colour alone."""
-LONGEST_NAME = 255
-_REFUSED = re.compile('[<>/\\\\":;?*|,=`^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]')
+
+
+@record()
+class _Names:
+    """What a version of DXF takes as the name of a layer, and how that is said."""
+
+    longest: int
+    refused: re.Pattern[str]
+    rule: str
+
+
+_NEW = _Names(
+    255,
+    re.compile('[<>/\\\\":;?*|,=`^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]'),
+    'names in DXF have 1 to 255 characters and none of < > / \\ " : ; ? * | , = ` ^',
+)
+_OLD = _Names(31, re.compile("[^A-Za-z0-9$_-]"), "names in DXF R12 have 1 to 31 letters, digits, $, - and _")
+_ALIKE = "DXF makes no difference between capital and small letters in names, and keeps some for itself"
 _NEVER_PLOTTED = "defpoints"
 
 
 class Layers:
     """The layers in use. DXF ignores case in names, so one of two that differ only in case is changed."""
 
-    def __init__(self, document: Any, model: SolvedModel) -> None:
+    def __init__(self, document: Any, model: SolvedModel, is_old: bool = False) -> None:
+        self._rules = _OLD if is_old else _NEW
         self.notes: list[Diagnostic] = []
         self._document = document
         self._root = model.root
@@ -42,30 +60,25 @@ class Layers:
 
     def _free(self, wanted: str) -> str:
         """Returns a free name like the wanted one that DXF allows."""
-        allowed = _REFUSED.sub("_", wanted).strip()[:LONGEST_NAME] or "_"
+        longest = self._rules.longest
+        allowed = self._rules.refused.sub("_", wanted).strip()[:longest] or "_"
         name, count = allowed, 1
         while name.casefold() in self._taken:
             count += 1
-            name = f"{allowed[: LONGEST_NAME - len(str(count)) - 1]}_{count}"
+            name = f"{allowed[: longest - len(str(count)) - 1]}_{count}"
         self._taken.add(name.casefold())
         if name != wanted:
-            self.notes.append(_changed_note(wanted, name, self._place(wanted), taken=count > 1))
+            self.notes.append(self._changed_note(wanted, name, taken=count > 1))
         return name
 
     def _place(self, layer: str) -> Span | None:
         found = (s.span for s in self._root.walk() if str((*s.attributes.get("layer", ()), "")[0]) == layer)
         return next(found, None)
 
-
-def _changed_note(wanted: str, name: str, span: Span | None, taken: bool) -> Diagnostic:
-    why = (
-        "DXF makes no difference between capital and small letters in names, and keeps some for itself"
-        if taken
-        else f'names in DXF have 1 to {LONGEST_NAME} characters and none of < > / \\ " : ; ? * | , = ` ^'
-    )
-    return Diagnostic(
-        "W0720", f"the layer `{_short(wanted)}` is called `{_short(name)}` in the DXF", span, "", (), (why,)
-    )
+    def _changed_note(self, wanted: str, name: str, taken: bool) -> Diagnostic:
+        why = _ALIKE if taken else self._rules.rule
+        message = f"the layer `{_short(wanted)}` is called `{_short(name)}` in the DXF"
+        return Diagnostic("W0720", message, self._place(wanted), hints=(why,))
 
 
 def _short(name: str) -> str:

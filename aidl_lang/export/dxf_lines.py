@@ -15,16 +15,19 @@ DASHED = "DASHED"
 
 
 class Lines:
-    """The linetypes in use, each made on first use. `size` is that of the drawing, mm."""
+    """The linetypes in use, each made on first use. `size` is that of the drawing, mm; `is_old`: R12 knows no
+    weights, and no points in names.
+    """
 
-    def __init__(self, document: Any, size: float) -> None:
+    def __init__(self, document: Any, size: float, is_old: bool = False) -> None:
+        self._is_old = is_old
         self._document = document
         self._size = size
 
     def attributes(self, style: Style) -> dict[str, Any]:
         """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
         found: dict[str, Any] = {}
-        if style.width is not None:
+        if style.width is not None and not self._is_old:
             wanted = 100 * style.width
             found["lineweight"] = min(WEIGHTS, key=lambda weight: abs(weight - wanted))
         if (dashes := style.dashes(self._size)) is not None:
@@ -34,6 +37,8 @@ class Lines:
     def _linetype(self, dashes: tuple[float, ...], *, is_named: bool) -> str:
         """Returns the name of a pattern; the one that goes by the size of the drawing is just dashed."""
         name = "_".join((DASHED, *map(fixed, dashes))) if is_named else DASHED
+        if self._is_old:
+            name = name.replace(".", "_")
         if name not in self._document.linetypes:
             pattern = [-part if k % 2 else part for k, part in enumerate(dashes)]
             self._document.linetypes.add(name, [sum(dashes), *pattern], description="dashes and gaps in mm")

@@ -9,12 +9,15 @@ from importlib.util import find_spec
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed, size_text
 from aidl_lang.common.prose import named
-from aidl_lang.export import ExportError, Job
+from aidl_lang.export import ExportError, Job, Progress
+from aidl_lang.export.unsaid import twice_compensated
+from aidl_lang.geometry.arcs import as_arcs, has_slivers
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nesting import NestingError
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sheets import Size, laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
@@ -22,15 +25,18 @@ MOST_PARTS = 5000
 """More parts are a mistake, and would take minutes to pack."""
 
 
-def prepared(job: Job) -> tuple[list[Job], list[Diagnostic]]:
-    """Returns the job for a cutter, one for each sheet; raises ExportError if the parts cannot be laid
-    out.
+def prepared(job: Job, progress: Progress) -> tuple[list[Job], list[Diagnostic]]:
+    """Returns the job for a cutter, one for each sheet, with notes; raises ExportError if the parts cannot be
+    laid out. `progress` hears how many outlines are widened.
     """
+    notes = []
     if job.options.kerf:
-        job = replace(job, drawing=_widened(job, job.options.kerf / 2))
+        notes += twice_compensated(job.model.root, job.options.kerf)
+        job = replace(job, drawing=_widened(job, job.options.kerf / 2, progress))
     if job.options.sheet is None:
-        return [job], []
-    return _on_sheets(job, job.options.sheet, job.options.spacing)
+        return [job], notes
+    jobs, more = _on_sheets(job, job.options.sheet, job.options.spacing)
+    return jobs, notes + more
 
 
 def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
@@ -103,14 +109,18 @@ def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
     )
 
 
-def _widened(job: Job, by: float) -> Drawing:
+def _widened(job: Job, by: float, progress: Progress) -> Drawing:
     """Returns the drawing with all material grown by half the width of the cut, and holes shrunk by as
-    much.
+    much. Outlines with pieces too short to be cut are drawn anew.
     """
     drawing = job.drawing
     holes = {s.path for s in job.model.root.walk() if s.kind == "hole"}
     grown = dict.fromkeys(holes, -by) | {body.path: by for body in drawing.bodies}
-    regions = {p: offset(r, grown.get(p, 0.0)) for p, r in drawing.regions.items()}
+    regions = {}
+    for done, (path, region) in enumerate(drawing.regions.items()):
+        progress(done, len(drawing.regions))
+        regions[path] = offset(region, grown.get(path, 0.0))
+    progress(len(drawing.regions), len(drawing.regions))
     bodies = []
     for body in drawing.bodies:
         region = regions[body.path]
@@ -120,6 +130,22 @@ def _widened(job: Job, by: float) -> Drawing:
                 f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm",
                 "widen them, or give a smaller `--kerf`",
             )
+        region = _smoothed(region, job.options.tolerance)
         bodies.append(replace(body, region=region, box=region_bounds(region)))
     box = union_bounds([drawing.box, *(body.box for body in bodies)])
     return replace(drawing, bodies=tuple(bodies), regions=regions, box=box)
+
+
+def _smoothed(region: Region, tolerance: float) -> Region:
+    """Returns the region with outlines that have no pieces too short to be cut."""
+    faces = []
+    for face in region.faces:
+        outer, *holes = (_smooth(loop, tolerance) for loop in face.loops)
+        faces.append(Face(outer, tuple(holes)))
+    return Region(tuple(faces))
+
+
+def _smooth(loop: Loop, tolerance: float) -> Loop:
+    if not has_slivers(loop.pieces, tolerance):
+        return loop
+    return replace(loop, pieces=as_arcs(loop.pieces, closed=True, tolerance=tolerance))

@@ -1,10 +1,11 @@
-"""What a drawing says of its looks and a file cannot hold."""
+"""What a program says and a file cannot hold, or would hold twice."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.prose import listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export import Job
@@ -64,3 +65,39 @@ def _stated(root: SolvedStructure, names: Collection[str]) -> Iterator[SolvedStr
     for structure in root.walk():
         holders: tuple[SolvedStructure | SolvedGeometry, ...] = (structure, *structure.drawn)
         yield from (holder for holder in holders if any(_states(holder, name) for name in names))
+
+
+def twice_compensated(root: SolvedStructure, width: float) -> list[Diagnostic]:
+    """Returns a note if a program makes up by itself for a cut that outlines are now widened by."""
+    shapes = [
+        shape
+        for structure in root.walk()
+        for geometry in structure.drawn
+        for shape in geometry.walk()
+        if not shape.construction and _own_kerf(shape.values)
+    ]
+    others = [structure for structure in root.walk() if _own_kerf(structure.params)]
+    if not (shapes or others):
+        return []
+    # What is drawn is told before the param that it is drawn by.
+    first = shapes[0] if shapes else others[0]
+    own = fixed(_own_kerf(shapes[0].values if shapes else others[0].params))
+    more = f" and {len(shapes) - 1} more" if len(shapes) > 1 else ""
+    return [
+        Diagnostic(
+            "N0742",
+            "the width of the cut is made up for twice: "
+            f"by `--kerf` and by the `kerf` of `{first.path}`{more}",
+            first.span,
+            f"drawn for a cut of {own} mm, and grown for one of {fixed(width)} mm",
+            hints=(
+                "leave out `--kerf`: the program does it",
+                "or have the program draw without it: with `-D kerf=0` if it is a `param`",
+            ),
+        )
+    ]
+
+
+def _own_kerf(values: Mapping[str, object]) -> float:
+    own = values.get("kerf", 0.0)
+    return own if isinstance(own, float | int) else 0.0

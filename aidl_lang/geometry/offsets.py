@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed, point
+from aidl_lang.geometry.evaluate import bounds, ends, is_closed
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
@@ -33,33 +33,26 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
     loops: list[Loop] = []
     for loop in region.loops:
         left = distance if loop.reversed else -distance  # material lies to the left
-        found = list(_along(loop.pieces, left, sharp))
-        strips += found
-        loops.append(Loop(tuple(_in_parts(loop.pieces, found)), loop.reversed))
+        parts: list[Piece] = []
+        for piece, along, corner in _along(loop.pieces, left, sharp):
+            strips += along + corner
+            # Cut where its strips are, so that the outline and they have the same curves.
+            is_whole = isinstance(piece, Line | Arc | Circle)
+            parts += [piece] if is_whole else [strip[0][0] for strip in along]
+        loops.append(Loop(tuple(parts), loop.reversed))
     # Loops are only filled together here, so that they may all count as outer ones.
     return _combined(Region(tuple(map(Face, loops))), strips, cut=distance < 0)
 
 
-def _in_parts(pieces: Sequence[Piece], strips: Sequence[Strip]) -> Iterator[Piece]:
-    """Yields the outline cut where its strips are, so that both have the same curves."""
-    firsts = [strip[0][0] for strip in strips]
-    for piece in pieces:
-        if isinstance(piece, Line | Arc | Circle):
-            yield piece
-        else:
-            start = next(k for k, first in enumerate(firsts) if ends(first)[0] == point(piece, 0.0))
-            stop = next(k for k in range(start, len(firsts)) if ends(firsts[k])[1] == point(piece, 1.0))
-            yield from firsts[start : stop + 1]
-
-
-def _along(pieces: Sequence[Piece], left: float, sharp: bool) -> Iterator[Strip]:
-    """Strips and wedges on one side of a closed outline."""
+def _along(
+    pieces: Sequence[Piece], left: float, sharp: bool
+) -> Iterator[tuple[Piece, list[Strip], list[Strip]]]:
+    """Yields each piece of a closed outline with the strips on one side of it, and that at its end."""
     for piece, after in zip(pieces, (*pieces[1:], pieces[0]), strict=True):
-        yield from beside(piece, left)
+        corner = None
         if not is_closed(piece):
-            found = wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
-            if found is not None:
-                yield found
+            corner = wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
+        yield piece, list(beside(piece, left)), [] if corner is None else [corner]
 
 
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:

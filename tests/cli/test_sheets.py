@@ -276,3 +276,45 @@ def test_a_packer_that_gives_up_is_told(aidl: Aidl, box: Path, monkeypatch: pyte
         "error[E0924]: the parts could not be packed by their outlines: an empty polygon",
         "  = hint: leave `--nest` out: they are packed by their boxes then",
     ]
+
+
+PANEL = "@thickness(3mm) solid front { body = finger_panel(width: 90, height: 50, thickness: 3, kerf: KERF) }"
+OWN = "solid front { param kerf = KERF in 0..1  body = rectangle(width: 90 + kerf, height: 50) }"
+
+
+@pytest.mark.parametrize(("program", "path"), [(PANEL, "front.body"), (OWN, "front")])
+def test_a_cut_made_up_for_twice_is_told(aidl: Aidl, folder: Path, program: str, path: str) -> None:
+    (folder / "front.aidl").write_text(program.replace("KERF", "0.2"))
+    result = aidl("compile", "front.aidl", "-o", "x.dxf", "-o", "x.svg", "--kerf", "0.15")
+    assert result.code == 0
+    first, *lines = result.err.splitlines()
+    assert first == (
+        f"note[N0742]: the width of the cut is made up for twice: by `--kerf` and by the `kerf` of `{path}`"
+    )
+    assert any(line.endswith("drawn for a cut of 0.2 mm, and grown for one of 0.15 mm") for line in lines)
+    assert "  = hint: leave out `--kerf`: the program does it" in lines
+    assert "  = hint: or have the program draw without it: with `-D kerf=0` if it is a `param`" in lines
+    assert result.err.count("N0742") == 1
+    assert "N0742" not in aidl("compile", "front.aidl", "-o", "x.dxf").err
+    (folder / "front.aidl").write_text(program.replace("KERF", "0"))
+    assert "N0742" not in aidl("compile", "front.aidl", "-o", "x.dxf", "--kerf", "0.15").err
+
+
+def test_kinds_of_dxf_and_their_tolerance(aidl: Aidl, folder: Path) -> None:
+    (folder / "egg.aidl").write_text("solid egg { e = ellipse(rx: 40, ry: 25) }")
+    sizes = {}
+    for options in ((), ("--tolerance", "0.0001mm"), ("--dxf", "r12"), ("--dxf", "splines")):
+        assert aidl("compile", "egg.aidl", "-o", "egg.dxf", "--quiet", *options) == Result(0, "", "")
+        text = (folder / "egg.dxf").read_text()
+        (kind,) = {"ELLIPSE", "LWPOLYLINE", "POLYLINE"} & {line.strip() for line in _entities(text)}
+        sizes[kind, options] = sum(line.strip() == "42" for line in _entities(text))
+    assert [kind for kind, _ in sizes] == ["LWPOLYLINE", "LWPOLYLINE", "POLYLINE", "ELLIPSE"]
+    coarse, fine, *_ = sizes.values()
+    assert 0 < 2 * coarse < fine
+    for text in ("0", "-1", "x"):
+        lines = refused(aidl("compile", "egg.aidl", f"--tolerance={text}"))
+        assert "argument --tolerance: expected a length" in lines[-1]
+
+
+def _entities(text: str) -> list[str]:
+    return text.partition("ENTITIES")[2].partition("ENDSEC")[0].splitlines()

@@ -22,7 +22,7 @@ import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Job, export
+from aidl_lang.export import Job, Options, export
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -34,8 +34,11 @@ from tests.geometry.models import arc, circle, compound, model, primitive, recta
 ROOT = Path(__file__).parents[2]
 
 
-def written(m: SolvedModel) -> tuple[Document, tuple[Diagnostic, ...]]:
-    made = export(Job(m, draw(m)[0]), ".dxf")
+EXACT = Options(dxf="splines")
+
+
+def written(m: SolvedModel, options: Options | None = None) -> tuple[Document, tuple[Diagnostic, ...]]:
+    made = export(Job(m, draw(m)[0], (), options or Options()), ".dxf")
     document = ezdxf.read(io.StringIO(made.data.decode()))
     auditor = document.audit()
     assert not auditor.errors
@@ -43,12 +46,16 @@ def written(m: SolvedModel) -> tuple[Document, tuple[Diagnostic, ...]]:
     return document, made.notes
 
 
-def document_of(root: SolvedStructure) -> Document:
-    return written(model(root))[0]
+def document_of(root: SolvedStructure, options: Options | None = None) -> Document:
+    return written(model(root), options)[0]
 
 
-def document_from(program: str) -> Document:
-    return ezdxf.read(io.StringIO(aidl_lang.compile(program).export(".dxf").decode()))
+def exported(program: str, options: Options | None = None) -> bytes:
+    return pipeline.compile(SourceFile("x.aidl", program)).export(".dxf", options)
+
+
+def document_from(program: str, options: Options | None = None) -> Document:
+    return ezdxf.read(io.StringIO(exported(program, options).decode()))
 
 
 def kinds(document: Document) -> Counter[tuple[str, str]]:
@@ -142,7 +149,8 @@ def test_an_arc_by_itself(turn: float, way: int):
 @pytest.mark.parametrize(("rx", "ry"), [(30, 10), (10, 30), (20, 20)])
 @pytest.mark.parametrize("angle", [0.0, 0.4, -2.0])
 def test_an_ellipse(rx: float, ry: float, angle: float):
-    found = only(document_of(structure("solid", "s", primitive("e", Ellipse((5, 6), rx, ry, angle)))), "*")
+    root = structure("solid", "s", primitive("e", Ellipse((5, 6), rx, ry, angle)))
+    found = only(document_of(root, EXACT), "*")
     assert found.dxftype() == "ELLIPSE"
     assert found.dxf.ratio == min(rx, ry) / max(rx, ry)
     assert found.dxf.major_axis.magnitude == pytest.approx(max(rx, ry), rel=1e-12)
@@ -164,9 +172,9 @@ LEAF = """solid leaf {
 @pytest.mark.parametrize(("wide", "high"), [("12", "6"), ("6", "12")])
 def test_ends_of_a_mixed_outline_agree(wide: str, high: str):
     program = LEAF.replace("WIDE", wide).replace("HIGH", high)
-    document = document_from(program)
+    document = document_from(program, EXACT)
     assert set(kinds(document)) == {(k, "solid") for k in ("LINE", "ARC", "ELLIPSE", "SPLINE")}
-    (loop,) = read_dxf(aidl_lang.compile(program).export(".dxf"))["leaf"].loops
+    (loop,) = read_dxf(exported(program, EXACT))["leaf"].loops
     assert loop.gap() < 1e-12 * 40
     area = json.loads(aidl_lang.compile(program).to_json())["regions"]["leaf"]["area"]
     assert loop.area == pytest.approx(area, rel=1e-8)
@@ -174,7 +182,7 @@ def test_ends_of_a_mixed_outline_agree(wide: str, high: str):
 
 def test_a_bezier_is_a_spline_of_one_span():
     curve = Bezier((0, 0), (10, 30), (30, -30), (40, 0))
-    found = only(document_of(structure("drawing", "d", primitive("b", curve))), "SPLINE")
+    found = only(document_of(structure("drawing", "d", primitive("b", curve)), EXACT), "SPLINE")
     assert [tuple(p)[:2] for p in found.control_points] == [curve.p0, curve.p1, curve.p2, curve.p3]
     assert list(found.knots) == [0, 0, 0, 0, 1, 1, 1, 1]
     assert (found.dxf.degree, list(found.weights)) == (3, [])
@@ -198,7 +206,7 @@ def test_examples(path: Path):
     """Bodies by name, their areas from the entities read back, holes without seams."""
     result = compiled(path.read_text("utf-8"))
     document = json.loads(result.export(".json"))
-    bodies = read_dxf(result.export(".dxf"))
+    bodies = read_dxf(result.export(".dxf", EXACT))
     drawing = result.drawing
     assert drawing is not None
     assert {b.path for b in drawing.bodies} == bodies.keys() & document["regions"].keys()
@@ -386,9 +394,8 @@ def test_far_away_small_and_large(x: float, size: float):
 
 
 def test_a_thin_ellipse_has_the_least_ratio_that_dxf_takes():
-    found = only(
-        document_of(structure("drawing", "d", primitive("e", Ellipse((0, 0), 1e-7, 20, 0)))), "ELLIPSE"
-    )
+    root = structure("drawing", "d", primitive("e", Ellipse((0, 0), 1e-7, 20, 0)))
+    found = only(document_of(root, EXACT), "ELLIPSE")
     assert found.dxf.ratio == 1e-6
     assert tuple(found.dxf.major_axis)[1] == 20
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 
 _DEFAULT_FORMAT = ".svg"
+_PATIENCE = 1.0
+"""Seconds after which progress is shown."""
 
 
 @record()
@@ -113,6 +116,8 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         tile=arguments.tile,
         overlap=arguments.overlap,
         theme=arguments.theme,
+        dxf=arguments.dxf,
+        tolerance=arguments.tolerance,
     )
 
 
@@ -123,7 +128,8 @@ def _write(
     from aidl_lang.export import ExportError
 
     try:
-        made = [(target, compiled.exported(target.suffix, options)) for target in outputs]
+        write = compiled.exporting(options, _Progress())
+        made = [(target, write(target.suffix)) for target in outputs]
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
     contents = [
@@ -137,6 +143,20 @@ def _write(
         files.write(name, data)
     notes = dict.fromkeys(note for _, result in made for note in result.notes)
     return tuple(name for name, _ in contents), tuple(notes)
+
+
+class _Progress:
+    """Prints on a terminal how many outlines are widened, if that takes over a second, and removes it."""
+
+    def __init__(self) -> None:
+        self._start: float | None = None
+
+    def __call__(self, done: int, count: int) -> None:
+        now = time.monotonic()
+        self._start = self._start or now
+        if now - self._start > _PATIENCE and sys.stderr.isatty():
+            text = f"{done} of {count} outlines widened by the cut" if done < count else ""
+            print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
 def _names(target: Target, further: int) -> list[str]:

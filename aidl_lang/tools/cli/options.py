@@ -138,6 +138,20 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
         help="width of the cut: outlines grow by half of it, so that parts keep their size",
     )
     parser.add_argument(
+        "--dxf",
+        choices=("arcs", "r12", "splines"),
+        default="arcs",
+        help="the kind of a DXF: each outline one polyline of lines and arcs (the default), the same for old "
+        "programs, or exact with splines",
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=_tolerance,
+        default=0.01,
+        metavar="MM",
+        help="how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
+    )
+    parser.add_argument(
         "--tile",
         type=sizes.size,
         metavar="SIZE",
@@ -250,6 +264,13 @@ def _thickness(text: str) -> float:
         value = 0.0
     if not 0 < value < 1e9:
         raise argparse.ArgumentTypeError(f"expected millimetres above 0, as in 3, not `{text}`")
+    return value
+
+
+def _tolerance(text: str) -> float:
+    value = sizes.length(text)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"expected a length above 0, such as 0.01 or 0.001in, not `{text}`")
     return value
 
 

@@ -103,8 +103,8 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
 
 
 def _calls(variant: Variant, *topics: str) -> str:
-    """Returns a line for each name, with its parts (those shared with an earlier shape by that one's name; not
-    the Béziers of a figure, to which nothing is joined) and how it lies.
+    """Returns a line for each name, with its parts (those shared with an earlier shape by that one's name;
+    without the Béziers of a figure, to which nothing is joined) and how it lies.
     """
     lines, told = [], dict[str, set[str]]()
     for entry in _entries(variant, topics):

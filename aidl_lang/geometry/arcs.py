@@ -1,0 +1,350 @@
+"""Outlines as machines follow them: nothing but lines and arcs, and no piece too short to be cut.
+
+Curves are fitted by pairs of arcs. A pair has the ends and the directions of the part it stands for, so that
+arcs run on smoothly wherever the curve does; a part whose pair departs too far is halved. Lines and arcs long
+enough to be cut stay what they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import TAU, ends, point, points, round_range
+from aidl_lang.geometry.finishing import direction
+from aidl_lang.geometry.measures import length
+
+Floats = NDArray[np.float64]
+
+TOLERANCE = 0.01
+"""How far arcs may be from the curves that they stand for, mm, unless something else is asked for."""
+SHORTEST = 3.0
+"""Pieces shorter than so many tolerances are not left where a machine is to follow."""
+JOINED = 10.0
+"""Lines and arcs shorter than so many become part of a curve that runs on from them."""
+FINEST = 1e-7
+"""The least tolerance, relative to the size of the outline: past it arcs without number would say no more."""
+COARSEST = 0.01
+"""The greatest, likewise: outlines smaller than a tolerance would become something else."""
+_SMOOTH = math.radians(1)
+"""Pieces whose directions differ by less run on: fitting curves and parallels leaves such bends."""
+_WIDEST = 2.0
+"""Most radians that one arc of a pair goes through."""
+_STRAIGHT = 1e-9
+"""Height of an arc over its chord, relative to it, up to which it is a line."""
+_PROBES = np.linspace(0, 1, 17)
+_FEWEST, _MOST = 16, 4096
+"""Samples of a piece that is fitted."""
+_GRAIN = 1 / 32
+"""Share of the tolerance by which a curve may depart from the chords between its samples."""
+_FEWEST_LEFT = 3
+"""Stretches of an outline: with fewer it might be flat."""
+_LEEWAY = 0.9
+"""Share of the tolerance by which a corner may move."""
+
+
+def as_arcs(pieces: Sequence[Piece], closed: bool, tolerance: float) -> tuple[Piece, ...]:
+    """Returns lines and arcs (or a circle) that are within a tolerance of the pieces, and these of them."""
+    return _Outline(pieces, closed, tolerance).pieces()
+
+
+def has_slivers(pieces: Sequence[Piece], tolerance: float) -> bool:
+    """Tells whether some of several pieces are too short to be cut."""
+    return len(pieces) > 1 and min(map(length, pieces)) < SHORTEST * tolerance
+
+
+@record(slots=True)
+class _Stretch:
+    """Pieces that are drawn as one; `has_corners`: they do not run on smoothly."""
+
+    pieces: tuple[Piece, ...]
+    has_corners: bool = False
+
+    @property
+    def start(self) -> Vec:
+        return ends(self.pieces[0])[0]
+
+    @property
+    def end(self) -> Vec:
+        return ends(self.pieces[-1])[1]
+
+    @property
+    def length(self) -> float:
+        return sum(map(length, self.pieces))
+
+
+class _Outline:
+    """Pieces end to end, to be drawn anew within a tolerance. Lines and arcs stay what they are, but short
+    ones that run on smoothly from curves.
+    """
+
+    def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
+        self._whole, self._closed = tuple(pieces), closed
+        spots = np.concatenate([points(p, _PROBES) for p in pieces])
+        size = float(np.ptp(spots, axis=0).max())
+        self._tolerance = min(max(tolerance, FINEST * size), COARSEST * size)
+        self._shortest, self._joined = SHORTEST * self._tolerance, JOINED * self._tolerance
+
+    def pieces(self) -> tuple[Piece, ...]:
+        if len(self._whole) == 1 and isinstance(self._whole[0], Circle | Line | Arc):
+            return self._whole
+        stretches = self._with_few_short(self._stretches())
+        places = self._places(stretches)
+        found: list[Piece] = []
+        for stretch, (start, end) in zip(stretches, places, strict=True):
+            checkpoint()
+            if start != end or len(stretches) == 1:
+                found += self._drawn(stretch, start, end)
+        return tuple(found)
+
+    def _stretches(self) -> list[_Stretch]:
+        """Returns the pieces in stretches: each by itself that can stay, the others as long as they run on
+        smoothly. A closed outline begins where one of them does.
+        """
+        pieces, count = self._whole, len(self._whole)
+        exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
+        runs_on = [
+            not (exact[k - 1] or exact[k]) and _bend(pieces[k - 1], pieces[k]) < _SMOOTH for k in range(count)
+        ]
+        first = runs_on.index(False) if self._closed and False in runs_on else 0
+        found: list[_Stretch] = []
+        for number in range(first, first + count):
+            k = number % count
+            if found and number > first and runs_on[k]:
+                found[-1] = _Stretch((*found[-1].pieces, pieces[k]))
+            else:
+                found.append(_Stretch((pieces[k],)))
+        return found
+
+    def _with_few_short(self, stretches: Sequence[_Stretch]) -> list[_Stretch]:
+        """Returns the stretches with those that are too short and follow each other made one."""
+        is_short = [s.length < self._shortest for s in stretches]
+        first = is_short.index(False) if self._closed and False in is_short else 0
+        found: list[_Stretch] = []
+        for number in range(first, first + len(stretches)):
+            k = number % len(stretches)
+            if found and is_short[k] and is_short[k - 1]:
+                found[-1] = _Stretch((*found[-1].pieces, *stretches[k].pieces), has_corners=True)
+            else:
+                found.append(stretches[k])
+        return found
+
+    def _places(self, stretches: Sequence[_Stretch]) -> list[tuple[Vec, Vec]]:
+        """Returns the ends of the stretches. Both ends of one that is too short come to one place, where its
+        neighbours meet.
+        """
+        starts, count = [s.start for s in stretches], len(stretches)
+        starts.append(starts[0] if self._closed else stretches[-1].end)
+        short = [k for k, s in enumerate(stretches) if s.length < self._shortest]
+        if count - len(short) >= _FEWEST_LEFT:
+            for k in short:
+                before = stretches[k - 1] if k or self._closed else None
+                after = stretches[(k + 1) % count] if k < count - 1 or self._closed else None
+                if (place := self._merged(stretches[k], before, after)) is not None:
+                    starts[k] = starts[k + 1] = place
+                    if self._closed and k == count - 1:
+                        starts[0] = place
+                    elif self._closed and k == 0:
+                        starts[-1] = place
+        return list(pairwise(starts))
+
+    def _merged(self, stretch: _Stretch, before: _Stretch | None, after: _Stretch | None) -> Vec | None:
+        """Returns the place that both ends of a stretch can move to; None if that would be too far."""
+        start, end = stretch.start, stretch.end
+        if before is None or after is None:
+            return start if before is None else end
+        middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+        reach = _LEEWAY * 2 * self._tolerance
+        tip = _crossing(start, direction(before.pieces[-1], 1.0), end, direction(after.pieces[0], 0.0))
+        if tip is not None and math.dist(tip, middle) <= reach:
+            return (tip[0] + middle[0]) / 2, (tip[1] + middle[1]) / 2
+        return middle if math.dist(start, end) <= reach else None
+
+    def _drawn(self, stretch: _Stretch, start: Vec, end: Vec) -> Iterator[Piece]:
+        """Yields a stretch between two places."""
+        first = stretch.pieces[0]
+        if len(stretch.pieces) == 1 and isinstance(first, Line):
+            yield Line(start, end)
+        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and ends(first) == (start, end):
+            yield first
+        else:
+            fit = _Fit(stretch.pieces, start, end, self._tolerance)
+            yield from fit.lines() if stretch.has_corners else fit.arcs()
+
+
+def _bend(before: Piece, after: Piece) -> float:
+    """Returns the angle between the directions in which a piece ends and the next begins."""
+    (ax, ay), (bx, by) = direction(before, 1.0), direction(after, 0.0)
+    return abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
+
+
+def _crossing(p: Vec, u: Vec, q: Vec, v: Vec) -> Vec | None:
+    """Returns the place where a way on from `p` meets the way back from `q`; None if they do not."""
+    across = u[0] * v[1] - u[1] * v[0]
+    if abs(across) < 1e-6:
+        return None
+    dx, dy = q[0] - p[0], q[1] - p[1]
+    on, back = (dx * v[1] - dy * v[0]) / across, (dx * u[1] - dy * u[0]) / across
+    return (p[0] + on * u[0], p[1] + on * u[1]) if on >= 0 >= back else None
+
+
+class _Fit:
+    """Arcs for pieces that run on smoothly; the first starts and the last ends where it is told to."""
+
+    def __init__(self, pieces: Sequence[Piece], start: Vec, end: Vec, tolerance: float) -> None:
+        self._tolerance = (1 - _GRAIN) * tolerance
+        spots, self._at = [], list[tuple[Piece, float]]()
+        for piece in pieces:
+            count = _samples(piece, tolerance)
+            spots.append(points(piece, np.arange(count) / count))
+            self._at += [(piece, k / count) for k in range(count)]
+        self._at.append((pieces[-1], 1.0))
+        spots.append(np.array([point(pieces[-1], 1.0)]))
+        self._spots = np.concatenate(spots)
+        steps = np.hypot(*np.diff(self._spots, axis=0).T)
+        self._along = np.concatenate(([0.0], np.cumsum(steps)))
+        self._start, self._end = start, end
+
+    def arcs(self) -> Iterator[Piece]:
+        stack = [(0, len(self._spots) - 1)]
+        while stack:
+            i, j = stack.pop()
+            if (found := self._pair(i, j)) is not None:
+                yield from found
+                continue
+            half = int(np.searchsorted(self._along, (self._along[i] + self._along[j]) / 2))
+            half = min(max(half, i + 1), j - 1)
+            stack += [(half, j), (i, half)]
+
+    def lines(self) -> Iterator[Line]:
+        """Yields lines as long as they can be."""
+        last, i = len(self._spots) - 1, 0
+        while i < last:
+            j = i + 1
+            while j < last and self._is_near(
+                [Line(self._place(i), self._place(j + 1))], self._spots[i : j + 2]
+            ):
+                j += 1
+            yield Line(self._place(i), self._place(j))
+            i = j
+
+    def _place(self, k: int) -> Vec:
+        if k == 0:
+            return self._start
+        if k == len(self._spots) - 1:
+            return self._end
+        x, y = self._spots[k]
+        return float(x), float(y)
+
+    def _pair(self, i: int, j: int) -> list[Piece] | None:
+        """Returns the arcs for the samples from `i` to `j`; None if they are to be halved."""
+        start, end = self._place(i), self._place(j)
+        if j - i == 1 or self._along[j] - self._along[i] <= self._tolerance:
+            return [Line(start, end)] if start != end else []
+        found = _pair(start, direction(*self._at[i]), end, direction(*self._at[j]))
+        return found if found is not None and self._is_near(found, self._spots[i : j + 1]) else None
+
+    def _is_near(self, arcs: Sequence[Piece], spots: Floats) -> bool:
+        """Tells whether arcs are near a part of the curve, and it is near them."""
+        off = np.minimum.reduce([_distances(arc, spots) for arc in arcs])
+        if off.max() > self._tolerance:
+            return False
+        probes = np.concatenate([points(arc, _PROBES) for arc in arcs])
+        starts, ways = spots[:-1], np.diff(spots, axis=0)
+        square = np.maximum((ways**2).sum(axis=1), 1e-300)
+        between = probes[:, None, :] - starts
+        t = np.clip((between * ways).sum(axis=2) / square, 0, 1)
+        gaps = np.hypot(*np.moveaxis(between - t[..., None] * ways, 2, 0)).min(axis=1)
+        return bool(gaps.max() <= self._tolerance)
+
+
+def _samples(piece: Piece, tolerance: float) -> int:
+    """Returns the number of chords that depart from a piece by no more than a small part of a tolerance."""
+    if isinstance(piece, Line):
+        return 1
+    if isinstance(piece, Bezier):
+        p = np.array((piece.p0, piece.p1, piece.p2, piece.p3))
+        bend = float(np.hypot(*np.diff(p, n=2, axis=0).T).max())
+        count = math.sqrt(0.75 * bend / (_GRAIN * tolerance))
+    else:
+        radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
+        sweep = abs(round_range(piece)[1])
+        count = sweep * math.sqrt(radius / (8 * _GRAIN * tolerance))
+    return max(_FEWEST, min(_MOST, math.ceil(count)))
+
+
+def _pair(start: Vec, leaving: Vec, end: Vec, arriving: Vec) -> list[Piece] | None:
+    """Returns two arcs that meet smoothly (or a line), with these ends and unit directions; None if they
+    would go a long way round.
+
+    Each has tangents of one length d at its two ends: |v - d (a + b)| = 2 d for the way v between the ends.
+    """
+    vx, vy = end[0] - start[0], end[1] - start[1]
+    way = vx * vx + vy * vy
+    tx, ty = leaving[0] + arriving[0], leaving[1] + arriving[1]
+    a = 2 * (1 - leaving[0] * arriving[0] - leaving[1] * arriving[1])
+    b = 2 * (vx * tx + vy * ty)
+    below = b + math.sqrt(b * b + 4 * a * way)
+    if not way > 0 or not below > 1e-9 * math.sqrt(way):
+        return None
+    d = 2 * way / below
+    middle = (
+        (start[0] + end[0] + d * (leaving[0] - arriving[0])) / 2,
+        (start[1] + end[1] + d * (leaving[1] - arriving[1])) / 2,
+    )
+    first = _arc(start, leaving, middle)
+    second = _arc(end, (-arriving[0], -arriving[1]), middle)
+    if first is None or second is None:
+        return None
+    if isinstance(first, Line) and isinstance(second, Line):
+        return [Line(start, end)]
+    return [first, _back(second)]
+
+
+def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
+    """Returns the arc that leaves a point in a direction and leads to another."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    chord = math.hypot(dx, dy)
+    if chord == 0:
+        return None
+    sweep = 2 * math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
+    if abs(sweep) > _WIDEST:
+        return None
+    if abs(sweep) < 8 * _STRAIGHT:
+        return Line(start, end)
+    radius = chord / (2 * math.sin(sweep / 2))  # to the left, if positive
+    center = start[0] - radius * way[1], start[1] + radius * way[0]
+    return Arc(center, abs(radius), start, end, sweep)
+
+
+def _back(piece: Arc | Line) -> Piece:
+    if isinstance(piece, Line):
+        return Line(piece.end, piece.start)
+    return Arc(piece.center, piece.radius, piece.end, piece.start, -piece.sweep)
+
+
+def _distances(piece: Piece, spots: Floats) -> Floats:
+    """Returns the distance of each spot from a line or an arc."""
+    (x0, y0), (x1, y1) = ends(piece)
+    off: Floats
+    if isinstance(piece, Line):
+        way = np.array((x1 - x0, y1 - y0))
+        from_start = spots - (x0, y0)
+        t = np.clip(from_start @ way / max(float(way @ way), 1e-300), 0, 1)
+        off = np.hypot(*(from_start - np.multiply.outer(t, way)).T)
+        return off
+    assert isinstance(piece, Arc)
+    from_center = spots - piece.center
+    turned = np.arctan2(from_center[:, 1], from_center[:, 0]) - piece.start_angle
+    turned = np.mod(turned * math.copysign(1.0, piece.sweep), TAU)
+    off = np.abs(np.hypot(*from_center.T) - piece.radius)
+    at_ends = np.minimum(np.hypot(*(spots - (x0, y0)).T), np.hypot(*(spots - (x1, y1)).T))
+    off = np.where(turned <= abs(piece.sweep), off, at_ends)
+    return off
