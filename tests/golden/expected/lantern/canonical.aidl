@@ -5,6 +5,12 @@ assembly lantern {
     let w = 0.42 * height
     let tall = 0.38 * height
 
+    @color("khaki")
+    @opacity(0.4)
+    @stroke(none)
+    @detached
+    solid light { glow = circle(radius: 0.8 * w) }
+
     @color("dimgray")
     @detached
     solid handle {
@@ -17,7 +23,8 @@ assembly lantern {
         glass = path(
             from: (0, 0),
             line_to(0.26 * w, 0),
-            bezier_to((0.6 * w, 0.3 * tall), (0.5 * w, 0.8 * tall), (0.24 * w, tall)),
+            smooth_to((0.46 * w, 0.4 * tall), heading: 90deg),
+            smooth_to((0.24 * w, tall)),
             line_to(0, tall),
             mirrored()
         )
@@ -39,6 +46,11 @@ assembly lantern {
         drawing label { name = text("STORM", height: 0.12 * w) }
         constrain label.name.center == body.center
     }
+
+    @color("black")
+    @opacity(0.2)
+    @stroke(none)
+    solid shade { side = difference(tank.body, copy(tank.body, by: (-0.12 * w, 0))) }
 
     @color("firebrick")
     solid chimney {
@@ -73,6 +85,7 @@ assembly lantern {
         burner.on_top_of(tank, align: center)
         globe.on_top_of(burner, align: center)
         chimney.on_top_of(globe, align: center)
+        light.glow.center == globe.center
         flame.bottom == burner.top
         flame.center_x == burner.center_x
         right_wire.way.corner[0].y == tank.body.top - 4

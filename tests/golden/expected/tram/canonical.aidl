@@ -33,13 +33,12 @@ assembly tram {
         way = path(from: (-20, 0), line_to(22, 24), line_to(-4, 48))
         arms = thick(way, 3)
         shoe = rounded_rectangle(center: (-4, 50), width: 56, height: 5, radius: 2)
-        foot = rectangle(center: (-10, 0), width: 50, height: 6)
     }
 
     @color(paint)
     solid body {
         hull = rounded_rectangle(width: length, height: 92, radius: 16)
-        construction skirt = rectangle(width: length, height: 26)
+        construction skirt = rectangle(width: length - 32, height: 26)
         constrain skirt.bottom_center == hull.bottom_center
 
         @color(darker(paint))
