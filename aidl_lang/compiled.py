@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
-from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, has_errors
 from aidl_lang.common.drawing_time import within
 from aidl_lang.common.records import record
-from aidl_lang.common.source import Span
+from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
+    from aidl_lang.building.front import Settings
+    from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options
     from aidl_lang.export.comparison import Comparison
@@ -23,6 +25,23 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
     from aidl_lang.solver.solution import StageReport
+
+
+def _never(span: Span) -> bool:
+    return False
+
+
+_LEFT_BEHIND: dict[str, object] = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None}
+
+
+@record()
+class Asked:
+    """What a program was compiled of."""
+
+    source: SourceFile
+    world: World | None
+    params: Mapping[str, str | float | bool]
+    settings: Settings
 
 
 @record(frozen=False)
@@ -40,13 +59,22 @@ class Compiled:
     """The attempts of the solver, in order: the path of a structure, and one stage for it."""
     conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
     """Works out, for a program that does not solve, the constraints that contradict each other."""
-    follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
+    follows: Callable[[Span], bool] = field(default=_never, repr=False)
     """Tells, for a program that solves, whether the constraint at a place follows from the rest."""
     built: Model | None = field(default=None, repr=False)
     """The structure tree with its expressions, whose solved values `evaluate` gives."""
     evaluate: Evaluator | None = field(default=None, repr=False)
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
+    asked: Asked | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns all but what works on the problem behind the solution, which a pickle does without."""
+        return {name: value for name, value in vars(self).items() if name not in _LEFT_BEHIND}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(_LEFT_BEHIND)
+        vars(self).update(state)
 
     @property
     def ok(self) -> bool:
@@ -56,7 +84,7 @@ class Compiled:
         """Returns the drawing in the format of a file suffix (`.svg`), with the notes on writing it.
 
         Raises KeyError for an unknown suffix, `ExportError` if the format cannot hold the drawing, and
-        ValueError if there is nothing to export.
+        AidlError if there is nothing to export.
         """
         from aidl_lang.export import ExportError, Job, Options, export
 
@@ -78,7 +106,7 @@ class Compiled:
     def surveyed(self, paths: Sequence[str] = (), densities: Mapping[str, float] | None = None) -> Survey:
         """Measures the whole, and the parts at some paths or else each body.
 
-        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError if
+        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and AidlError if
         there is nothing to measure.
         """
         from aidl_lang.geometry.survey import survey
@@ -96,7 +124,7 @@ class Compiled:
             return measured(model, drawing, path, densities)
 
     def compared(self, after: Compiled) -> Comparison:
-        """Compares with a later version. Raises TooLongError, and ValueError if there is no drawing."""
+        """Compares with a later version. Raises TooLongError, and AidlError if there is no drawing."""
         from aidl_lang.export.comparison import Version, compare
 
         with within(self.limit, "comparing"):
@@ -105,5 +133,10 @@ class Compiled:
     @property
     def _finished(self) -> tuple[SolvedModel, Drawing]:
         if self.model is None or self.drawing is None:
-            raise ValueError("the program is wrong, so there is no drawing; see `diagnostics`")
+            raise self.refused("the program is wrong, so there is no drawing")
         return self.model, self.drawing
+
+    def refused(self, what: str) -> AidlError:
+        """Returns what to raise, with the errors, if something cannot be done for them."""
+        wrong = [d for d in self.diagnostics if d.is_error]
+        return AidlError(*wrong, message=": ".join([what, *(d.message for d in wrong[:1])]))

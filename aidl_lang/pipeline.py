@@ -23,7 +23,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Compiled
+from aidl_lang.compiled import Asked, Compiled
 from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.syntax import ast
@@ -196,8 +196,18 @@ def compile(
         if has_errors(diagnostics):
             with watch("fixes"):
                 diagnostics = tries.answered(diagnostics, diagnostics, built.model)
-            return Compiled("wrong", diagnostics, watch.seconds, known)
-        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
+            made = Compiled("wrong", diagnostics, watch.seconds, known)
+        else:
+            made = _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
+    made.asked = Asked(source, world, params or {}, settings)
+    return made
+
+
+def again(compiled: Compiled, params: Mapping[str, str | float | bool]) -> Compiled:
+    """Takes a program through all stages once more with some params set; the others stay as they were."""
+    asked = compiled.asked
+    assert asked is not None
+    return compile(asked.source, asked.world, {**asked.params, **params}, asked.settings)
 
 
 def placed(
@@ -395,6 +405,7 @@ __all__ = [
     "Front",
     "Knob",
     "Settings",
+    "again",
     "check",
     "compile",
     "formatted",
