@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.model import Knob, Model
@@ -17,6 +17,7 @@ from aidl_lang.common.source import SourceFile, Span
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.front import Settings
+    from aidl_lang.checking.allowing import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options
@@ -67,6 +68,7 @@ class Compiled:
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)
+    allowances: tuple[Allowance, ...] = ()
 
     def __getstate__(self) -> dict[str, object]:
         """Returns all but what works on the problem behind the solution, which a pickle does without."""
@@ -93,11 +95,12 @@ class Compiled:
         )
         try:
             with limited_to(self.limit):
-                return export(job, suffix)
+                made = export(job, suffix)
         except OutOfTime:
             hint = "write a format that holds less: pictures without `--show`, outlines alone"
             message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
             raise ExportError("E0955", message, hint) from None
+        return replace(made, notes=self._audible(made.notes))
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
         """Returns the content of the file alone (see `exported`)."""
@@ -113,7 +116,8 @@ class Compiled:
 
         model, drawing = self._finished
         with within(self.limit, "measuring"):
-            return survey(model, drawing, paths, densities)
+            found = survey(model, drawing, paths, densities)
+        return replace(found, notes=self._audible(found.notes))
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """Measures the part at a path, or the whole. Raises as `surveyed` does."""
@@ -129,6 +133,14 @@ class Compiled:
 
         with within(self.limit, "comparing"):
             return compare(Version(*self._finished), Version(*after._finished))
+
+    def _audible(self, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Returns the notes on a use of the drawing that the program does not want unsaid."""
+        if not self.allowances:
+            return tuple(notes)
+        from aidl_lang.checking.allowing import audible
+
+        return tuple(audible(notes, self.allowances))
 
     @property
     def _finished(self) -> tuple[SolvedModel, Drawing]:

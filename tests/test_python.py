@@ -160,7 +160,7 @@ def test_options_are_those_of_the_command(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_all_sheets_are_written(tmp_path: Path) -> None:
     row = aidl_lang.compile(
-        "assembly row { solid a { s = square(90) }\n solid b at fixed((200, 0)) { s = square(90) } }"
+        "assembly row { solid a { s = rectangle(90, 90) }\n solid b at (200, 0) { s = rectangle(90, 90) } }"
     )
     saved = row.save(tmp_path / "row.dxf", sheet="100x100")
     assert [path.name for path in saved.paths] == ["row.dxf", "row-2.dxf"]
