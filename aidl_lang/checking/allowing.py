@@ -89,7 +89,8 @@ def _unknown(code: str, place: Span) -> Diagnostic:
     if code in pages.codes():
         message = f"`{code}` is an error, and only notes and warnings can be allowed"
         return Diagnostic("E0216", message, place, hints=(f"mend it: `aidl explain {code}` tells how",))
-    near = [c for c in pages.near(code.upper()) if not c.startswith("E")][:1]
+    alike = [c for c in (code.upper(), *pages.near(code.upper())) if c in pages.codes() and c[0] != "E"]
+    near = sorted(alike, key=lambda c: c[0] != code[:1].upper())[:1]
     return Diagnostic(
         "E0216",
         f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else ""),
