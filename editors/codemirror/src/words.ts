@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "behind", "in_front"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "behind", "in_front", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1013,6 +1013,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@orientation", "title": "how a part stands", "body": "@orientation(${1:front})$0", "place": "attribute"},
   {"prefix": "@elevation", "title": "how high a part lies", "body": "@elevation(${1:18mm})$0", "place": "attribute"},
   {"prefix": "@note", "title": "a note on the drawing", "body": "@note(\"${1:glue here}\")$0", "place": "attribute"},
+  {"prefix": "@allow", "title": "a note or warning not to be told", "body": "@allow(\"${1:N0602}\")$0", "place": "attribute"},
   {"prefix": "@detached", "title": "a part that touches no other", "body": "@detached$0", "place": "attribute"},
   {"prefix": "gap", "title": "one part above another", "body": "${1:a}.above(${2:b}, gap: ${3:2})$0", "place": "constraints"},
   {"prefix": "centered", "title": "one part in the middle of another", "body": "${1:a}.centered_in(${2:b})$0", "place": "constraints"},
