@@ -7,21 +7,25 @@
     model.save("plate.svg")
 
 `check` finds what is wrong without solving, `diff` tells what differs between two models, `format` prints the
-canonical form.
+canonical form. `docs/python.md` shows all of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from errno import ENOENT
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from aidl_lang.common.diagnostics import Diagnostic, Severity
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Knob
+    from aidl_lang.common.world import World
     from aidl_lang.export import Options
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
@@ -29,8 +33,10 @@ if TYPE_CHECKING:
     from aidl_lang.pipeline import Compiled, Settings
 
 __all__ = [
+    "AidlError",
     "Diagnostic",
     "Model",
+    "Saved",
     "Severity",
     "SourceFile",
     "Span",
@@ -42,8 +48,18 @@ __all__ = [
 ]
 
 
+class Saved(NamedTuple):
+    """The files that were written, and what there is to tell about them."""
+
+    paths: tuple[Path, ...]
+    notes: tuple[Diagnostic, ...]
+
+
 class Model:
-    """A compiled program: its solved structures, how well each constraint holds, and its drawings."""
+    """A compiled program: its solved structures, how well each constraint holds, and its drawings.
+
+    Models can be copied and pickled. A notebook shows the drawing, and what there is to tell of it.
+    """
 
     def __init__(self, compiled: Compiled) -> None:
         self._compiled = compiled
@@ -60,18 +76,29 @@ class Model:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
+        """The errors, warnings and notes, in order of place."""
         return self._compiled.diagnostics
 
     @property
-    def params(self) -> tuple[Knob, ...]:
-        """The knobs of the program with their ranges and values."""
-        return self._compiled.knobs
+    def params(self) -> dict[str, Knob]:
+        """The knobs of the program by path, each with its `value`, `range`, `step`, `unit` and `doc`."""
+        return {knob.path: knob for knob in self._compiled.knobs}
+
+    def with_params(
+        self, by_path: Mapping[str, str | float | bool] | None = None, /, **params: str | float | bool
+    ) -> Model:
+        """Solves the same program anew with some knobs set: `with_params(width=120)`, and by path those of
+        parts: `with_params({"lid.height": 12})`. The others stay as they are in this model.
+        """
+        from aidl_lang import pipeline
+
+        return Model(pipeline.again(self._compiled, {**(by_path or {}), **params}))
 
     @property
     def solved(self) -> SolvedModel:
-        """The solved model in numbers. Raises ValueError when there is none."""
+        """The solved model in numbers. Raises AidlError when there is none."""
         if self._compiled.model is None:
-            raise ValueError("the program is wrong, so nothing was solved; see `diagnostics`")
+            raise self._compiled.refused("the program is wrong, so nothing was solved")
         return self._compiled.model
 
     @property
@@ -90,18 +117,24 @@ class Model:
         return self._compiled.timings
 
     def __getitem__(self, path: str) -> SolvedStructure:
-        """Returns a structure by its dotted path, with or without the root's name. Raises KeyError."""
+        """Returns a structure by its dotted path, with or without the root's name. Raises an AidlError that
+        is a KeyError too.
+        """
         root = self.solved.root
         found = root.find(path) or root.find(f"{root.path}.{path}")
         if found is None:
-            raise KeyError(path)
+            from aidl_lang.common.names import nearest
+            from aidl_lang.geometry.survey import NothingThereError
+
+            known = [structure.path for structure in root.walk()]
+            raise NothingThereError(path, "", nearest(path, known), known)
         return found
 
     def measure(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """Measures a structure, a geometry or the whole: area, inertia, walls, gaps, mass.
 
-        `densities` adds to the known ones, in kg/m³. Raises KeyError if there is no area to measure, and
-        ValueError if the program is wrong or measuring takes longer than its settings allow.
+        `densities` adds to the known ones, in kg/m³. Raises AidlError if there is no area to measure (also a
+        KeyError), if the program is wrong, and if measuring takes longer than its settings allow.
         """
         return self._compiled.measured(path, densities)
 
@@ -118,42 +151,122 @@ class Model:
         options = Options(timings=self.timings if timings else None)
         return self._compiled.export(".json", options).decode()
 
-    def export(self, suffix: str, options: Options | None = None) -> bytes:
-        """Returns the drawing in the format of a file suffix (`.dxf`).
+    def export(self, suffix: str, options: Options | None = None, **asked: object) -> bytes:
+        """Returns the drawing in the format of a file suffix (`.dxf`), with the options of `aidl compile` as
+        keywords or as a whole.
 
-        Raises KeyError for an unknown suffix, and ValueError if the format cannot hold the drawing.
+        Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and if there
+        is more than one file to it, as of several sheets.
         """
-        return self._compiled.export(suffix, options)
+        from aidl_lang.export import suffix_of
+        from aidl_lang.tools.cli.keywords import read
 
-    def save(self, path: str | Path) -> None:
-        """Writes the drawing in the format of the file's suffix; raises as `export` does."""
-        path = Path(path)
-        path.write_bytes(self.export(path.suffix))
+        wanted = suffix_of("", suffix)
+        made = self._compiled.exported(wanted, options or read(asked, self._compiled).options)
+        if made.further:
+            raise AidlError(
+                Diagnostic(
+                    "E0914",
+                    f"{len(made.further) + 1} files are no single content",
+                    hints=("`save` writes them beside each other",),
+                )
+            )
+        return made.data
+
+    def save(self, path: str | Path, **options: object) -> Saved:
+        """Writes the drawing in the format of the file's suffix, with the options of `aidl compile` as
+        keywords: `save("plate.dxf", kerf=0.15)`, `save("plate.pdf", theme="blueprint", dimension=True)`.
+        Further sheets and pages go into files beside it. Returns what was written.
+
+        Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and for a
+        model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
+        """
+        from aidl_lang.export import file_names, suffix_of
+        from aidl_lang.tools.cli import files
+        from aidl_lang.tools.cli.keywords import read
+
+        asked = read(options, self._compiled)
+        suffix = suffix_of(str(path), asked.format)
+        if not (self.ok or asked.best_effort):
+            raise self._compiled.refused(
+                "the model is not ok, so nothing is written without `best_effort=True`"
+            )
+        made = self._compiled.exported(suffix, asked.options)
+        if not (folder := Path(path).parent).is_dir():
+            raise FileNotFoundError(ENOENT, "there is no such folder", str(folder))
+        contents = (made.data, *made.further)
+        paths = tuple(map(Path, file_names(str(path), len(contents))))
+        for each, data in zip(paths, contents, strict=True):
+            files.replace(each, data)
+        return Saved(paths, made.notes)
 
     def _repr_svg_(self) -> str | None:
+        """Returns the drawing for notebooks, as far as the solver came."""
         return self.to_svg() if self._compiled.model is not None else None
+
+    def _repr_html_(self) -> str | None:
+        """Returns the drawing with what there is to tell of it; None if there is nothing, as then the drawing
+        alone is shown.
+        """
+        if not self.diagnostics:
+            return None
+        from base64 import b64encode
+        from html import escape
+
+        from aidl_lang.common.render import render
+
+        told = escape("\n".join(map(render, self.diagnostics)))
+        drawing = self._repr_svg_()
+        data = b64encode((drawing or "").encode()).decode()
+        picture = f'<img alt="the drawing" src="data:image/svg+xml;base64,{data}">' if drawing else ""
+        return f"{picture}<pre>{told}</pre>"
 
     def __repr__(self) -> str:
         problems = sum(d.is_error for d in self.diagnostics)
         return f"<aidl_lang.Model {self.status}, {problems} error{'s' * (problems != 1)}>"
 
 
-def _source(text_or_path: str | Path) -> tuple[SourceFile, Path | None]:
-    if isinstance(text_or_path, Path):
-        return SourceFile(str(text_or_path), text_or_path.read_text("utf-8")), text_or_path.parent
-    return SourceFile("<text>", text_or_path), None
+_PROGRAMS = ".aidl"
+
+
+def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
+    """Returns a program, and the files that it can import. A text on one line that ends in `.aidl` is no
+    program but the name of one.
+    """
+    from aidl_lang.common.world import DiskWorld, KeptWorld
+
+    if isinstance(text_or_path, str):
+        if "\n" in text_or_path or not text_or_path.strip().lower().endswith(_PROGRAMS):
+            return SourceFile("<text>", text_or_path), None
+        text_or_path = Path(text_or_path.strip())
+    if not isinstance(text_or_path, Path):
+        raise TypeError(f"a program is a str, or a Path to it, not {type(text_or_path).__name__}")
+    if "{" in (name := str(text_or_path)) and not os.path.exists(name):
+        message = "this Path holds a program, not the name of a file"
+        raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
+    from aidl_lang.tools.cli import files
+
+    with _as_own():
+        text = files.decoded(text_or_path.read_bytes(), f"`{name}`")
+    return SourceFile(name, text), KeptWorld(DiskWorld(text_or_path.parent))
+
+
+@contextmanager
+def _as_own() -> Iterator[None]:
+    """Raises what the command line refuses as AidlError."""
+    from aidl_lang.tools.cli.report import UseError
+
+    try:
+        yield
+    except UseError as reason:
+        raise AidlError(reason.diagnostic) from None
 
 
 def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, without solving it. A `Path` is read, a string is the program
-    itself.
-    """
+    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`."""
     from aidl_lang import pipeline
-    from aidl_lang.common.world import DiskWorld
 
-    source, root = _source(text)
-    world = DiskWorld(root) if root is not None else None
-    return pipeline.check(source, world, settings or pipeline.Settings())
+    return pipeline.check(*_read(text), settings or pipeline.Settings())
 
 
 def compile(
@@ -161,32 +274,31 @@ def compile(
     params: Mapping[str, str | float | bool] | None = None,
     settings: Settings | None = None,
 ) -> Model:
-    """Compiles and solves a program. A `Path` is read, a string is the program itself.
+    """Compiles and solves a program. A string is the program itself; a `Path` is read, and so is a string on
+    one line that ends in `.aidl`.
 
-    `params` sets knobs by path, as `{"width": 200}`. Never raises for what a program says.
+    `params` sets knobs by path, as `{"width": 200}`. Never raises for what a program says. Raises OSError for
+    a file that cannot be read, and AidlError for one that is no text.
     """
     from aidl_lang import pipeline
-    from aidl_lang.common.world import DiskWorld
 
-    source, root = _source(text_or_path)
-    world = DiskWorld(root) if root is not None else None
-    return Model(pipeline.compile(source, world, params, settings or pipeline.Settings()))
+    return Model(pipeline.compile(*_read(text_or_path), params, settings or pipeline.Settings()))
 
 
 def diff(before: Model, after: Model) -> Comparison:
     """Compares two models: what moved, turned, grew, appeared and vanished.
 
-    `str` of the comparison is a text for a reader, `to_dict` the same as data. Raises ValueError if a program
+    `str` of the comparison is a text for a reader, `to_dict` the same as data. Raises AidlError if a program
     is wrong, or comparing takes longer than its settings allow.
     """
     return before._compiled.compared(after._compiled)
 
 
 def format(text: str) -> str:
-    """Returns the canonical form of a program. Raises ValueError if it does not parse."""
+    """Returns the canonical form of a program. Raises AidlError, with all mistakes, if it does not parse."""
     from aidl_lang import pipeline
 
     printed, diagnostics = pipeline.formatted(SourceFile("<text>", text))
     if printed is None:
-        raise ValueError(next(d.message for d in diagnostics if d.is_error))
+        raise AidlError(*(d for d in diagnostics if d.is_error))
     return printed

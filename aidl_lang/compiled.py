@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
-from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, has_errors
 from aidl_lang.common.drawing_time import within
 from aidl_lang.common.records import record
-from aidl_lang.common.source import Span
+from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
+    from aidl_lang.building.front import Settings
+    from aidl_lang.checking.allowing import Allowance
+    from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options, Progress
     from aidl_lang.export.comparison import Comparison
@@ -23,6 +26,23 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
     from aidl_lang.solver.solution import StageReport
+
+
+def _never(span: Span) -> bool:
+    return False
+
+
+_LEFT_BEHIND: dict[str, object] = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None}
+
+
+@record()
+class Asked:
+    """What a program was compiled of."""
+
+    source: SourceFile
+    world: World | None
+    params: Mapping[str, str | float | bool]
+    settings: Settings
 
 
 @record(frozen=False)
@@ -40,13 +60,23 @@ class Compiled:
     """The attempts of the solver, in order: the path of a structure, and one stage for it."""
     conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
     """Works out, for a program that does not solve, the constraints that contradict each other."""
-    follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
+    follows: Callable[[Span], bool] = field(default=_never, repr=False)
     """Tells, for a program that solves, whether the constraint at a place follows from the rest."""
     built: Model | None = field(default=None, repr=False)
     """The structure tree with its expressions, whose solved values `evaluate` gives."""
     evaluate: Evaluator | None = field(default=None, repr=False)
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
+    asked: Asked | None = field(default=None, repr=False)
+    allowances: tuple[Allowance, ...] = ()
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns all but what works on the problem behind the solution, which a pickle does without."""
+        return {name: value for name, value in vars(self).items() if name not in _LEFT_BEHIND}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(_LEFT_BEHIND)
+        vars(self).update(state)
 
     @property
     def ok(self) -> bool:
@@ -56,7 +86,7 @@ class Compiled:
         """Returns the drawing in the format of a file suffix (`.svg`), with the notes on writing it.
 
         Raises KeyError for an unknown suffix, `ExportError` if the format cannot hold the drawing, and
-        ValueError if there is nothing to export.
+        AidlError if there is nothing to export.
         """
         return self.exporting(options)(suffix)
 
@@ -75,11 +105,12 @@ class Compiled:
         def write(suffix: str) -> Exported:
             try:
                 with limited_to(self.limit):
-                    return exporter.write(suffix)
+                    made = exporter.write(suffix)
             except OutOfTime:
                 hint = "write a format that holds less: pictures without `--show`, outlines alone"
                 message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
                 raise ExportError("E0955", message, hint) from None
+            return replace(made, notes=self._audible(made.notes))
 
         return write
 
@@ -90,14 +121,15 @@ class Compiled:
     def surveyed(self, paths: Sequence[str] = (), densities: Mapping[str, float] | None = None) -> Survey:
         """Measures the whole, and the parts at some paths or else each body.
 
-        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError if
+        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and AidlError if
         there is nothing to measure.
         """
         from aidl_lang.geometry.survey import survey
 
         model, drawing = self._finished
         with within(self.limit, "measuring"):
-            return survey(model, drawing, paths, densities)
+            found = survey(model, drawing, paths, densities)
+        return replace(found, notes=self._audible(found.notes))
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """Measures the part at a path, or the whole. Raises as `surveyed` does."""
@@ -108,14 +140,27 @@ class Compiled:
             return measured(model, drawing, path, densities)
 
     def compared(self, after: Compiled) -> Comparison:
-        """Compares with a later version. Raises TooLongError, and ValueError if there is no drawing."""
+        """Compares with a later version. Raises TooLongError, and AidlError if there is no drawing."""
         from aidl_lang.export.comparison import Version, compare
 
         with within(self.limit, "comparing"):
             return compare(Version(*self._finished), Version(*after._finished))
 
+    def _audible(self, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Returns the notes on a use of the drawing that the program does not want unsaid."""
+        if not self.allowances:
+            return tuple(notes)
+        from aidl_lang.checking.allowing import audible
+
+        return tuple(audible(notes, self.allowances))
+
     @property
     def _finished(self) -> tuple[SolvedModel, Drawing]:
         if self.model is None or self.drawing is None:
-            raise ValueError("the program is wrong, so there is no drawing; see `diagnostics`")
+            raise self.refused("the program is wrong, so there is no drawing")
         return self.model, self.drawing
+
+    def refused(self, what: str) -> AidlError:
+        """Returns what to raise, with the errors, if something cannot be done for them."""
+        wrong = [d for d in self.diagnostics if d.is_error]
+        return AidlError(*wrong, message=": ".join([what, *(d.message for d in wrong[:1])]))

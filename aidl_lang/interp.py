@@ -23,6 +23,7 @@ from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits, Interpreter, Stop
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import NOTHING, Namespace
+from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
 from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.diagnostics import Diagnostic
@@ -35,12 +36,13 @@ from aidl_lang.typecheck import Program
 @record()
 class Interpretation:
     """The model that a program builds; `written` holds the values, at the first guesses, of the expressions
-    that break a rule of validity.
+    that break a rule of validity, `allowances` what is not to be told of it.
     """
 
     model: Model
     diagnostics: list[Diagnostic]
     written: Mapping[ast.Node, tuple[float, float] | float]
+    allowances: tuple[Allowance, ...] = ()
 
 
 def interpret(
@@ -69,7 +71,7 @@ def interpret(
         root = it.root or _nothing()
     constraints = anchored(it.constraints)
     model = Model(root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
-    return Interpretation(model, it.diagnostics, it.written)
+    return Interpretation(model, it.diagnostics, it.written, program.resolution.allowances)
 
 
 def _speaks_of_rotation(module: ast.Module) -> bool:

@@ -14,6 +14,7 @@ from aidl_lang import parser
 from aidl_lang.building.front import Front, Settings, build, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
+from aidl_lang.checking.allowing import IDLE, Allowance, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
@@ -23,7 +24,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Compiled
+from aidl_lang.compiled import Asked, Compiled
 from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.syntax import ast
@@ -138,7 +139,8 @@ def check(
 ) -> list[Diagnostic]:
     """Returns every diagnostic of a program that needs no solving."""
     with working:
-        return build(source, world, {}, settings, Stopwatch())[1]
+        built, found = build(source, world, {}, settings, Stopwatch())
+    return audible(found, built.allowances)
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
@@ -170,7 +172,7 @@ def knobs(
     """Returns the `param`s of a program in order of writing."""
     with working:
         built, diagnostics = build(source, world, {}, settings, Stopwatch())
-    return tuple(built.model.knobs), diagnostics
+    return tuple(built.model.knobs), audible(diagnostics, built.allowances)
 
 
 def compile(
@@ -196,8 +198,19 @@ def compile(
         if has_errors(diagnostics):
             with watch("fixes"):
                 diagnostics = tries.answered(diagnostics, diagnostics, built.model)
-            return Compiled("wrong", diagnostics, watch.seconds, known)
-        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
+            made = Compiled("wrong", audible(diagnostics, built.allowances), watch.seconds, known)
+        else:
+            made = _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
+    made.asked = Asked(source, world, params or {}, settings)
+    made.allowances = built.allowances
+    return made
+
+
+def again(compiled: Compiled, params: Mapping[str, str | float | bool]) -> Compiled:
+    """Takes a program through all stages once more with some params set; the others stay as they were."""
+    asked = compiled.asked
+    assert asked is not None
+    return compile(asked.source, asked.world, {**asked.params, **params}, asked.settings)
 
 
 def placed(
@@ -330,7 +343,8 @@ def _finish(
                 built, lowered, solution, freedom, troubles, watch
             )
     except TooLongError as reason:
-        return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
+        found = [*audible(diagnostics, built.allowances), reason.diagnostic]
+        return Compiled("wrong", ordered(found), watch.seconds, known)
     if settings.strict and troubles.given:
         from aidl_lang.explaining.giving import as_error
 
@@ -346,7 +360,7 @@ def _finish(
 
                 told = verified(told, [*diagnostics, *told], tried())
             told = tries.answered(told, [*diagnostics, *told], built.model)
-    everything = ordered([*diagnostics, *told])
+    everything = _unsilenced(ordered([*diagnostics, *told]), built.allowances, settings, solution)
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
     return Compiled(
         model.status,
@@ -363,6 +377,23 @@ def _finish(
         evaluator,
         settings.drawing,
     )
+
+
+def _unsilenced(
+    found: list[Diagnostic], allowed: Sequence[Allowance], settings: Settings, solution: Solution
+) -> list[Diagnostic]:
+    """Returns what is to be told of all that was found, and which allowances are idle, if all was found that
+    there is.
+    """
+    from aidl_lang.solver import Status
+
+    if not allowed:
+        return found
+    idle_notes: list[Diagnostic] = []
+    if settings.solving.explain and solution.status is Status.SOLVED and not has_errors(found):
+        idle_notes = idle(found, [each for each in allowed if each.code != IDLE])
+        idle_notes += idle(idle_notes, [each for each in allowed if each.code == IDLE])
+    return ordered(audible([*found, *idle_notes], allowed))
 
 
 def _drawn(
@@ -395,6 +426,7 @@ __all__ = [
     "Front",
     "Knob",
     "Settings",
+    "again",
     "check",
     "compile",
     "formatted",

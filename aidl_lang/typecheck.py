@@ -297,6 +297,6 @@ class Checker:
 
     def _attributes(self, attributes: tuple[ast.Attribute, ...]) -> None:
         for attribute in attributes:
-            is_order = word_meant(attribute.name.text, STACKING) is not None
-            for argument in () if is_order else attribute.arguments:
+            is_named = word_meant(attribute.name.text, (*STACKING, ast.ALLOW)) is not None
+            for argument in () if is_named else attribute.arguments:
                 self.infer.known(argument.value, f"the argument of `@{attribute.name.text}`")

@@ -97,7 +97,7 @@ def _read(
     """Yields attributes with the values of their arguments; those of order are read later."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
-        if name is None:
+        if name is None or name == ast.ALLOW:
             continue
         values: list[Value] = []
         for argument in attribute.arguments if name not in STACKING else ():

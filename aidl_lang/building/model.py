@@ -525,6 +525,11 @@ class Knob:
     doc: str | None
     span: Span | None = field(default=None, compare=False)
 
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The least and the greatest value, if it has a range."""
+        return None if self.low is None or self.high is None else (self.low, self.high)
+
 
 @record(frozen=False, eq=False)
 class Model:

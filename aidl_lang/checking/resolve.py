@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from aidl_lang.checking.allowing import allowances
 from aidl_lang.checking.builtins import ATTRIBUTES, WORDED, is_word
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving import complaints
@@ -56,7 +57,8 @@ def resolve(module: ast.Module, world: World | None, library: Library) -> Resolu
     resolution.enter_library = Resolver(resolution, is_library=True).of_library
     for each in modules:
         Resolver(resolution).module(each, loaded)
-    resolution.diagnostics = ordered(resolution.diagnostics)
+    resolution.allowances, unknown = allowances(modules)
+    resolution.diagnostics = ordered([*resolution.diagnostics, *unknown])
     return resolution
 
 
@@ -269,7 +271,7 @@ class Resolver:
                     hints=() if like else (complaints.list_of("attributes are ", ATTRIBUTES, "@"),),
                     fix=complaints.respell(attribute.name, like),
                 )
-            for argument in attribute.arguments:
+            for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():
                 value = argument.value
                 # `@orientation(front)`, even if a part has that name
                 is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))

@@ -80,6 +80,33 @@ class Diagnostic:
         return self.severity is Severity.ERROR
 
 
+class AidlError(ValueError):
+    """Raised for what cannot be done, with the diagnostics that say why and what to do about it. The headline
+    of the first is the message if there is no other; its hints are printed below a traceback.
+    """
+
+    def __init__(self, *diagnostics: Diagnostic, message: str = "") -> None:
+        super().__init__(message or diagnostics[0].message)
+        self.diagnostics = diagnostics
+        for hint in diagnostics[0].hints if diagnostics else ():
+            self.add_note(f"hint: {hint}")
+
+    @property
+    def diagnostic(self) -> Diagnostic:
+        """The first of the diagnostics."""
+        return self.diagnostics[0]
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _error_again, (type(self), self.diagnostics, str(self))
+
+
+def _error_again(kind: type[AidlError], diagnostics: tuple[Diagnostic, ...], message: str) -> AidlError:
+    """Returns an unpickled error of a kind that was made of other arguments."""
+    made = kind.__new__(kind)
+    AidlError.__init__(made, *diagnostics, message=message)
+    return made
+
+
 MOST_ERRORS = 100
 """Errors of a program that are reported. A stage may stop looking once it has found one more than these."""
 

@@ -6,24 +6,25 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from aidl_lang.common.cancelling import OutOfTime, limited_to
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.source import Span
 
 
-class TooLongError(ValueError):
+class TooLongError(AidlError):
     """Raised when working on a drawing takes too long, with a diagnostic that names the work and, if it is
     known, the part of the program to blame.
     """
 
     def __init__(self, doing: str, seconds: float, span: Span | None = None, label: str = "") -> None:
-        self.diagnostic = Diagnostic(
-            "E0805",
-            f"{doing} what this program says takes more than {seconds:g} seconds",
-            span,
-            label,
-            hints=("it has too many curves, or too many that cross; the limit is a setting of the API",),
+        super().__init__(
+            Diagnostic(
+                "E0805",
+                f"{doing} what this program says takes more than {seconds:g} seconds",
+                span,
+                label,
+                hints=("it has too many curves, or too many that cross; the limit is a setting of the API",),
+            )
         )
-        super().__init__(self.diagnostic.message)
 
 
 @contextmanager

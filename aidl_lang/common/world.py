@@ -105,3 +105,22 @@ class DiskWorld:
             raise
         except (OSError, ValueError, RuntimeError):  # no permission, a NUL in the name, a loop of links
             raise FileError(path, ReadFailure.UNREADABLE) from None
+
+
+class KeptWorld:
+    """The files of another world, each read once and kept as it was then, also in a pickle, which leaves the
+    other world behind.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._texts: dict[str, str] = {}
+
+    def read(self, path: str) -> str:
+        wanted = normalize(path)
+        if wanted not in self._texts:
+            self._texts[wanted] = self._world.read(path)
+        return self._texts[wanted]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"_world": MemoryWorld({}), "_texts": self._texts}

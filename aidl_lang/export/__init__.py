@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from importlib.util import find_spec
+from pathlib import PurePath
 from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry.arcs import TOLERANCE
 from aidl_lang.geometry.drawing import Drawing
@@ -87,12 +88,11 @@ class Exported:
     notes: tuple[Diagnostic, ...] = ()
 
 
-class ExportError(ValueError):
+class ExportError(AidlError):
     """Raised if a format cannot hold a drawing; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
+        super().__init__(Diagnostic(code, message, hints=hints))
 
 
 @record()
@@ -176,6 +176,26 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
             "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
             "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
         )
+
+
+def suffix_of(name: str, fallback: str | None = None) -> str:
+    """Returns the format for a file name: its own suffix, else the one asked for (`svg`). Raises ExportError
+    if neither is one.
+    """
+    own = PurePath(name).suffix.lower()
+    said = f".{fallback.lower().lstrip('.')}" if fallback else ""
+    for suffix in (own, said):
+        if suffix in FORMATS:
+            return suffix
+    asked = (said or own).lstrip(".")
+    message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    raise ExportError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
+
+
+def file_names(name: str, count: int) -> list[str]:
+    """Returns the name of a file and those of further ones beside it: `part.svg`, `part-2.svg`, …"""
+    path = PurePath(name)
+    return [name, *(str(path.with_name(f"{path.stem}-{k}{path.suffix}")) for k in range(2, count + 1))]
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:

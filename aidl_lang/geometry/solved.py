@@ -55,6 +55,10 @@ class Recipe:
     words: Mapping[str, str]
 
 
+def _unknown() -> None:
+    return None
+
+
 @record()
 class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
@@ -70,7 +74,11 @@ class Finish:
     text: str
     span: Span
     corners: tuple[Vec, ...] = ()
-    literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
+    literal: Callable[[], ast.Number | None] = field(default=_unknown, compare=False, repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns all but the way to the text, which a pickle does without."""
+        return vars(self) | {"literal": _unknown}
 
 
 @record()
@@ -172,6 +180,11 @@ class Relating(Protocol):
 
 
 @record()
+class _Related:
+    mentions: tuple[str, ...]
+
+
+@record()
 class ConstraintReport:
     """A constraint as written, the structure that holds it, and its violation. `stated` names the things it
     relates; `exact`: it is made of equations alone.
@@ -190,6 +203,10 @@ class ConstraintReport:
     def mentions(self) -> tuple[str, ...]:
         """Paths of the geometry and structures whose unknowns it relates."""
         return self.stated.mentions
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns what a pickle keeps: of the constraint the paths alone."""
+        return vars(self) | {"stated": _Related(self.mentions)}
 
 
 @record()
@@ -297,6 +314,10 @@ class Opening(Dimension):
         return "angle"
 
 
+def _unsized(model: SolvedModel) -> tuple[Dimension, ...]:
+    return ()
+
+
 @record()
 class SolvedModel:
     status: str
@@ -311,9 +332,14 @@ class SolvedModel:
     describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
     """what `ways` is made by, when it is asked for"""
     size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
-        default=lambda _: (), repr=False, compare=False
+        default=_unsized, repr=False, compare=False
     )
     """what `sizes` is made by"""
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns what a pickle keeps: what is worked out on demand is worked out now."""
+        worked_out = {"ways": self.ways, "sizes": self.sizes}
+        return vars(self) | worked_out | {"describe": tuple, "size_up": _unsized}
 
     @property
     def is_unfinished(self) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.materials import density, similar
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
@@ -124,25 +124,20 @@ class Survey:
     notes: tuple[Diagnostic, ...]
 
 
-class NothingThereError(KeyError):
+class NothingThereError(AidlError, KeyError):
     """Raised if there is nothing to measure at a path. `known` are the paths there are, `near` those that may
     have been meant.
     """
 
     def __init__(self, path: str, reason: str, near: Sequence[str], known: Sequence[str]) -> None:
-        super().__init__(path)
-        self.reason = reason
+        what = f"`{path}` {reason}" if reason else f"there is no `{path}` in the drawing"
+        hints = did_you_mean(near)
+        if known:
+            hints.append(f"there is {some_of(known)}")
+        super().__init__(Diagnostic("E0919", what, hints=tuple(hints)))
         self.near = tuple(near)
-        self.known = tuple(known)
 
-    @property
-    def diagnostic(self) -> Diagnostic:
-        path = self.args[0]
-        what = f"`{path}` {self.reason}" if self.reason else f"there is no `{path}` in the drawing"
-        hints = did_you_mean(self.near)
-        if self.known:
-            hints.append(f"there is {some_of(self.known)}")
-        return Diagnostic("E0919", what, hints=tuple(hints))
+    __str__ = ValueError.__str__  # a KeyError's shows the path alone, in quotes
 
 
 def some_of(names: Sequence[str]) -> str:

@@ -240,12 +240,23 @@ class Placement(Node):
     rotated: Expression | None
 
 
+ALLOW = "allow"
+"""The attribute that silences notes and warnings, which may stand before any statement."""
+
+
 @record(eq=False, repr=False)
 class Attribute(Node):
     """`@name(arguments)`"""
 
     name: Identifier
     arguments: tuple[Argument, ...]
+
+
+@record(eq=False, repr=False, kw_only=True)
+class Allowing(Node):
+    """A statement before which no attributes stand but `@allow(…)`."""
+
+    allowing: tuple[Attribute, ...] = field(default=(), repr=False)
 
 
 @record(eq=False, repr=False)
@@ -274,7 +285,7 @@ class Structure(Node):
 
 
 @record(eq=False, repr=False)
-class Param(Node):
+class Param(Allowing):
     """`param name = value in domain step step`"""
 
     name: Identifier
@@ -285,14 +296,14 @@ class Param(Node):
 
 
 @record(eq=False, repr=False)
-class Var(Node):
+class Var(Allowing):
     name: Identifier
     value: Expression
     doc: str | None
 
 
 @record(eq=False, repr=False)
-class Let(Node):
+class Let(Allowing):
     name: Identifier
     value: Expression
     doc: str | None
@@ -312,14 +323,14 @@ class Assign(Node):
 
 
 @record(eq=False, repr=False)
-class ExpressionStatement(Node):
+class ExpressionStatement(Allowing):
     """A bare expression: a constraint without its keyword, or an operation such as `rotate(r, 30deg)`."""
 
     value: Expression
 
 
 @record(eq=False, repr=False)
-class Constrain(Node):
+class Constrain(Allowing):
     """`constrain EXPR` (one item, no block) or `constrain { … }`.
 
     Items are ExpressionStatement, Equation (`a.x = b`, understood as `==`), Assign, For, If, Let, Prefer.
@@ -330,7 +341,7 @@ class Constrain(Node):
 
 
 @record(eq=False, repr=False)
-class Equation(Node):
+class Equation(Allowing):
     """`left = right` inside `constrain`, which means `==`."""
 
     left: Expression
@@ -342,26 +353,26 @@ class Equation(Node):
 
 
 @record(eq=False, repr=False)
-class Prefer(Node):
+class Prefer(Allowing):
     value: Expression
     weight: Expression | None
 
 
 @record(eq=False, repr=False)
-class Assert(Node):
+class Assert(Allowing):
     test: Expression
     message: Expression | None
 
 
 @record(eq=False, repr=False)
-class For(Node):
+class For(Allowing):
     variables: tuple[Identifier, ...]
     iterable: Expression
     body: Block
 
 
 @record(eq=False, repr=False)
-class If(Node):
+class If(Allowing):
     """`otherwise` is a Block; `else if` is a block that holds one If."""
 
     test: Expression
@@ -370,7 +381,7 @@ class If(Node):
 
 
 @record(eq=False, repr=False)
-class Import(Node):
+class Import(Allowing):
     """`import "path"`, `import "path" as alias`, `import a, b from "path"` (`names`)."""
 
     path: String
@@ -379,7 +390,7 @@ class Import(Node):
 
 
 @record(eq=False, repr=False)
-class FunctionDefinition(Node):
+class FunctionDefinition(Allowing):
     """`fn name(parameters) = value`"""
 
     name: Identifier
@@ -389,7 +400,7 @@ class FunctionDefinition(Node):
 
 
 @record(eq=False, repr=False)
-class ShapeDefinition(Node):
+class ShapeDefinition(Allowing):
     """`shape name(parameters) { … }`"""
 
     name: Identifier
@@ -399,7 +410,7 @@ class ShapeDefinition(Node):
 
 
 @record(eq=False, repr=False)
-class ConstraintDefinition(Node):
+class ConstraintDefinition(Allowing):
     """`constraint name(parameters) { … }`; the items of the body are those of `constrain`."""
 
     name: Identifier
@@ -409,7 +420,7 @@ class ConstraintDefinition(Node):
 
 
 @record(eq=False, repr=False)
-class Alias(Node):
+class Alias(Allowing):
     """`alias name = target`"""
 
     name: Identifier
@@ -418,7 +429,7 @@ class Alias(Node):
 
 
 @record(eq=False, repr=False)
-class Todo(Node):
+class Todo(Allowing):
     """`todo`: a body that its author knows is still to be filled in."""
 
 
@@ -475,9 +486,14 @@ class Module(Node):
     comments: tuple[Comment, ...]
 
 
+def attributes(node: Structure | Assign | Allowing) -> tuple[Attribute, ...]:
+    """Returns the attributes before a statement."""
+    return node.attributes if isinstance(node, Structure | Assign) else node.allowing
+
+
 def children(node: Node) -> Iterator[Node]:
     """Yields the nodes directly below one, in text order of their fields."""
-    names: tuple[str, ...] = node.__match_args__  # every field but the span
+    names: tuple[str, ...] = node.__match_args__  # every field but the span and `allowing`
     for name in names:
         value = getattr(node, name)
         if isinstance(value, Node):

@@ -8,6 +8,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tokens import END
+from aidl_lang.syntax.tree import out_of_place
 from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
 from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe
 
@@ -281,14 +282,7 @@ def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
 def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
     if t.first.kind != "@" or t.between or t.open or not t.accepts("template"):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0119",
-            f"an attribute stands before a structure or a geometry, not before {describe(t.token)}",
-            t.span(t.first, t.before),
-            hints=('write it in front of the definition it is about: `@color("red") solid a { … }`',),
-        )
-    )
+    return SyntaxProblem(out_of_place(t.span(t.first, t.before), describe(t.token)))
 
 
 def bare_value(t: Trouble) -> SyntaxProblem | None:

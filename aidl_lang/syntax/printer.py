@@ -162,9 +162,8 @@ class _Printer:
     # --- One statement ---
 
     def _statement(self, node: ast.Statement, indent: int, constraints: bool) -> None:
-        if isinstance(node, ast.Structure | ast.Assign):
-            for attribute in node.attributes:
-                self._leaf(self._attribute(attribute), indent)
+        for attribute in ast.attributes(node):
+            self._leaf(self._attribute(attribute), indent)
         if not self._blocks(node):
             document = self._head(node, constraints)
             if isinstance(node, ast.Assert) and node.message and indent + document.width > WIDTH:
@@ -261,9 +260,7 @@ class _Printer:
     def _flat_block(self, block: ast.Block, constraints: bool) -> str:
         parts = []
         for statement in block.statements:
-            attributes: tuple[str, ...] = ()
-            if isinstance(statement, ast.Structure | ast.Assign):
-                attributes = tuple(self._attribute(a).flat() + " " for a in statement.attributes)
+            attributes = (self._attribute(a).flat() + " " for a in ast.attributes(statement))
             parts.append("".join(attributes) + self._flat(statement, constraints))
         return "{ " + "; ".join(parts) + " }" if parts else "{}"
 

@@ -7,11 +7,12 @@ the grammar cannot exclude (a second `at`, an unknown kind), beside a node that 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from keyword import iskeyword
 from typing import Any, cast
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.names import is_slip, nearest
+from aidl_lang.common.names import fold, is_slip, nearest
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
@@ -109,6 +110,17 @@ class Builder(ExpressionBuilder):
 
     def attribute(self, start: int, end: int, name: Token, arguments: Any = ()) -> ast.Attribute:
         return ast.Attribute(self.identifier(name), arguments_of(arguments), span=self.span(start, end))
+
+    def allowed(self, start: int, end: int, *parts: Any) -> Any:
+        """Returns the statements behind `@allow`, which is said of the first of them."""
+        attributes, (first, *others) = _split(parts)
+        for attribute in attributes:
+            if fold(attribute.name.text) != ast.ALLOW:
+                word = self.source.text[first.span.start : first.span.end].split(None, 1)[0]
+                self.diagnostics.append(out_of_place(attribute.span, f"`{word}`"))
+        doc = {"doc": self.docs.get(start)} if hasattr(first, "doc") else {}
+        span = self.span(start, first.span.end)
+        return [replace(first, allowing=(*attributes, *first.allowing), span=span, **doc), *others]
 
     def at(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
         return "at", value
@@ -350,6 +362,16 @@ class Builder(ExpressionBuilder):
         self, start: int, end: int, then: ast.Expression, test: ast.Expression, other: Any
     ) -> Any:
         return self.conditional(start, end, test, then, other)
+
+
+def out_of_place(attribute: Span, before: str) -> Diagnostic:
+    """Returns what is said of an attribute before something that takes none, or no other than `@allow`."""
+    return Diagnostic(
+        "E0119",
+        f"an attribute stands before a structure or a geometry, not before {before}",
+        attribute,
+        hints=('write it in front of the definition it is about: `@color("red") solid a { … }`',),
+    )
 
 
 def action(name: str) -> Callable[..., Any]:

@@ -133,6 +133,7 @@ SNIPPETS = (
     Snippet("@orientation", "how a part stands", "@orientation(${1:front})$0", "attribute"),
     Snippet("@elevation", "how high a part lies", "@elevation(${1:18mm})$0", "attribute"),
     Snippet("@note", "a note on the drawing", '@note("${1:glue here}")$0', "attribute"),
+    Snippet("@allow", "a note or warning not to be told", '@allow("${1:N0602}")$0', "attribute"),
     Snippet("@detached", "a part that touches no other", "@detached$0", "attribute"),
     Snippet("gap", "one part above another", "${1:a}.above(${2:b}, gap: ${3:2})$0", "constraints"),
     Snippet("centered", "one part in the middle of another", "${1:a}.centered_in(${2:b})$0", "constraints"),

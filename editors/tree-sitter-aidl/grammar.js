@@ -145,6 +145,7 @@ export default grammar({
         field("body", $.block),
       ),
 
+    // Before all other statements stands `@allow` alone; that is not said here.
     attribute: ($) =>
       seq(
         "@",
@@ -187,6 +188,7 @@ export default grammar({
 
     param_declaration: ($) =>
       seq(
+        repeat($.attribute),
         "param",
         field("name", $.identifier),
         "=",
@@ -205,11 +207,14 @@ export default grammar({
         field("alternative", $._sum),
       ),
 
-    var_declaration: ($) => seq("var", field("name", $.identifier), "=", field("value", $.expression)),
-    let_declaration: ($) => seq("let", field("name", $.identifier), "=", field("value", $.expression)),
+    var_declaration: ($) =>
+      seq(repeat($.attribute), "var", field("name", $.identifier), "=", field("value", $.expression)),
+    let_declaration: ($) =>
+      seq(repeat($.attribute), "let", field("name", $.identifier), "=", field("value", $.expression)),
 
     function_definition: ($) =>
       seq(
+        repeat($.attribute),
         "fn",
         field("name", $.identifier),
         field("parameters", $.parameters),
@@ -218,10 +223,17 @@ export default grammar({
       ),
 
     shape_definition: ($) =>
-      seq("shape", field("name", $.identifier), field("parameters", $.parameters), field("body", $.block)),
+      seq(
+        repeat($.attribute),
+        "shape",
+        field("name", $.identifier),
+        field("parameters", $.parameters),
+        field("body", $.block),
+      ),
 
     constraint_definition: ($) =>
       seq(
+        repeat($.attribute),
         "constraint",
         field("name", $.identifier),
         field("parameters", $.parameters),
@@ -229,10 +241,11 @@ export default grammar({
       ),
 
     alias_declaration: ($) =>
-      seq("alias", field("name", $.identifier), "=", field("target", $.identifier)),
+      seq(repeat($.attribute), "alias", field("name", $.identifier), "=", field("target", $.identifier)),
 
     import_statement: ($) =>
       seq(
+        repeat($.attribute),
         "import",
         choice(
           field("path", $.string),
@@ -241,12 +254,13 @@ export default grammar({
         ),
       ),
 
-    todo_statement: (_) => "todo",
+    todo_statement: ($) => seq(repeat($.attribute), "todo"),
 
     // --- Constraints -------------------------------------------------------------------------------------------
 
     constrain_statement: ($) =>
       seq(
+        repeat($.attribute),
         "constrain",
         field(
           "body",
@@ -260,53 +274,59 @@ export default grammar({
         ),
       ),
     _nested_constrain: ($) =>
-      seq(
-        "constrain",
-        field("body", choice($.constraint_block, $.expression, alias($._bare_equation, $.equation))),
+      choice(
+        seq("constrain", field("body", $.constraint_block)),
+        seq(
+          repeat($.attribute),
+          "constrain",
+          field("body", choice($.expression, alias($._bare_equation, $.equation))),
+        ),
       ),
 
-    equation: ($) => seq(field("left", $._first_sum), "=", field("right", $._disjunction)),
+    equation: ($) => seq(repeat($.attribute), field("left", $._first_sum), "=", field("right", $._disjunction)),
     _signed_equation: ($) => seq(field("left", $._signed_sum), "=", field("right", $._disjunction)),
     _bare_equation: ($) => seq(field("left", $._sum), "=", field("right", $._disjunction)),
 
     prefer_statement: ($) =>
-      seq("prefer", field("value", $._disjunction), optional(seq("weight", field("weight", $._sum)))),
+      seq(repeat($.attribute), "prefer", field("value", $._disjunction), optional(seq("weight", field("weight", $._sum)))),
 
     assert_statement: ($) =>
-      seq("assert", field("condition", $._disjunction), optional(seq(",", field("message", $._disjunction)))),
+      seq(repeat($.attribute), "assert", field("condition", $._disjunction), optional(seq(",", field("message", $._disjunction)))),
 
     // --- Control -----------------------------------------------------------------------------------------------
 
-    for_statement: ($) => seq($._for_head, field("body", $.block)),
-    _constraint_for: ($) => seq($._for_head, field("body", $.constraint_block)),
+    for_statement: ($) => seq(repeat($.attribute), $._for_head, field("body", $.block)),
+    _constraint_for: ($) => seq(repeat($.attribute), $._for_head, field("body", $.constraint_block)),
     _for_head: ($) => seq("for", list($.for_clause)),
     for_clause: ($) =>
       seq(field("variables", $.variables), "in", field("iterable", $._iterable)),
     variables: ($) => list($.identifier),
 
-    if_statement: ($) =>
+    if_statement: ($) => seq(repeat($.attribute), $._if),
+    _if: ($) =>
       seq(
         "if",
         field("condition", $._disjunction),
         field("consequence", $.block),
         optional(field("alternative", $.else_clause)),
       ),
-    else_clause: ($) => seq("else", choice($.block, $.if_statement)),
+    else_clause: ($) => seq("else", choice($.block, alias($._if, $.if_statement))),
 
-    _constraint_if: ($) =>
+    _constraint_if: ($) => seq(repeat($.attribute), $._items_if),
+    _items_if: ($) =>
       seq(
         "if",
         field("condition", $._disjunction),
         field("consequence", $.constraint_block),
         optional(field("alternative", alias($._constraint_else, $.else_clause))),
       ),
-    _constraint_else: ($) => seq("else", choice($.constraint_block, alias($._constraint_if, $.if_statement))),
+    _constraint_else: ($) => seq("else", choice($.constraint_block, alias($._items_if, $.if_statement))),
 
     // --- Expressions that begin a statement --------------------------------------------------------------------
     // No statement begins with `[`, `.`, an operator or a text, since such would go on with the one before it; and
     // what is no call, comparison or membership says nothing. These differ from the others in the first operand.
 
-    expression_statement: ($) => $._first_disjunction,
+    expression_statement: ($) => seq(repeat($.attribute), $._first_disjunction),
 
     _first_disjunction: ($) => choice($._first_condition, alias($._first_logical, $.logical_expression)),
     _first_logical: ($) => logic(choice($._first_disjunction, $.parenthesized_expression), $._disjunction),

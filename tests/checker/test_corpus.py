@@ -98,7 +98,7 @@ def unused() -> set[str]:
 
 def _ends(path: Path) -> list[dict[str, float]]:
     """Each numeric knob of a program at the ends of its range, one at a time."""
-    knobs = compiled.model(path.read_text("utf-8")).params
+    knobs = compiled.model(path.read_text("utf-8")).params.values()
     return [{k.path: end} for k in knobs for end in (k.low, k.high) if end is not None]
 
 

@@ -327,7 +327,7 @@ def _spans(module: ast.Module, ends: list[int]) -> Iterator[tuple[str, int, int]
     stack: list[ast.Node] = [module]
     while stack:
         node = stack.pop()
-        stack += ast.children(node)
+        stack += [*ast.children(node), *(node.allowing if isinstance(node, ast.Allowing) else ())]
         if kind := NODES.get(type(node)):
             yield kind, ends[node.span.start], ends[node.span.end]
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from tree_sitter import Language, Node, Parser, Tree
 
+from aidl_lang.common.names import fold
 from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.tools.vocabulary import vocabulary
@@ -70,6 +71,8 @@ def refused(tree: Tree) -> str | None:
             return node.type
         if node.type == "structure" and kind_of(_text(node.child_by_field_name("kind"))) is None:
             return "kind"
+        if node.type == "attribute" and _is_out_of_place(node):
+            return "attribute"
     for name, after in pairwise(leaves(found)):
         if (
             name.type == "identifier"
@@ -130,3 +133,10 @@ def _gap(before: Node, after: Node, tree: Tree) -> str:
 
 def _text(node: Node | None) -> str:
     return (node.text or b"").decode() if node else ""
+
+
+def _is_out_of_place(attribute: Node) -> bool:
+    """Whether another attribute than `@allow` stands before another statement than those that take it."""
+    holder = attribute.parent
+    taken = holder is not None and holder.type in ("structure", "assignment")
+    return not taken and fold(_text(attribute.child_by_field_name("name"))) != "allow"

@@ -57,13 +57,18 @@ def test_a_program_is_without_fault_at_the_ends_of_its_knobs(path: Path) -> None
     made = model(path.read_text("utf-8"))
     assert [d.message for d in made.diagnostics] == []
     assert len(made.params) >= 3
-    faults = [each for knob in made.params for value in ends(knob) for each in told(path, {knob.path: value})]
+    faults = [
+        each
+        for knob in made.params.values()
+        for value in ends(knob)
+        for each in told(path, {knob.path: value})
+    ]
     assert faults == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_a_program_is_without_fault_a_quarter_further(path: Path) -> None:
-    knobs = model(path.read_text("utf-8")).params
+    knobs = model(path.read_text("utf-8")).params.values()
     faults = [each for knob in knobs for value in turned(knob) for each in told(path, {knob.path: value})]
     assert faults == []

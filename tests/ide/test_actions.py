@@ -279,3 +279,44 @@ drawing a {
     text = applied(view.source.text, selected[0].make())
     assert "left = circle(center: (0, 30), radius: 4)" in text
     assert "right = circle(center: (2, 30), radius: 4)" in text
+
+
+# --- Notes and warnings that are allowed ---
+
+
+def _allowed(text: str, mark: str, code: str) -> str:
+    """The text once a code is allowed at a mark."""
+    start = text.index(mark)
+    changed = done(f"{text[:start]}¦{text[start:]}", f"Allow {code} here")
+    assert code in [d.code for d in compiled(text).diagnostics]
+    assert code not in [d.code for d in compiled(changed).diagnostics]
+    return changed
+
+
+def test_a_note_is_allowed_before_its_statement() -> None:
+    head = "solid s {\n    b = rectangle(width: 60, height: 40)\n    constrain b.center == origin\n    "
+    told = "constrain b.left + b.right == 0\n}\n"
+    assert _allowed(head + told, "b.left", "N0602") == f'{head}@allow("N0602")\n    {told}'
+
+
+def test_a_note_is_allowed_beside_what_stands_on_its_line() -> None:
+    head = "solid s {\n    b = rectangle(width: 60, height: 40)\n    constrain { b.center == origin, "
+    told = "b.left + b.right == 0 }\n}\n"
+    assert _allowed(head + told, "b.left", "N0602") == f'{head}@allow("N0602") {told}'
+
+
+def test_a_note_on_what_begins_with_a_sign_is_allowed_around_it() -> None:
+    head = "solid s {\n    b = rectangle(width: 60, height: 40)\n    constrain b.center == origin\n    "
+    told = "constrain {\n        -b.left == b.right\n    }\n}\n"
+    assert _allowed(head + told, "-b.left", "N0602") == f'{head}@allow("N0602")\n    {told}'
+
+
+def test_another_code_is_allowed_where_one_is() -> None:
+    text = 'solid s {\n    @allow("W0201") param k = 0\n    dot = circle(radius: 0)\n}\n'
+    text = text.replace("dot", '@allow("N0505") dot')
+    assert '@allow("N0505", "W0706") dot' in _allowed(text, "circle", "W0706")
+
+
+def test_errors_are_not_allowed() -> None:
+    _, found = offered("solid s { b = circle(radius: no¦thing) }")
+    assert not any(a.title.startswith("Allow") for a in found)

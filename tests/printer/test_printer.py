@@ -74,6 +74,21 @@ def test_comments_inside_a_statement_move_in_front_of_it() -> None:
         """)  # fmt: skip
 
 
+def test_allow_before_any_statement() -> None:
+    check(
+        "@allow('N0602')param k=3 @allow(\"W0201\",'N0602') /* c */ let a=k "
+        "constrain{@allow('N0602')a==3,@allow('W0202') if k>2{@allow('N0605') prefer k==3}}",
+        """
+        @allow("N0602")
+        param k = 3
+        /* c */
+        @allow("W0201", "N0602")
+        let a = k
+        constrain { @allow("N0602") a == 3; @allow("W0202") if k > 2 { @allow("N0605") prefer k == 3 } }
+        """,
+    )
+
+
 def test_docs_and_attributes() -> None:
     check(
         "/// Doc.\n@thickness(3mm)  @color('red') solid a { @layer('b') c = circle(radius: 1) }",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import lru_cache
 
+from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import EVERYWHERE, MATH, SIGNATURES
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
@@ -31,6 +32,7 @@ class Resolution:
     symbols      every declaration of the program, in text order
     canonical    names → the spelling the printer shall write
     of_definition  functions, shapes, constraints and templates → their symbols
+    allowances   what notes and warnings are not to be told
     errors       how many the resolver has found so far
     scopes       structures, definitions, loops, comprehensions and files → their scopes
     """
@@ -45,6 +47,7 @@ class Resolution:
     canonical: dict[ast.Node, str] = field(default_factory=dict)
     scopes: dict[ast.Node, SymbolScope] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    allowances: tuple[Allowance, ...] = ()
     errors: int = 0
     of_definition: dict[ast.Node, Symbol] = field(default_factory=dict)
     library_scope: SymbolScope = field(default_factory=lambda: SymbolScope(_NOWHERE))

@@ -95,11 +95,12 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     written: tuple[str, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
-        written, notes = _write(compiled, outputs, _options(arguments, compiled))
+        written, notes = _write(compiled, outputs, options(arguments, compiled))
     return BuildResult(compiled, written, notes, time.perf_counter() - start)
 
 
-def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
+def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
+    """Returns the options of an export as the command line says them."""
     from aidl_lang.export import Options
 
     return Options(
@@ -160,12 +161,12 @@ class _Progress:
 
 
 def _names(target: Target, further: int) -> list[str]:
-    """Returns the name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
+    """Returns the name of the output, and those of further files."""
+    from aidl_lang.export import file_names
+
     if further and target.name == files.STANDARD:
         raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
-    path = Path(target.name)
-    more = [str(path.with_name(f"{path.stem}-{k}{path.suffix}")) for k in range(2, further + 2)]
-    return [target.name, *more]
+    return file_names(target.name, further + 1)
 
 
 def _default_output(program: str) -> str:
@@ -174,13 +175,9 @@ def _default_output(program: str) -> str:
 
 def _suffix(name: str, fallback: str | None) -> str:
     """Returns the format of an output: its own suffix, else `--format`, else SVG on standard output."""
-    from aidl_lang.export import FORMATS
+    from aidl_lang.export import ExportError, suffix_of
 
-    own = "" if name == files.STANDARD else Path(name).suffix.lower()
-    said = f".{fallback.lower().lstrip('.')}" if fallback else _DEFAULT_FORMAT * (name == files.STANDARD)
-    for suffix in (own, said):
-        if suffix in FORMATS:
-            return suffix
-    asked = (said or own).lstrip(".")
-    message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
-    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
+    try:
+        return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None

@@ -21,7 +21,7 @@ STANDARD = "-"
 def read(name: str) -> SourceFile:
     """Returns the program in a file, or on standard input for `-`."""
     if name == STANDARD:
-        return SourceFile("<stdin>", _decode(sys.stdin.buffer.read(), "standard input"))
+        return SourceFile("<stdin>", decoded(sys.stdin.buffer.read(), "standard input"))
     try:
         data = Path(name).read_bytes()
     except FileNotFoundError:
@@ -30,7 +30,7 @@ def read(name: str) -> SourceFile:
         raise UseError("E0902", f"`{name}` is a directory, not a program") from None
     except OSError as error:
         raise UseError("E0902", f"`{name}` cannot be read: {_reason(error)}") from None
-    return SourceFile(name, _decode(data, f"`{name}`"))
+    return SourceFile(name, decoded(data, f"`{name}`"))
 
 
 def world(name: str) -> DiskWorld:
@@ -66,7 +66,7 @@ def write(name: str, data: bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
         else:
-            _replace(path, data)
+            replace(path, data)
     except OSError as error:
         raise UseError("E0904", f"`{name}` cannot be written: {_reason(error)}") from None
 
@@ -82,7 +82,7 @@ def create(name: str, data: bytes) -> None:
         raise UseError("E0904", f"`{name}` cannot be written: {_reason(error)}") from None
 
 
-def _replace(path: Path, data: bytes) -> None:
+def replace(path: Path, data: bytes) -> None:
     """Writes beside the file and moves into place, so that whoever reads it has the old or the new one."""
     temporary = path.with_name(f".{path.name}.{os.urandom(8).hex()}")
     try:
@@ -97,7 +97,8 @@ def _replace(path: Path, data: bytes) -> None:
         raise
 
 
-def _decode(data: bytes, what: str) -> str:
+def decoded(data: bytes, what: str) -> str:
+    """Returns the text of a program; `what` names it. Raises UseError."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from aidl_lang import pipeline
+from aidl_lang.checking.allowing import audible
 from aidl_lang.checking.resolving.resolution import Resolution
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
@@ -56,7 +57,9 @@ class View:
     @property
     def diagnostics(self) -> list[Diagnostic]:
         """The diagnostics of the outcome, else those of checking."""
-        return self.found if self.outcome is None else self.outcome.diagnostics
+        if self.outcome is not None:
+            return self.outcome.diagnostics
+        return audible(self.found, self.program.resolution.allowances)
 
     @property
     def is_stale(self) -> bool:

@@ -7,6 +7,7 @@ program first, and refuse if the result is not what the title promises.
 from __future__ import annotations
 
 from aidl_lang.tools.ide.actions.action import Action
+from aidl_lang.tools.ide.actions.allowing import allowances
 from aidl_lang.tools.ide.actions.constraining import missing_constraints
 from aidl_lang.tools.ide.actions.extracting import extractions
 from aidl_lang.tools.ide.actions.fixes import fixes
@@ -21,6 +22,7 @@ def actions(view: View, start: int, end: int) -> list[Action]:
     """Returns the actions for a selection of the text, or for the cursor if both ends are the same."""
     return [
         *fixes(view, start, end),
+        *allowances(view, start, end),
         *missing_constraints(view, start),
         *namings(view, start, end),
         *extractions(view, start),

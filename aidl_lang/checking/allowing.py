@@ -1,0 +1,130 @@
+"""Notes and warnings that a program wants unsaid: `@allow("N0602")` before a statement.
+
+What is silenced has its place within the statement and is no error. One that silenced nothing is told, once
+it is known what there was to tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from aidl_lang.common import pages
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
+
+IDLE = "N0201"
+
+_LATER = frozenset({"N0731", "N0741", "W0720", "W0725", "W0726", "W0733", "W0736"})
+"""Codes that are told only when a file is written or parts are measured."""
+
+
+@record()
+class Allowance:
+    """A code that is not to be told within a statement: `place` is where it is written, `attribute` the whole
+    of the attribute, `is_alone` whether it has no other code.
+    """
+
+    code: str
+    statement: Span
+    place: Span
+    attribute: Span
+    is_alone: bool
+
+    def covers(self, found: Diagnostic) -> bool:
+        here = self.statement
+        return (
+            found.code == self.code
+            and not found.is_error
+            and found.span is not None
+            and found.span.source is here.source
+            and here.start <= found.span.start
+            and found.span.end <= here.end
+        )
+
+
+def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], list[Diagnostic]]:
+    """Returns what the files of a program allow, and what is wrong with how they say it."""
+    allowed: list[Allowance] = []
+    wrong: list[Diagnostic] = []
+    for statement, attribute in _attributes(modules):
+        if not attribute.arguments:
+            wrong.append(_without_code(attribute))
+        for argument in attribute.arguments:
+            value = argument.value
+            code = value.value if isinstance(value, ast.String) else value.span.text
+            if code in pages.codes() and not code.startswith("E"):
+                is_alone = len(attribute.arguments) == 1
+                allowed.append(Allowance(code, statement.span, value.span, attribute.span, is_alone))
+            else:
+                wrong.append(_unknown(code, value.span))
+    return tuple(allowed), wrong
+
+
+def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.Attribute]]:
+    """Yields the statements with an `@allow`, those outside first."""
+    for module in modules:
+        if ast.ALLOW not in module.source.text.lower():
+            continue
+        for node in ast.walk(module):
+            if isinstance(node, ast.Allowing | ast.Structure | ast.Assign):
+                for attribute in ast.attributes(node):
+                    if fold(attribute.name.text) == ast.ALLOW:
+                        yield node, attribute
+
+
+def _without_code(attribute: ast.Attribute) -> Diagnostic:
+    return Diagnostic(
+        "E0216",
+        "`@allow` names no code",
+        attribute.span,
+        hints=('write the codes of the notes and warnings: `@allow("N0602", "W0705")`',),
+    )
+
+
+def _unknown(code: str, place: Span) -> Diagnostic:
+    """Returns what is wrong with a code that cannot be allowed."""
+    if code in pages.codes():
+        message = f"`{code}` is an error, and only notes and warnings can be allowed"
+        return Diagnostic("E0216", message, place, hints=(f"mend it: `aidl explain {code}` tells how",))
+    alike = [c for c in (code.upper(), *pages.near(code.upper())) if c in pages.codes() and c[0] != "E"]
+    near = sorted(alike, key=lambda c: c[0] != code[:1].upper())[:1]
+    return Diagnostic(
+        "E0216",
+        f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else ""),
+        place,
+        hints=() if near else ("codes stand in brackets in front of a message: `note[N0602]: …`",),
+        fix=Fix(f"write `{near[0]}`", (Edit(place, f'"{near[0]}"'),)) if near else None,
+    )
+
+
+def audible(found: Iterable[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:
+    """Returns the diagnostics without those that are allowed."""
+    return [d for d in found if not any(each.covers(d) for each in allowed)]
+
+
+def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:
+    """Returns a note on each code that is allowed where there is nothing of it to tell. `found` is all that
+    there is to tell, allowed or not.
+    """
+    return [
+        Diagnostic(
+            IDLE,
+            f"`@allow` silences nothing: there is no `{each.code}` here",
+            each.place,
+            fix=_without(each),
+        )
+        for each in allowed
+        if each.code not in _LATER and not any(each.covers(d) for d in found)
+    ]
+
+
+def _without(allowed: Allowance) -> Fix | None:
+    """Returns the fix that removes an attribute of one code."""
+    if not allowed.is_alone:
+        return None
+    text, end = allowed.attribute.source.text, allowed.attribute.end
+    end += len(text[end:]) - len(text[end:].lstrip())
+    return Fix("remove it", (Edit(Span(allowed.attribute.source, allowed.attribute.start, end), ""),))
