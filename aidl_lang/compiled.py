@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options
     from aidl_lang.export.comparison import Comparison
+    from aidl_lang.export.drafting import Draft
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
@@ -70,6 +71,16 @@ class Compiled:
             hint = "write a format that holds less: pictures without `--show`, outlines alone"
             message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
             raise ExportError("E0955", message, hint) from None
+
+    def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
+        """Returns the drawing sheets in each of some formats of pictures. Raises as `exported` does."""
+        from aidl_lang.export import Job, rendered
+        from aidl_lang.export.drafting import drafted
+
+        job = Job(*self._finished, tuple(self.diagnostics), options)
+        with within(self.limit, "drawing"):
+            pages = drafted(job, draft)
+            return [rendered(pages, suffix, options, job.model.root.path) for suffix in suffixes]
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
         """Returns the content of the file alone (see `exported`)."""

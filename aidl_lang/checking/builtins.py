@@ -173,7 +173,7 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "behind", "in_front"),
+    *("stroke", "dash", "opacity", "behind", "in_front", "title", "author", "number", "revision"),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 

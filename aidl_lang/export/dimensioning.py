@@ -43,7 +43,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
     be read when the whole is seen.
     """
-    wanted = _visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    wanted = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
     size = max(box[2] - box[0], box[3] - box[1])
     if not wanted or not size > 0:
         return box, ()
@@ -57,7 +57,18 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     return whole, groups
 
 
-def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
+def dimensioned_to_scale(
+    drawing: Drawing, box: Bounds, pen: Pen, wanted: Sequence[tuple[Dimension, ...]]
+) -> tuple[Bounds, tuple[Group, ...], int]:
+    """Returns the box that holds `box` and these dimensions, a group of marks for each, and the number of
+    those that found no place.
+    """
+    layout = _Layout(drawing, pen, box, most=len(wanted), remarks=False)
+    whole, groups = layout.make(wanted)
+    return whole, groups, len(wanted) - len(groups)
+
+
+def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
     """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts."""
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
@@ -89,20 +100,22 @@ class _Layout:
     pen: Pen
     box: Bounds
     rows: list[_Row] = field(default_factory=list)
+    most: int = MOST
+    remarks: bool = True
 
     def __post_init__(self) -> None:
         self.sheet = Sheet(self.drawing, self.pen)
 
     def make(self, wanted: Sequence[tuple[Dimension, ...]]) -> tuple[Bounds, tuple[Group, ...]]:
         placed: dict[int, PlacedDimension] = {}
-        for index in sorted(range(min(len(wanted), MOST)), key=lambda i: _turn(wanted[i][0])):
+        for index in sorted(range(min(len(wanted), self.most)), key=lambda i: _turn(wanted[i][0])):
             found = self.place(wanted[index])
             if found is not None:
                 self.sheet.add(found)
                 placed[index] = found
         boxes = [self.box, *map(self.pen.box_of, placed.values())]
         groups = [self._group(n, wanted[i], placed[i]) for n, i in enumerate(sorted(placed), 1)]
-        if left := len(wanted) - len(placed):
+        if self.remarks and (left := len(wanted) - len(placed)):
             note = self._remark(left, union_bounds(boxes))
             groups.append(Group("dimensions-left-out", (note,), {"class": "dimension"}))
             boxes.append(note.box)

@@ -129,7 +129,7 @@ def _write(
         (name, data)
         for target, result in made
         for name, data in zip(
-            _names(target, len(result.further)), (result.data, *result.further), strict=True
+            target_names(target, len(result.further)), (result.data, *result.further), strict=True
         )
     ]
     for name, data in contents:
@@ -138,7 +138,7 @@ def _write(
     return tuple(name for name, _ in contents), tuple(notes)
 
 
-def _names(target: Target, further: int) -> list[str]:
+def target_names(target: Target, further: int) -> list[str]:
     """Returns the name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
     if further and target.name == files.STANDARD:
         raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")

@@ -1,0 +1,205 @@
+"""Drawing sheets: parts on paper to a standard scale, with dimensions, a frame and a title block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from aidl_lang.common.numbers import fixed
+from aidl_lang.common.records import record
+from aidl_lang.export import ExportError, Job
+from aidl_lang.export.drafting.contents import Content, contents
+from aidl_lang.export.drafting.lettering import WIDE, lines
+from aidl_lang.export.drafting.paper import SCALES, STANDARDS, Paper, Standard, papers, scale_text
+from aidl_lang.export.drafting.tables import TITLE_HEIGHT, WIDTH, Table, Title, title_block
+from aidl_lang.export.drafting.views import DrawnView, drawn_view
+from aidl_lang.export.marks import Group, Picture
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.evaluate import Bounds
+
+Scale = tuple[int, int]
+
+_AIR, _BETWEEN = 6.0, 14.0
+"""Free space inside the frame, and between views, mm."""
+_LEAST = {"a4": 0.5, "letter": 0.5, "a3": 0.2, "tabloid": 0.2, "a2": 0.1, "a1": 0.05}
+"""The smallest scale for which a paper is taken before a larger one is tried."""
+_LARGEST = 10.0
+"""Enlargements go no further unless they are asked for."""
+
+
+@record()
+class Draft:
+    """What is asked of drawing sheets; what is None is chosen by fit.
+
+    date  as it is to be written: without one the sheet bears none, and the same program gives the same file
+    """
+
+    paper: str | None = None
+    is_landscape: bool | None = None
+    scale: Scale | None = None
+    standard: str = "iso"
+    date: str = ""
+
+
+@record()
+class _Laid:
+    """A sheet on which everything has a place."""
+
+    paper: Paper
+    scale: Scale
+    views: tuple[tuple[Vec, DrawnView], ...]
+
+
+def drafted(job: Job, draft: Draft) -> list[Picture]:
+    """Returns the drawing sheets of a model as pictures. Raises ExportError (E0970) if something has no place
+    on the paper or at the scale that is asked for, or if nothing is drawn.
+    """
+    if not job.drawing.bodies and not job.drawing.strokes:
+        raise ExportError("E0970", "nothing is drawn, so there is nothing to put on a sheet")
+    sheets = contents(job.model, job.drawing)
+    standard = STANDARDS[draft.standard]
+    pages = []
+    for number, content in enumerate(sheets, 1):
+        laid = _laid(content, draft, standard)
+        title = _title(job, content, draft, laid, f"{number} of {len(sheets)}")
+        pages.append(_page(content, laid, title, standard))
+    return pages
+
+
+def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
+    """Returns the sheet on the smallest paper, at the largest scale, that hold everything."""
+    choices = list(papers(standard, draft.paper, draft.is_landscape))
+    best: _Laid | None = None
+    for paper in choices:
+        found = _fitted(content, draft, paper)
+        if found is None:
+            continue
+        if best is None or found.scale[0] * best.scale[1] > best.scale[0] * found.scale[1]:
+            best = found
+        if _factor(best.scale) >= _LEAST.get(paper.name, 0.0) and paper.name == best.paper.name:
+            larger = [p for p in choices if p.name == paper.name and p is not paper]
+            if paper is choices[0] or not larger or choices.index(paper) > choices.index(larger[0]):
+                return best
+    if best is None:
+        where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
+        at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
+        raise ExportError(
+            "E0970",
+            f"`{content.subject.path}` does not fit on {where}{at} with its dimensions",
+            "leave out `--scale` and `--paper` to have them chosen",
+        )
+    return best
+
+
+def _fitted(content: Content, draft: Draft, paper: Paper) -> _Laid | None:
+    """Returns the sheet at the largest scale at which all views and dimensions have a place on a paper."""
+    rooms = list(_rooms(content, paper))
+    sizes = [(v.drawing.box[2] - v.drawing.box[0], v.drawing.box[3] - v.drawing.box[1]) for v in content.views]
+    for scale in (draft.scale,) if draft.scale is not None else SCALES:
+        factor = _factor(scale)
+        if draft.scale is None and factor > _LARGEST:
+            continue
+        if not any(_arranged([(factor * w, factor * h) for w, h in sizes], room) for room in rooms):
+            continue
+        views = [drawn_view(view, factor, paper.digits) for view in content.views]
+        for room in rooms:
+            corners = _arranged([(v.width, v.height) for v in views], room)
+            if corners is not None and not any(v.left for v in views):
+                return _Laid(paper, scale, tuple(zip(corners, views, strict=True)))
+    return None
+
+
+def _factor(scale: Scale) -> float:
+    return scale[0] / scale[1]
+
+
+def _rooms(content: Content, paper: Paper) -> Iterator[Bounds]:
+    """Yields the free parts of a sheet: above the title block and the tables on it, and beside them."""
+    left, bottom, right, top = paper.frame
+    stack = TITLE_HEIGHT + sum(table.height for table in _tables(content))
+    if top - bottom - stack > 2 * _AIR:
+        yield left + _AIR, bottom + stack + _AIR, right - _AIR, top - _AIR
+    if right - left - WIDTH > 2 * _AIR:
+        yield left + _AIR, bottom + _AIR, right - WIDTH - _AIR, top - _AIR
+
+
+def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] | None:
+    """Returns the lower left corners of views in a row or a column amid a room; None without a place."""
+    width, height = room[2] - room[0], room[3] - room[1]
+    for axis in (0, 1):
+        along = sum(size[axis] for size in sizes) + _BETWEEN * (len(sizes) - 1)
+        across = max(size[1 - axis] for size in sizes)
+        if along <= (width, height)[axis] and across <= (width, height)[1 - axis]:
+            corners = []
+            at = room[axis] + ((width, height)[axis] - along) / 2
+            for size in sizes if axis == 0 else sizes[::-1]:
+                aside = room[1 - axis] + ((width, height)[1 - axis] - size[1 - axis]) / 2
+                corners.append((at, aside) if axis == 0 else (aside, at))
+                at += size[axis] + _BETWEEN
+            return corners if axis == 0 else corners[::-1]
+    return None
+
+
+def _tables(content: Content) -> list[Table]:
+    """Returns the tables of a sheet, the lowest first."""
+    return [_list_of_parts(content)] if content.items else []
+
+
+def _list_of_parts(content: Content) -> Table:
+    rows = tuple(
+        (str(item.number), item.name, str(len(item.bodies)), item.style.material or "", item.size)
+        for item in content.items
+    )
+    return Table("parts", ("Item", "Name", "Qty", "Material", "Size"), rows, frozenset({0, 2}))
+
+
+def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) -> Title:
+    root, subject = job.model.root, content.subject
+
+    def said(name: str, of: object = root) -> str:
+        return str(next(iter(getattr(of, "attributes").get(name, ())), ""))
+
+    title = said("title", subject) or _named(subject.doc, subject.name)
+    if subject is not root:
+        title = f"{said('title') or _plain(root.name)}: {title}"
+        if content.count > 1:
+            title = f"{title} ({content.count}×)"
+    thickness = content.style.thickness
+    return Title(
+        title,
+        said("number", subject) or said("number"),
+        said("revision", subject) or said("revision"),
+        said("author"),
+        draft.date,
+        "see list" if content.items else content.style.material or "",
+        "see list" if content.items else f"{fixed(thickness, 3)} mm" if thickness is not None else "",
+        scale_text(laid.scale),
+        laid.paper.label,
+        sheet,
+    )
+
+
+def _named(doc: str | None, name: str) -> str:
+    """Returns what a part is called: the head of its documentation, up to a colon, else its name."""
+    first = (doc or "").strip().partition("\n")[0]
+    head = first.partition(":")[0].partition(". ")[0].rstrip(".").strip()
+    return head or _plain(name)
+
+
+def _plain(name: str) -> str:
+    words = name.replace("_", " ")
+    return words[:1].upper() + words[1:]
+
+
+def _page(content: Content, laid: _Laid, title: Title, standard: Standard) -> Picture:
+    left, bottom, right, top = laid.paper.frame
+    around = (left, bottom), (right, bottom), (right, top), (left, top)
+    frame = lines([*zip(around, (*around[1:], around[0]), strict=True)], 2 * WIDE, "frame")
+    groups = [Group("frame", (frame,), {"class": "frame"})]
+    for number, (corner, view) in enumerate(laid.views, 1):
+        groups += view.at(corner, number)
+    groups.append(title_block(title, right - WIDTH, bottom, standard.is_first_angle))
+    level = bottom + TITLE_HEIGHT
+    for table in _tables(content):
+        groups.append(table.group(right - WIDTH, level))
+        level += table.height
+    return Picture(laid.paper.box, tuple(groups))
