@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
@@ -15,6 +16,7 @@ from aidl_lang.export.drafting.views import DrawnView, drawn_view
 from aidl_lang.export.marks import Group, Picture
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.solved import SolvedStructure
 
 Scale = tuple[int, int]
 
@@ -22,6 +24,10 @@ _AIR, _BETWEEN = 6.0, 14.0
 """Free space inside the frame, and between views, mm."""
 _LEAST = {"a4": 0.5, "letter": 0.5, "a3": 0.2, "tabloid": 0.2, "a2": 0.1, "a1": 0.05}
 """The smallest scale for which a paper is taken before a larger one is tried."""
+_MANY = 24
+"""A view with more dimensions than this is not made smaller to save paper."""
+_LONGEST_TITLE = 32
+"""Characters of a headline that serves as a title."""
 _LARGEST = 10.0
 """Enlargements go no further unless they are asked for."""
 
@@ -68,17 +74,14 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
 def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
     """Returns the sheet on the smallest paper, at the largest scale, that hold everything."""
     choices = list(papers(standard, draft.paper, draft.is_landscape))
+    is_crowded = max(len(view.wanted) for view in content.views) > _MANY
     best: _Laid | None = None
-    for paper in choices:
-        found = _fitted(content, draft, paper)
-        if found is None:
-            continue
-        if best is None or found.scale[0] * best.scale[1] > best.scale[0] * found.scale[1]:
-            best = found
-        if _factor(best.scale) >= _LEAST.get(paper.name, 0.0) and paper.name == best.paper.name:
-            larger = [p for p in choices if p.name == paper.name and p is not paper]
-            if paper is choices[0] or not larger or choices.index(paper) > choices.index(larger[0]):
-                return best
+    for name, ways in groupby(choices, key=lambda paper: paper.name):
+        found = [laid for paper in ways if (laid := _fitted(content, draft, paper)) is not None]
+        best = max([*([best] if best else ()), *found], key=lambda laid: _factor(laid.scale), default=None)
+        least = 1.0 if is_crowded and name in _LEAST else _LEAST.get(name, 0.0)
+        if best is not None and _factor(best.scale) >= least:
+            return best
     if best is None:
         where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
         at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
@@ -93,7 +96,9 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
 def _fitted(content: Content, draft: Draft, paper: Paper) -> _Laid | None:
     """Returns the sheet at the largest scale at which all views and dimensions have a place on a paper."""
     rooms = list(_rooms(content, paper))
-    sizes = [(v.drawing.box[2] - v.drawing.box[0], v.drawing.box[3] - v.drawing.box[1]) for v in content.views]
+    sizes = [
+        (v.drawing.box[2] - v.drawing.box[0], v.drawing.box[3] - v.drawing.box[1]) for v in content.views
+    ]
     for scale in (draft.scale,) if draft.scale is not None else SCALES:
         factor = _factor(scale)
         if draft.scale is None and factor > _LARGEST:
@@ -155,8 +160,8 @@ def _list_of_parts(content: Content) -> Table:
 def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) -> Title:
     root, subject = job.model.root, content.subject
 
-    def said(name: str, of: object = root) -> str:
-        return str(next(iter(getattr(of, "attributes").get(name, ())), ""))
+    def said(name: str, of: SolvedStructure = root) -> str:
+        return str(next(iter(of.attributes.get(name, ())), ""))
 
     title = said("title", subject) or _named(subject.doc, subject.name)
     if subject is not root:
@@ -182,11 +187,11 @@ def _named(doc: str | None, name: str) -> str:
     """Returns what a part is called: the head of its documentation, up to a colon, else its name."""
     first = (doc or "").strip().partition("\n")[0]
     head = first.partition(":")[0].partition(". ")[0].rstrip(".").strip()
-    return head or _plain(name)
+    return head if 0 < len(head) <= _LONGEST_TITLE else _plain(name)
 
 
 def _plain(name: str) -> str:
-    words = name.replace("_", " ")
+    words = name.partition("[")[0].replace("_", " ")
     return words[:1].upper() + words[1:]
 
 

@@ -13,6 +13,7 @@ from aidl_lang.export.dimensioning import visible
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions, overall
+from aidl_lang.geometry.dimensions.completing import completed
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.engraving import engraved
 from aidl_lang.geometry.evaluate import Bounds, bounds
@@ -30,13 +31,14 @@ _ALIKE = 1e-6
 @record()
 class View:
     """Parts seen from one side. `label` tells it from others of the sheet; `balloons`: numbers of the list of
-    parts with the bodies that bear them.
+    parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell.
     """
 
     label: str
     drawing: Drawing
     wanted: tuple[Wanted, ...]
     balloons: tuple[tuple[int, Body], ...] = ()
+    free: tuple[str, ...] = ()
 
 
 @record()
@@ -92,7 +94,8 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
     stated = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
-    return View("", drawing, tuple(stated))
+    done = completed(drawing, stated)
+    return View("", drawing, done.groups, free=done.free)
 
 
 def _overview(model: SolvedModel, drawing: Drawing, items: Sequence[Item]) -> Iterator[View]:
@@ -158,7 +161,9 @@ def _of_body(model: SolvedModel, alone: Drawing, others: Sequence[str]) -> Solve
     centers = [p.center for p in alone.bodies[0].region.pieces if isinstance(p, Circle)]
 
     def is_there(points: Sequence[Vec]) -> bool:
-        near = any(abs(c[0] - p[0]) + abs(c[1] - p[1]) <= _ALIKE * alone.size for c in centers for p in points)
+        near = any(
+            abs(c[0] - p[0]) + abs(c[1] - p[1]) <= _ALIKE * alone.size for c in centers for p in points
+        )
         return near or bool(sheet.seen(tuple(points)))
 
     def concerns(size: Dimension) -> bool:

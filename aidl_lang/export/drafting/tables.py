@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import field
 
 from aidl_lang.common.records import record
@@ -21,7 +21,7 @@ from aidl_lang.geometry.curves import Circle, Vec
 
 WIDTH = 180.0
 """Width of the title block and of the tables that stand on it."""
-_ROW, _CELL = 5.5, 9.5
+_ROW, _CELL = 5.5, 10.5
 _AIR = 1.2
 
 
@@ -91,7 +91,12 @@ class Table:
 TITLE_HEIGHT = 3 * _CELL
 
 _PLAN = (
-    (("Title", "title", 96.0), ("Number", "number", 46.0), ("Rev.", "revision", 16.0), ("Sheet", "sheet", 22.0)),
+    (
+        ("Title", "title", 96.0),
+        ("Number", "number", 46.0),
+        ("Rev.", "revision", 16.0),
+        ("Sheet", "sheet", 22.0),
+    ),
     (
         ("Material", "material", 64.0),
         ("Thickness", "thickness", 32.0),

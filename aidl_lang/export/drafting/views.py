@@ -14,6 +14,7 @@ from aidl_lang.export.drafting.lettering import BLACK, NARROW, SMALL, WIDE, writ
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Text
 from aidl_lang.export.scaling import Placing
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.dimensions.completing import mirror_levels
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
@@ -49,7 +50,7 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     box, dimensions, left = dimensioned_to_scale(view.drawing, view.drawing.box, pen, view.wanted)
     centers = tuple(_center_lines(view.drawing, factor))
     outlines = Group("outline", tuple(_outlines(view.drawing, factor)), {"class": "outline"})
-    box = union_bounds([box, *(_grown(view.drawing.box, (_BEYOND + 1) / factor) for _ in (0,))])
+    box = union_bounds([box, _grown(view.drawing.box, (_BEYOND + 1) / factor)])
     bottom = _LABEL if view.label else 0.0
     placing = Placing(factor, (-factor * box[0], bottom - factor * box[1]))
     groups = [outlines, Group("centers", centers, {"class": "center"}), *dimensions]
@@ -84,6 +85,17 @@ def _center_lines(drawing: Drawing, factor: float) -> Iterator[Curves]:
                 key = round(piece.center[0] / slack), round(piece.center[1] / slack)
                 if key not in largest or largest[key].radius < piece.radius:
                     largest[key] = piece
+    for body in drawing.bodies if len(drawing.bodies) == 1 else ():
+        left, bottom, right, top = _grown(body.box, _BEYOND / factor)
+        x, y = mirror_levels(body, slack)
+        has_circle = any(
+            isinstance(p, Circle) and 2 * p.radius >= 0.999 * (body.box[2] - body.box[0])
+            for p in body.region.pieces
+        )
+        if x is not None and not has_circle:
+            yield center_line((x, bottom), (x, top), factor)
+        if y is not None and not has_circle:
+            yield center_line((left, y), (right, y), factor)
     for piece in largest.values():
         (x, y), reach = piece.center, piece.radius + _BEYOND / factor
         yield center_line((x - reach, y), (x + reach, y), factor)
