@@ -79,7 +79,7 @@ def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple
         group
         for group in wanted
         if not isinstance(group[0], Length)
-        or group[0].origin in ("constraint", "overall")
+        or group[0].origin in ("hand", "constraint", "overall")
         or (ends_at_something(group[0].start) and ends_at_something(group[0].end))
     ]
 
@@ -166,10 +166,20 @@ class _Layout:
         start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
+        if of.offset is not None:
+            return self._by_hand(of, words, of.offset)
         placed = self._in_row(of, words) if is_straight else self._best(self._beside(of, words))
         unseen = [points[0] for points, seen in ((of.start, start), (of.end, end)) if not seen]
         crosses = tuple((p, CROSS * self.pen.mm) for p in unseen)
         return replace(placed, crosses=crosses) if placed is not None else None
+
+    def _by_hand(self, of: Length, words: str, offset: float) -> PlacedDimension:
+        """Places a length at an offset from what it measures: to the right or upwards, or the other way."""
+        u, v = of.along
+        side = -offset if of.along == Y_AXIS else offset  # across a vertical length is towards the left
+        across = [p[1] * u - p[0] * v for p in (*of.start, *of.end)]
+        level = (max(across) if side > 0 else min(across)) + side
+        return self.pen.straight(of, words, level, after=True)
 
     def _best(self, candidates: Iterator[tuple[float, PlacedDimension]]) -> PlacedDimension | None:
         """Returns the cheapest candidate that keeps clear of all values."""
@@ -291,6 +301,8 @@ def _turn(of: Dimension) -> tuple[int, float]:
     """Returns the sort key for placing: lengths along the axes from the shortest, then those with more
     choice.
     """
+    if of.offset is not None:
+        return -1, of.value
     if isinstance(of, Length):
         return int(of.along not in (X_AXIS, Y_AXIS)), of.value
     return 2 + isinstance(of, Roundness), of.value

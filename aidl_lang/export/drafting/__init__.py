@@ -77,8 +77,10 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
     is_crowded = max(len(view.wanted) for view in content.views) > _MANY
     best: _Laid | None = None
     for name, ways in groupby(choices, key=lambda paper: paper.name):
-        found = [laid for paper in ways if (laid := _fitted(content, draft, paper)) is not None]
-        best = max([*([best] if best else ()), *found], key=lambda laid: _factor(laid.scale), default=None)
+        for paper in ways:
+            laid = _fitted(content, draft, paper)
+            if laid is not None and (best is None or _factor(laid.scale) > _factor(best.scale)):
+                best = laid
         least = 1.0 if is_crowded and name in _LEAST else _LEAST.get(name, 0.0)
         if best is not None and _factor(best.scale) >= least:
             return best

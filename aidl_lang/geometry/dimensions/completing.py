@@ -85,7 +85,7 @@ def _together(groups: Sequence[Group]) -> Iterator[Group]:
     for number, group in enumerate(groups):
         first = group[0]
         is_circle = isinstance(first, Roundness) and isinstance(first.curve, Circle)
-        is_plain = is_circle and first.origin != "pattern"
+        is_plain = is_circle and first.origin != "pattern" and first.limits is None and not first.fit
         key = ("circle", round(first.value, 9)) if is_plain else number
         alike.setdefault(key, []).extend(group)
     return map(tuple, alike.values())
