@@ -266,3 +266,51 @@ def test_letters_in_the_pdf_are_as_high_as_said():
         upright = (top - bottom) / 72 * 25.4
         across = (right - left) / 72 * 25.4
         assert 2.49 <= max(upright, across) <= 3.5
+
+
+BY_HAND = """
+solid plate {
+    body = rectangle(width: 80, height: 50)
+    hole eye { rim = circle(center: (-15, 5), diameter: 20) }
+    hole pin { rim = circle(center: (20, 5), diameter: 6) }
+    dimension(body.left, eye.rim.center, offset: 40, tolerance: 0.1)
+    dimension(eye.rim, fit: "H7")
+    dimension(eye.rim.center, pin.rim.center, offset: -38, tolerance: 0.05)
+    dimension(body.bottom, body.top, offset: 12, fit: "h9")
+}
+"""
+
+
+def test_dimensions_by_hand_take_the_place_of_others():
+    (page,) = pages(BY_HAND)
+    assert values(page) == {
+        *("25 ±0.1", "⌀20 H7 (+0.021/0)", "35 ±0.05", "50 h9 (0/-0.062)", "80", "30", "⌀6"),
+    }
+
+
+def test_dimensions_by_hand_stand_where_they_are_asked_for():
+    (page,) = pages(BY_HAND, scale=(1, 1))
+    outline = next(
+        m for g in page.groups if g.name.endswith("outline") for m in g.marks if isinstance(m, Area)
+    )
+    boxes = [bounds(p) for p in outline.face.outer.pieces]
+    right, top = max(b[2] for b in boxes), max(b[3] for b in boxes)
+
+    def line_of(words: str) -> tuple[float, float, float, float]:
+        group = next(
+            g for g in dimension_groups(page) if any(words == getattr(m, "text", "") for m in g.marks)
+        )
+        mark = next(m for m in group.marks if isinstance(m, Curves) and m.role == "dimension")
+        return bounds(mark.pieces[0])
+
+    assert line_of("50 h9 (0/-0.062)")[0] == pytest.approx(right + 12)
+    # From the upper end of the edge.
+    assert line_of("25 ±0.1")[1] == pytest.approx(top + 40)
+    assert line_of("35 ±0.05")[1] == pytest.approx(top - 20 - 38)
+
+
+def test_compile_draws_them_too():
+    drawn = compiled(BY_HAND).export(".svg", Options(dimension=True)).decode()
+    assert "⌀20 H7 (+0.021/0)" in drawn
+    assert "25 ±0.1" in drawn
+    assert ">25<" not in drawn
