@@ -20,7 +20,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, point
+from aidl_lang.geometry.evaluate import Bounds, bounds, point
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
@@ -57,15 +57,36 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     return whole, groups
 
 
-def dimensioned_to_scale(
-    drawing: Drawing, box: Bounds, pen: Pen, wanted: Sequence[tuple[Dimension, ...]]
-) -> tuple[Bounds, tuple[Group, ...], int]:
-    """Returns the box that holds `box` and these dimensions, a group of marks for each, and the number of
-    those that found no place.
+@record()
+class Callout:
+    """A word at the end of a line that points to something. `spots`: where it may point to, with the
+    direction from which it comes.
     """
-    layout = _Layout(drawing, pen, box, most=len(wanted), remarks=False)
+
+    name: str
+    word: str
+    spots: tuple[tuple[Vec, Vec], ...]
+
+
+def dimensioned_to_scale(
+    drawing: Drawing,
+    pen: Pen,
+    wanted: Sequence[tuple[Dimension, ...]],
+    callouts: Sequence[Callout] = (),
+    words: Sequence[Text] = (),
+) -> tuple[Bounds, tuple[Group, ...], int]:
+    """Returns the box of a drawing with these dimensions and callouts, a group of marks for each, and the
+    number of those that found no place. `words` stand there already.
+    """
+    layout = _Layout(drawing, pen, drawing.box, most=len(wanted), remarks=False)
+    layout.sheet.texts += [pen.block(text) for text in words]
     whole, groups = layout.make(wanted)
-    return whole, groups, len(wanted) - len(groups)
+    pointers = [(c, placed) for c in callouts if (placed := layout.point(c)) is not None]
+    rings = [d.curve for group in wanted for d in group if isinstance(d, Roundness) and d.origin == "pattern"]
+    whole = union_bounds([whole, *(pen.box_of(placed) for _, placed in pointers), *map(bounds, rings)])
+    more = [Group(c.name, tuple(pen.marks(placed)), {"class": "item"}) for c, placed in pointers]
+    left = len(wanted) + len(callouts) - len(groups) - len(more)
+    return whole, (*groups, *more), left
 
 
 def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
@@ -142,6 +163,21 @@ class _Layout:
         words = f"{counted(left, 'more dimension')} not shown"
         size = 0.8 * self.pen.font
         return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
+
+    def point(self, callout: Callout) -> PlacedDimension | None:
+        """Places a callout, if there is room for it."""
+        candidates = (
+            (
+                reach / 8 + 0.01 * rank,
+                self.pen.leader(tip, way, reach * self.pen.mm, way[0] >= 0, callout.word),
+            )
+            for rank, (tip, way) in enumerate(callout.spots)
+            for reach in _REACHES
+        )
+        found = self._best(candidates)
+        if found is not None:
+            self.sheet.add(found)
+        return found
 
     def place(self, wanted: tuple[Dimension, ...]) -> PlacedDimension | None:
         words = words_of(wanted[0], len(wanted))

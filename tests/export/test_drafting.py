@@ -37,6 +37,14 @@ assembly shelf {
 }
 """
 
+PANEL = """
+solid panel {
+    body = rectangle(width: 120, height: 80)
+    let spots = [(-50, -30), (-31, 12), (-12, 25), (3, -17), (17, 30), (29, -5), (41, 21), (52, -28), (44, -9)]
+    for i, p in enumerate(spots) { hole h[i] { rim = circle(center: fixed(p), diameter: 4 + (i % 2)) } }
+}
+"""
+
 
 def pages(text: str, **draft: object) -> list[Picture]:
     found = compiled(text)
@@ -69,6 +77,7 @@ def block(text: Text) -> Block:
 
 ALL = [pytest.param(path.read_text("utf-8"), id=path.stem) for path in WORKSHOP]
 ALL.append(pytest.param(ASSEMBLY, id="shelf"))
+ALL.append(pytest.param(PANEL, id="panel"))
 ALL.append(pytest.param((ROOT / "examples" / "motor_bracket.aidl").read_text("utf-8"), id="motor_bracket"))
 
 
@@ -314,3 +323,52 @@ def test_compile_draws_them_too():
     assert "⌀20 H7 (+0.021/0)" in drawn
     assert "25 ±0.1" in drawn
     assert ">25<" not in drawn
+
+
+def test_many_holes_are_told_in_a_table():
+    (page,) = pages(PANEL)
+    assert values(page) == {"120", "80"}
+    table = next(g for g in page.groups if g.name == "holes")
+    cells = [m.text for m in table.marks if isinstance(m, Text)]
+    assert cells[:12] == ["Hole", "X", "Y", "⌀"] * 3
+    rows = sorted(tuple(cells[k : k + 4]) for k in range(12, len(cells), 4))
+    assert rows == [
+        *(("A1", "10", "10", "⌀4"), ("A2", "48", "65", "⌀4"), ("A3", "77", "70", "⌀4")),
+        *(("A4", "101", "61", "⌀4"), ("A5", "104", "31", "⌀4")),
+        *(("B1", "29", "52", "⌀5"), ("B2", "63", "23", "⌀5"), ("B3", "89", "35", "⌀5")),
+        ("B4", "112", "12", "⌀5"),
+    ]
+    signs = next(g for g in page.groups if g.attributes.get("class") == "holes")
+    assert {row[0] for row in rows} | {"X", "Y"} == {m.text for m in signs.marks if isinstance(m, Text)}
+
+
+def test_holes_in_order_need_no_table():
+    hole = "hole h[i][j] { c = circle(center: fixed((20 * i, 20 * j)), radius: 3) }"
+    rows = f"for i in 0..3 {{ for j in 0..2 {{ {hole} }} }}"
+    (page,) = pages(f"solid s {{ b = rectangle(center: (30, 20), width: 90, height: 70) {rows} }}")
+    assert not [g for g in page.groups if g.attributes.get("class") == "table"]
+    assert {"12× ⌀6", "3× 20", "2× 20"} <= values(page)
+
+
+def test_parts_bear_the_numbers_of_the_list():
+    (first, *_) = pages(ASSEMBLY)
+    items = [g for g in first.groups if g.attributes.get("class") == "item"]
+    assert [m.text for g in items for m in g.marks if isinstance(m, Text)] == ["1", "2", "3"]
+
+
+def test_dimensions_from_part_to_part_stand_on_the_first_sheet():
+    first, board, *_ = pages(
+        """assembly a {
+            @detached solid left { r = rectangle(center: fixed((0, 0)), width: 20, height: 30) }
+            @detached solid right { c = circle(center: fixed((60, 0)), radius: 5) }
+            dimension(left.r.right, right.c.center, tolerance: 0.2)
+            dimension(left.r.bottom, left.r.top, tolerance: 0.3)
+        }"""
+    )
+    assert "50 ±0.2" in values(first)
+    assert values(board) == {"20", "30 ±0.3"}
+
+
+def test_a_free_outline_is_told_as_such():
+    (page,) = pages("solid s { e = ellipse(rx: 30, ry: 20) }")
+    assert "Outline not dimensioned: as in the file" in words(page)

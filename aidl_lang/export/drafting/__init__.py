@@ -8,7 +8,7 @@ from itertools import groupby
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
-from aidl_lang.export.drafting.contents import Content, contents
+from aidl_lang.export.drafting.contents import Content, View, contents
 from aidl_lang.export.drafting.lettering import WIDE, lines
 from aidl_lang.export.drafting.paper import SCALES, STANDARDS, Paper, Standard, papers, scale_text
 from aidl_lang.export.drafting.tables import TITLE_HEIGHT, WIDTH, Table, Title, title_block
@@ -28,6 +28,8 @@ _MANY = 24
 """A view with more dimensions than this is not made smaller to save paper."""
 _LONGEST_TITLE = 32
 """Characters of a headline that serves as a title."""
+_SIDE_BY_SIDE = 3
+"""Holes in a row of their table."""
 _LARGEST = 10.0
 """Enlargements go no further unless they are asked for."""
 
@@ -148,7 +150,22 @@ def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] |
 
 def _tables(content: Content) -> list[Table]:
     """Returns the tables of a sheet, the lowest first."""
-    return [_list_of_parts(content)] if content.items else []
+    found = [_list_of_parts(content)] if content.items else []
+    return found + [_table_of_holes(view) for view in content.views if view.holes]
+
+
+def _table_of_holes(view: View) -> Table:
+    """Returns the places of holes, from top to bottom and then further to the right."""
+    count = -(-len(view.holes) // _SIDE_BY_SIDE)
+    cells = [
+        (hole.sign, fixed(hole.x, 2), fixed(hole.y, 2), f"⌀{fixed(2 * hole.circle.radius, 2)}")
+        for hole in view.holes
+    ]
+    cells += [("", "", "", "")] * (count * _SIDE_BY_SIDE - len(cells))
+    rows = tuple(
+        sum((cells[column * count + row] for column in range(_SIDE_BY_SIDE)), ()) for row in range(count)
+    )
+    return Table("holes", ("Hole", "X", "Y", "⌀") * _SIDE_BY_SIDE, rows, frozenset(range(4 * _SIDE_BY_SIDE)))
 
 
 def _list_of_parts(content: Content) -> Table:

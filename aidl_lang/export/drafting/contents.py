@@ -29,9 +29,22 @@ _ALIKE = 1e-6
 
 
 @record()
+class Hole:
+    """A round hole of a table: its sign, a letter for its size and a number, and its place from the lower
+    left corner of the part.
+    """
+
+    sign: str
+    circle: Circle
+    x: float
+    y: float
+
+
+@record()
 class View:
     """Parts seen from one side. `label` tells it from others of the sheet; `balloons`: numbers of the list of
-    parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell.
+    parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell;
+    `holes`: those that a table tells.
     """
 
     label: str
@@ -39,6 +52,7 @@ class View:
     wanted: tuple[Wanted, ...]
     balloons: tuple[tuple[int, Body], ...] = ()
     free: tuple[str, ...] = ()
+    holes: tuple[Hole, ...] = ()
 
 
 @record()
@@ -81,25 +95,49 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
         style = drawing.bodies[0].style if drawing.bodies else styles[root.path]
         return [Content(root, style, (_view(model, drawing),))]
     items = _items(drawing.bodies)
-    found = [Content(root, styles[root.path], tuple(_overview(model, drawing, items)), items)]
+    parts = []
     on, _ = engraved(drawing.bodies, drawing.strokes)
     for item in items:
         body = item.bodies[0]
         alone = _only(drawing, [body], on.get(body.path, ()))
         subject = root.find(body.path) or root
         own = _of_body(model, alone, [b.path for b in drawing.bodies if b is not body])
-        found.append(Content(subject, body.style, (_view(own, alone),), count=len(item.bodies)))
-    return found
+        parts.append(Content(subject, body.style, (_view(own, alone),), count=len(item.bodies)))
+    shown = {d.group for content in parts for view in content.views for g in view.wanted for d in g}
+    between = [size for size in model.sizes if size.origin == "hand" and size.group not in shown]
+    return [Content(root, styles[root.path], tuple(_overview(model, drawing, items, between)), items), *parts]
 
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
     stated = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
     done = completed(drawing, stated)
-    return View("", drawing, done.groups, free=done.free)
+    return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
 
 
-def _overview(model: SolvedModel, drawing: Drawing, items: Sequence[Item]) -> Iterator[View]:
-    """Yields a view for each orientation that parts have."""
+def _holes(drawing: Drawing, circles: Sequence[Circle]) -> Iterator[Hole]:
+    """Yields holes with their signs: equal ones of one letter, from left to right and upwards."""
+    left, bottom, _, _ = drawing.box
+    sizes = sorted({round(c.radius, 6) for c in circles})
+    for number, size in enumerate(sizes):
+        own = sorted(
+            (c for c in circles if round(c.radius, 6) == size),
+            key=lambda c: (round(c.center[0], 6), round(c.center[1], 6)),
+        )
+        for k, circle in enumerate(own, 1):
+            x, y = circle.center
+            yield Hole(f"{_letters(number)}{k}", circle, x - left, y - bottom)
+
+
+def _letters(number: int) -> str:
+    """Returns A, B, … Z, AA, AB, …"""
+    more, last = divmod(number, 26)
+    return (_letters(more - 1) if more else "") + chr(ord("A") + last)
+
+
+def _overview(
+    model: SolvedModel, drawing: Drawing, items: Sequence[Item], between: Sequence[Dimension]
+) -> Iterator[View]:
+    """Yields a view for each orientation that parts have, the first with the dimensions from part to part."""
     orientations = {s.path: s.orientation for s in model.root.walk()}
     seen = dict.fromkeys(orientations[body.path] for body in drawing.bodies)
     for orientation in seen:
@@ -108,7 +146,8 @@ def _overview(model: SolvedModel, drawing: Drawing, items: Sequence[Item]) -> It
         part = drawing if len(seen) == 1 else _only(drawing, bodies, strokes)
         label = f"Seen from the {orientation}" if len(seen) > 1 else ""
         balloons = tuple((item.number, b) for item in items for b in item.bodies[:1] if b in bodies)
-        yield View(label, part, tuple((d,) for d in overall(part)), balloons)
+        wanted = [*overall(part), *(between if orientation == next(iter(seen)) else ())]
+        yield View(label, part, tuple((d,) for d in wanted), balloons)
 
 
 def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:

@@ -84,6 +84,8 @@ class Table:
         # What is left over goes to the widest; too much is taken off all alike.
         if total > WIDTH:
             return [WIDTH * w / total for w in wanted]
+        if len(self.numeric) == len(wanted):
+            return [WIDTH * w / total for w in wanted]
         wanted[wanted.index(max(wanted))] += WIDTH - total
         return wanted
 

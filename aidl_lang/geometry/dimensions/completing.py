@@ -26,10 +26,14 @@ Group = tuple[Dimension, ...]
 
 DERIVED = "derived"
 """The origin of a dimension that the program does not state."""
+MOST_HOLES = 8
+"""More round holes than this that stand in no row or circle are told in a table."""
 MOST_LEVELS = 150
 """A part with more levels than this is made from a file, not from dimensions."""
 
 _SLACK = 1e-6
+_EVEN = 1e-4
+"""Degrees by which equal steps on a circle may differ."""
 _ALONG = (X_AXIS, Y_AXIS)
 _NEEDED = ("size", "pattern", DERIVED)
 """Origins of dimensions that are left out where others tell as much."""
@@ -38,25 +42,93 @@ _NEEDED = ("size", "pattern", DERIVED)
 @record()
 class Completed:
     """Dimensions that tell a drawing. `free`: outlines that no dimension tells, of the bodies at these
-    paths.
+    paths; `holes`: round ones that are to be told in a table, by their places.
     """
 
     groups: tuple[Group, ...]
     free: tuple[str, ...] = ()
+    holes: tuple[Circle, ...] = ()
 
 
 def completed(drawing: Drawing, stated: Sequence[Group]) -> Completed:
     """Returns the stated dimensions that are needed, and those that are missing."""
-    groups = list(_together(stated))
+    slack = _SLACK * drawing.size
+    pieces = [piece for body in drawing.bodies for piece in body.region.pieces]
+    stated = [
+        group
+        for group in stated
+        if not (group[0].origin == "pattern" and isinstance(group[0], Roundness))
+        or _is_told_by(group[0].curve, _centers_on(group[0].curve, pieces, slack))
+    ]
+    holes = _scattered(drawing, stated, slack)
+    groups = [group for group in _together(stated) if not any(_is_about(d, holes, slack) for d in group)]
     free = []
     for body in drawing.bodies:
-        part = _Part(body, _SLACK * drawing.size)
+        part = _Part(body, slack, holes)
         if part.is_free:
             free.append(body.path)
             continue
         groups = part.needed(groups)
         groups += part.missing()
-    return Completed(tuple(groups), tuple(free))
+    return Completed(tuple(groups), tuple(free), holes)
+
+
+def _centers_on(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> list[Vec]:
+    """Returns the centres of whole circles that lie on a circle."""
+    centers = [p.center for p in pieces if isinstance(p, Circle)]
+    return [c for c in centers if abs(math.dist(c, ring.center) - ring.radius) <= slack]
+
+
+def _is_told_by(ring: Circle | Arc, centers: Sequence[Vec]) -> bool:
+    """Tells whether a circle through centres tells where they are: they stand at equal steps on it, and one
+    of them, or a middle between two, straight beside the centre or above it.
+    """
+    (x0, y0), turns = ring.center, []
+    for x, y in centers:
+        turns.append(math.degrees(math.atan2(y - y0, x - x0)) % 360)
+    turns.sort()
+    steps = [b - a for a, b in pairwise([*turns, turns[0] + 360])] if turns else []
+    if not steps or max(steps) - min(steps) > _EVEN:
+        return False
+    half = steps[0] / 2
+    return any(abs((t - quarter + half / 2) % half - half / 2) <= _EVEN for t in turns for quarter in (0, 90))
+
+
+def _scattered(drawing: Drawing, stated: Sequence[Group], slack: float) -> tuple[Circle, ...]:
+    """Returns the round holes for a table: those in no pattern, if they are many."""
+    ordered: list[Vec] = []
+    rings: list[Circle | Arc] = []
+    for dimension in (d for group in stated for d in group if d.origin == "pattern"):
+        if isinstance(dimension, Length):
+            ordered += [*dimension.start, *dimension.end]
+        elif isinstance(dimension, Roundness):
+            rings.append(dimension.curve)
+
+    def is_ordered(c: Circle) -> bool:
+        in_row = any(math.dist(c.center, p) <= slack for p in ordered)
+        return in_row or any(abs(math.dist(c.center, r.center) - r.radius) <= slack for r in rings)
+
+    holes = [
+        piece
+        for body in drawing.bodies
+        for face in body.region.faces
+        for loop in face.holes
+        for piece in loop.pieces
+        if isinstance(piece, Circle) and not is_ordered(piece)
+    ]
+    return tuple(holes) if len(holes) > MOST_HOLES else ()
+
+
+def _is_about(of: Dimension, holes: Sequence[Circle], slack: float) -> bool:
+    """Tells whether a dimension is told by the table of holes."""
+    if of.origin == "hand":
+        return False
+    match of:
+        case Length(start=start, end=end):
+            return any(math.dist(c.center, p) <= slack for c in holes for p in (*start, *end))
+        case Roundness(curve=curve):
+            return any(_is_same(c, curve, slack) for c in holes)
+    return False
 
 
 def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]:
@@ -141,7 +213,7 @@ class _Axis:
 
 
 class _Part:
-    def __init__(self, body: Body, slack: float) -> None:
+    def __init__(self, body: Body, slack: float, holes: Sequence[Circle] = ()) -> None:
         self.body, self.slack = body, slack
         self.axes = _Axis(0, slack), _Axis(1, slack)
         self.rounds: list[Circle | Arc] = []
@@ -151,7 +223,8 @@ class _Part:
         if self.is_free:
             return
         for loop in body.region.loops:
-            self._read(loop)
+            if loop.pieces[0] not in holes:
+                self._read(loop)
         self.seen = tuple(frozenset(range(len(axis.values))) for axis in self.axes)
         self.is_free = any(len(axis.wanted) > MOST_LEVELS for axis in self.axes)
         for axis, middle in zip(self.axes, mirror_levels(body, slack), strict=True):
@@ -273,24 +346,9 @@ class _Part:
                 axis.tie(middle, axis.level(curve.center[axis.axis] + side * curve.radius))
 
     def _learn_ring(self, ring: Circle) -> None:
-        """Learns that centres stand at equal steps on a circle, one of them straight beside its centre or two
-        of them alike.
-        """
-        on = [
-            c.center
-            for c in self.rounds
-            if isinstance(c, Circle) and abs(math.dist(c.center, ring.center) - ring.radius) <= self.slack
-        ]
-        turns = sorted(math.degrees(math.atan2(y - ring.center[1], x - ring.center[0])) % 360 for x, y in on)
-        steps = [b - a for a, b in pairwise([*turns, turns[0] + 360])] if turns else []
-        if not steps or max(steps) - min(steps) > 1e-4:
-            return
-        # Where they begin is seen without a number: one of them, or a middle between two, is straight beside
-        # the centre or above it.
-        half = steps[0] / 2
-        if not any(
-            abs((t - quarter + half / 2) % half - half / 2) <= 1e-4 for t in turns for quarter in (0, 90)
-        ):
+        """Learns that the centres on a circle stand at equal steps, if it is seen where these begin."""
+        on = _centers_on(ring, self.body.region.pieces, self.slack)
+        if not _is_told_by(ring, on):
             return
         for axis in self.axes:
             middle = axis.level(ring.center[axis.axis], ring.center)
