@@ -40,7 +40,8 @@ assembly shelf {
 PANEL = """
 solid panel {
     body = rectangle(width: 120, height: 80)
-    let spots = [(-50, -30), (-31, 12), (-12, 25), (3, -17), (17, 30), (29, -5), (41, 21), (52, -28), (44, -9)]
+    let low = [(-50, -30), (3, -17), (29, -5), (52, -28), (44, -9)]
+    let spots = [low[0], (-31, 12), (-12, 25), low[1], (17, 30), low[2], (41, 21), low[3], low[4]]
     for i, p in enumerate(spots) { hole h[i] { rim = circle(center: fixed(p), diameter: 4 + (i % 2)) } }
 }
 """
