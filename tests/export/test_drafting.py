@@ -373,3 +373,14 @@ def test_dimensions_from_part_to_part_stand_on_the_first_sheet():
 def test_a_free_outline_is_told_as_such():
     (page,) = pages("solid s { e = ellipse(rx: 30, ry: 20) }")
     assert "Outline not dimensioned: as in the file" in words(page)
+
+
+def test_parts_of_one_shape_and_two_sizes_are_two():
+    found = pages(
+        """assembly a {
+            @detached solid s { c = circle(radius: 9) }
+            @detached solid t { c = circle(center: fixed((40, 0)), radius: 4) }
+            @detached solid u { c = circle(center: fixed((60, 0)), radius: 4) }
+        }"""
+    )
+    assert [sorted(values(page)) for page in found[1:]] == [["⌀18"], ["⌀8"]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
@@ -162,9 +162,7 @@ def _table_of_holes(view: View) -> Table:
         for hole in view.holes
     ]
     cells += [("", "", "", "")] * (count * _SIDE_BY_SIDE - len(cells))
-    rows = tuple(
-        sum((cells[column * count + row] for column in range(_SIDE_BY_SIDE)), ()) for row in range(count)
-    )
+    rows = tuple(tuple(chain(*cells[row::count])) for row in range(count))
     return Table("holes", ("Hole", "X", "Y", "⌀") * _SIDE_BY_SIDE, rows, frozenset(range(4 * _SIDE_BY_SIDE)))
 
 

@@ -163,11 +163,12 @@ def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
 def _shape(body: Body) -> object:
     """Returns a key that bodies share which are moved copies of each other, and of one stock."""
     left, bottom, right, top = region_bounds(body.region)
-    slack = _ALIKE * max(right - left, top - bottom)
+    size = max(right - left, top - bottom)
+    slack = _ALIKE * size
     places = sorted(
         tuple(round(v / slack) for v in _relative(bounds(p), left, bottom)) for p in body.region.pieces
     )
-    return body.style.material, body.style.thickness, tuple(places)
+    return body.style.material, body.style.thickness, round(size, 6), tuple(places)
 
 
 def _relative(box: Bounds, left: float, bottom: float) -> Bounds:
