@@ -77,7 +77,7 @@ _ALSO = (
 """Measures, which constrain when compared."""
 
 _WITHOUT_TABLE = ("meshes", "dimension")
-"""Constraints that have no table: one between things of one shape only (gears), one that constrains nothing."""
+"""Constraints without a table: between things of one shape only (gears), and one that constrains nothing."""
 
 
 @record()
