@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options, Progress
     from aidl_lang.export.comparison import Comparison
+    from aidl_lang.export.drafting import Draft
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
@@ -113,6 +114,16 @@ class Compiled:
             return replace(made, notes=self._audible(made.notes))
 
         return write
+
+    def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
+        """Returns the drawing sheets in each of some formats of pictures. Raises as `exported` does."""
+        from aidl_lang.export import Job, rendered
+        from aidl_lang.export.drafting import drafted
+
+        job = Job(*self._finished, tuple(self.diagnostics), options)
+        with within(self.limit, "drawing"):
+            pages = drafted(job, draft)
+            return [rendered(pages, suffix, options, job.model.root.path) for suffix in suffixes]
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
         """Returns the content of the file alone (see `exported`)."""

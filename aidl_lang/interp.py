@@ -70,7 +70,9 @@ def interpret(
     except Stop:
         root = it.root or _nothing()
     constraints = anchored(it.constraints)
-    model = Model(root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
+    model = Model(
+        root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals, it.by_hand
+    )
     return Interpretation(model, it.diagnostics, it.written, program.resolution.allowances)
 
 

@@ -234,7 +234,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "elevation": _elevation,
     "layer": _text("layer"),
     "material": _text("material"),
-    "note": _text("note"),
+    **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
     "detached": _detached,
     "stroke": _stroke,
     "dash": _dash,

@@ -8,6 +8,7 @@ from dataclasses import replace
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved
+from aidl_lang.building.by_hand import is_by_hand, record_dimension
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
@@ -48,6 +49,9 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     """Adds `constrain EXPR` or, with a weight, `prefer EXPR` to the model; checks constant conditions on the
     spot.
     """
+    if isinstance(node, ast.Call) and is_by_hand(it, node):
+        record_dimension(it, node, env)
+        return
     handed = _handed_over(it, node)
     if any(_holds_place(it, inner) for inner in handed):
         for inner in handed:

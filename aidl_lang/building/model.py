@@ -538,6 +538,7 @@ class Model:
     readings    choices among the meanings of ambiguous calls, by place, for the report
     literals    numbers of the text, and of the library's, that are first guesses or kept sizes; one for each
                 use
+    by_hand     dimensions that the program asks for, which constrain nothing
     """
 
     root: Structure
@@ -547,3 +548,4 @@ class Model:
     knobs: list[Knob]
     readings: list[tuple[Span, str]] = field(default_factory=list)
     literals: list[Literal] = field(default_factory=list)
+    by_hand: list[Constraint] = field(default_factory=list)

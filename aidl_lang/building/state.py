@@ -100,6 +100,7 @@ class Interpreter:
     following: list[Geometry] = field(default_factory=list)
     """geometry derived of geometry outside of its structure"""
     constraints: list[Constraint] = field(default_factory=list)
+    by_hand: list[Constraint] = field(default_factory=list)
     assertions: list[Assertion] = field(default_factory=list)
     knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)

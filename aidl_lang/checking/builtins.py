@@ -181,7 +181,8 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "edges", "behind", "in_front", ast.ALLOW),
+    *("stroke", "dash", "opacity", "edges", "behind", "in_front"),
+    *("title", "author", "number", "revision", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 

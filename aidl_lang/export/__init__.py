@@ -312,6 +312,20 @@ def render(picture: Picture, suffix: str, options: Options) -> bytes:
     return PICTURES[suffix](picture, options)
 
 
+def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str) -> Exported:
+    """Writes pictures in the format of a file suffix among `PICTURES`: a PDF has a page for each, of others
+    there is a file for each. Raises as `export` does.
+    """
+    from aidl_lang.export.font import character_notes
+
+    if suffix == ".pdf":
+        from aidl_lang.export.pdf import to_pdf
+
+        return Exported(to_pdf(pages, title), notes=character_notes(pages))
+    data, *further = (render(page, suffix, options) for page in pages)
+    return Exported(data, tuple(further), () if suffix == ".svg" else character_notes(pages))
+
+
 def _svg_picture(picture: Picture, options: Options) -> bytes:
     from aidl_lang.export.svg import to_svg
 

@@ -238,7 +238,24 @@ def words_of(of: Dimension, count: int = 1) -> str:
             number = f"{'⌀' if of.kind == 'diameter' else 'R'}{number}"
         case Opening():
             number += "°"
+    number += _tolerance(of)
     return f"{count}× {number}" if count > 1 else number
+
+
+def _tolerance(of: Dimension) -> str:
+    """Returns what stands behind a value: ± as one number, other limits with the fit that they belong to."""
+    fit = f" {of.fit}" if of.fit else ""
+    if of.limits is None:
+        return fit
+    low, high = of.limits
+    unit = "°" if isinstance(of, Opening) else ""
+    if -low == high:
+        return f"{fit} ±{fixed(high, 4)}{unit}"
+    return f"{fit} ({_signed(high)}/{_signed(low)})"
+
+
+def _signed(value: float) -> str:
+    return f"{'+' if value > 0 else ''}{fixed(value, 4)}"
 
 
 def arc_segments(arc: Arc) -> list[Segment]:

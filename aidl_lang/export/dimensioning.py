@@ -20,7 +20,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, point
+from aidl_lang.geometry.evaluate import Bounds, bounds, point
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
@@ -43,7 +43,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
     be read when the whole is seen.
     """
-    wanted = _visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    wanted = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
     size = max(box[2] - box[0], box[3] - box[1])
     if not wanted or not size > 0:
         return box, ()
@@ -57,7 +57,39 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     return whole, groups
 
 
-def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
+@record()
+class Callout:
+    """A word at the end of a line that points to something. `spots`: where it may point to, with the
+    direction from which it comes.
+    """
+
+    name: str
+    word: str
+    spots: tuple[tuple[Vec, Vec], ...]
+
+
+def dimensioned_to_scale(
+    drawing: Drawing,
+    pen: Pen,
+    wanted: Sequence[tuple[Dimension, ...]],
+    callouts: Sequence[Callout] = (),
+    words: Sequence[Text] = (),
+) -> tuple[Bounds, tuple[Group, ...], int]:
+    """Returns the box of a drawing with these dimensions and callouts, a group of marks for each, and the
+    number of those that found no place. `words` stand there already.
+    """
+    layout = _Layout(drawing, pen, drawing.box, most=len(wanted), remarks=False)
+    layout.sheet.texts += [pen.block(text) for text in words]
+    whole, groups = layout.make(wanted)
+    pointers = [(c, placed) for c in callouts if (placed := layout.point(c)) is not None]
+    rings = [d.curve for group in wanted for d in group if isinstance(d, Roundness) and d.origin == "pattern"]
+    whole = union_bounds([whole, *(pen.box_of(placed) for _, placed in pointers), *map(bounds, rings)])
+    more = [Group(c.name, tuple(pen.marks(placed)), {"class": "item"}) for c, placed in pointers]
+    left = len(wanted) + len(callouts) - len(groups) - len(more)
+    return whole, (*groups, *more), left
+
+
+def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
     """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts."""
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
@@ -68,7 +100,7 @@ def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tupl
         group
         for group in wanted
         if not isinstance(group[0], Length)
-        or group[0].origin in ("constraint", "overall")
+        or group[0].origin in ("hand", "constraint", "overall")
         or (ends_at_something(group[0].start) and ends_at_something(group[0].end))
     ]
 
@@ -89,20 +121,22 @@ class _Layout:
     pen: Pen
     box: Bounds
     rows: list[_Row] = field(default_factory=list)
+    most: int = MOST
+    remarks: bool = True
 
     def __post_init__(self) -> None:
         self.sheet = Sheet(self.drawing, self.pen)
 
     def make(self, wanted: Sequence[tuple[Dimension, ...]]) -> tuple[Bounds, tuple[Group, ...]]:
         placed: dict[int, PlacedDimension] = {}
-        for index in sorted(range(min(len(wanted), MOST)), key=lambda i: _turn(wanted[i][0])):
+        for index in sorted(range(min(len(wanted), self.most)), key=lambda i: _turn(wanted[i][0])):
             found = self.place(wanted[index])
             if found is not None:
                 self.sheet.add(found)
                 placed[index] = found
         boxes = [self.box, *map(self.pen.box_of, placed.values())]
         groups = [self._group(n, wanted[i], placed[i]) for n, i in enumerate(sorted(placed), 1)]
-        if left := len(wanted) - len(placed):
+        if self.remarks and (left := len(wanted) - len(placed)):
             note = self._remark(left, union_bounds(boxes))
             groups.append(Group("dimensions-left-out", (note,), {"class": "dimension"}))
             boxes.append(note.box)
@@ -130,6 +164,21 @@ class _Layout:
         size = 0.8 * self.pen.font
         return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
 
+    def point(self, callout: Callout) -> PlacedDimension | None:
+        """Places a callout, if there is room for it."""
+        candidates = (
+            (
+                reach / 8 + 0.01 * rank,
+                self.pen.leader(tip, way, reach * self.pen.mm, way[0] >= 0, callout.word),
+            )
+            for rank, (tip, way) in enumerate(callout.spots)
+            for reach in _REACHES
+        )
+        found = self._best(candidates)
+        if found is not None:
+            self.sheet.add(found)
+        return found
+
     def place(self, wanted: tuple[Dimension, ...]) -> PlacedDimension | None:
         words = words_of(wanted[0], len(wanted))
         match wanted[0]:
@@ -153,10 +202,20 @@ class _Layout:
         start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
+        if of.offset is not None:
+            return self._by_hand(of, words, of.offset)
         placed = self._in_row(of, words) if is_straight else self._best(self._beside(of, words))
         unseen = [points[0] for points, seen in ((of.start, start), (of.end, end)) if not seen]
         crosses = tuple((p, CROSS * self.pen.mm) for p in unseen)
         return replace(placed, crosses=crosses) if placed is not None else None
+
+    def _by_hand(self, of: Length, words: str, offset: float) -> PlacedDimension:
+        """Places a length at an offset from what it measures: to the right or upwards, or the other way."""
+        u, v = of.along
+        side = -offset if of.along == Y_AXIS else offset  # across a vertical length is towards the left
+        across = [p[1] * u - p[0] * v for p in (*of.start, *of.end)]
+        level = (max(across) if side > 0 else min(across)) + side
+        return self.pen.straight(of, words, level, after=True)
 
     def _best(self, candidates: Iterator[tuple[float, PlacedDimension]]) -> PlacedDimension | None:
         """Returns the cheapest candidate that keeps clear of all values."""
@@ -278,6 +337,8 @@ def _turn(of: Dimension) -> tuple[int, float]:
     """Returns the sort key for placing: lengths along the axes from the shortest, then those with more
     choice.
     """
+    if of.offset is not None:
+        return -1, of.value
     if isinstance(of, Length):
         return int(of.along not in (X_AXIS, Y_AXIS)), of.value
     return 2 + isinstance(of, Roundness), of.value

@@ -1,9 +1,10 @@
-"""Scales a picture."""
+"""Scales and moves pictures and what is in them."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from aidl_lang.common.records import record
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Piece, Vec, image
 from aidl_lang.geometry.evaluate import Bounds
@@ -12,20 +13,22 @@ from aidl_lang.geometry.region import Face, Loop
 
 def scaled(picture: Picture, factor: float) -> Picture:
     """Returns the picture with all its lengths multiplied."""
-    scale = _Scale(factor)
+    scale = Placing(factor)
     return Picture(scale.box(picture.box), tuple(map(scale.group, picture.groups)))
 
 
-class _Scale:
-    def __init__(self, factor: float) -> None:
-        self.factor = factor
+@record()
+class Placing:
+    """Multiplies all lengths, then moves by `shift`."""
+
+    factor: float
+    shift: Vec = (0.0, 0.0)
 
     def point(self, p: Vec) -> Vec:
-        return self.factor * p[0], self.factor * p[1]
+        return self.factor * p[0] + self.shift[0], self.factor * p[1] + self.shift[1]
 
     def box(self, box: Bounds) -> Bounds:
-        left, bottom, right, top = box
-        return self.factor * left, self.factor * bottom, self.factor * right, self.factor * top
+        return *self.point(box[:2]), *self.point(box[2:])
 
     def group(self, group: Group) -> Group:
         clip = None if group.clip is None else self.box(group.clip)

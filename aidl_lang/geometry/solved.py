@@ -257,10 +257,14 @@ class Dimension:
 
     value   mm or degrees, as it came out
     origin  where it comes from: `param` for an exact size (through a param or `fixed`), `constraint`, `size`
-            for one written as a number, `overall`, `pattern` for how equal holes stand to each other
+            for one written as a number, `overall`, `pattern` for how equal holes stand to each other,
+            `hand` for one that the program asks for by `dimension(…)`, `derived` for one that was missing
     of      the path of what it is a size of, or the constraint as written
     name    the param that it is, where it is one and nothing else
     group   equal dimensions of one group are shown once, with their number
+    offset  of its line from what it measures, to the right or upwards, mm; None where it is placed freely
+    limits  the lower and upper deviation that are allowed, mm or degrees
+    fit     the tolerance class that they come from, where it is one
     """
 
     value: float
@@ -268,6 +272,9 @@ class Dimension:
     of: str = ""
     name: str | None = None
     group: object = None
+    offset: float | None = None
+    limits: tuple[float, float] | None = None
+    fit: str = ""
 
     @property
     def kind(self) -> str:

@@ -118,6 +118,8 @@ def _call(ev: Evaluator, e: ast.Call, scope: Scope) -> list[float]:
     if found is not None and isinstance(found[0], ast.FunctionDefinition):
         return residuals(ev, found[0].value, found[1])
     name = fold(scope.canonical(e.callee.text))
+    if name == "dimension":  # it is drawn, and nothing has to hold for it
+        return []
     relation = RELATIONS.get(fold(e.callee.text)) or RELATIONS.get(name)
     if relation is not None:
         return relation(ev, *positional, **ev.renamed(relation, named))

@@ -13,7 +13,7 @@ from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.geometry.curves import Arc, Circle
-from aidl_lang.geometry.dimensions.constraints import stated_lengths
+from aidl_lang.geometry.dimensions.constraints import by_hand, stated_lengths
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, length_along
 from aidl_lang.geometry.dimensions.fields import field_sizes
 from aidl_lang.geometry.dimensions.patterns import pattern_pitches
@@ -21,14 +21,18 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
-RANKS = ("param", "overall", "constraint", "size", "pattern")
+RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
 """Origins of dimensions, the more important first."""
 
 
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
     """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
-    found = [*field_sizes(model, solved, evaluate, names), *stated_lengths(model, solved, evaluate, names)]
+    found = [
+        *by_hand(model, solved, evaluate, names),
+        *field_sizes(model, solved, evaluate, names),
+        *stated_lengths(model, solved, evaluate, names),
+    ]
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))
 

@@ -12,11 +12,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.boxes import Box, spelled_out
+from aidl_lang.building.by_hand import axis_of, measured, options
 from aidl_lang.building.expression import ZERO, Evaluator, Expression, constant
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure, convert, convert_angle
-from aidl_lang.building.values import Array, ListVal, Num, PointVal, Value, members
+from aidl_lang.building.values import NOTHING, Array, ListVal, Num, PointVal, TextVal, Value, members
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.fits import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.features import (
@@ -27,8 +29,10 @@ from aidl_lang.geometry.dimensions.features import (
     length_along,
     length_between,
     length_of_line,
+    meeting,
 )
 from aidl_lang.geometry.dimensions.fields import SizedGeometry, level_angle, round_dimension
+from aidl_lang.geometry.evaluate import NO_LENGTH
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -62,6 +66,17 @@ def stated_lengths(
         checkpoint()
         if constraint.weight is None and isinstance(constraint.wording, Wording):
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
+
+
+def by_hand(
+    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+) -> Iterator[Dimension]:
+    """Yields the dimensions that the program asks for, in order of writing."""
+    scene = Scene(model, solved, evaluate, names)
+    for asked in model.by_hand:
+        checkpoint()
+        assert isinstance(asked.wording, Wording)
+        yield from _Statement(scene, asked, asked.wording).asked_for()
 
 
 class Scene:
@@ -118,6 +133,77 @@ class _Statement:
                     name=self.scene.names.get(value.expression),
                     group=(self.constraint.span, k),
                 )
+
+    def asked_for(self) -> Iterator[Dimension]:
+        """Yields the dimension of `dimension(a, b, …)`."""
+        node = self.wording.node
+        assert isinstance(node, ast.Call)
+        things = measured(node)
+        said = {name: self.wording.value(value) for name, value in options(node).items()}
+        offset, tolerance, fit = (said.get(name) for name in ("offset", "tolerance", "fit"))
+        found = self._alone(things[0]) if len(things) == 1 else self._from_to(*things[:2])
+        if found is None or not found.value > NO_LENGTH:
+            return
+        limits, named = None, ""
+        if isinstance(tolerance, Num) and tolerance.value > 0:
+            limits = (-tolerance.value, tolerance.value)
+        if isinstance(fit, TextVal) and fit.value:
+            limits, named = fit_limits(fit.value, found.value), fit.value
+        yield replace(
+            found,
+            origin="hand",
+            of=self.constraint.text,
+            group=(self.constraint.span, self.constraint.label),
+            offset=offset.value if isinstance(offset, Num) and offset.value else None,
+            limits=limits,
+            fit=named,
+        )
+
+    def _alone(self, node: ast.Expression) -> Dimension | None:
+        """Returns the size of a line or of something round."""
+        thing = self.wording.value(node)
+        solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
+        curve = solved.curve if solved is not None else None
+        if isinstance(curve, Circle | Arc):
+            return round_dimension(curve)
+        return length_of_line(curve.start, curve.end) if isinstance(curve, Line) else None
+
+    def _from_to(self, a: ast.Expression, b: ast.Expression) -> Dimension | None:
+        """Returns the distance of two things: along the axis of a coordinate or of an edge that is level or
+        upright, at a right angle to a slanted edge; the angle of two edges that are not parallel.
+        """
+        lines = [line for node in (a, b) if (line := self._line(node)) is not None]
+        if len(lines) == 2 and meeting(*lines) is not None:
+            (ux, uy), (vx, vy) = ((q.end[0] - q.start[0], q.end[1] - q.start[1]) for q in lines)
+            turn = abs(math.degrees(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy)))
+            return angle_of(lines[0], lines[1], turn)
+        axis = next((k for node in (a, b) if (k := self._axis(node)) is not None), None)
+        if axis is None:
+            return self._distance("distance", a, b)
+        ends = [self._at_axis(node, axis) for node in (a, b)]
+        return length_between(ends[0], ends[1], self._way(axis)) if all(ends) else None
+
+    def _axis(self, node: ast.Expression) -> int | None:
+        """Returns the axis along which something has a coordinate of its own: 0 for an upright edge."""
+        if (line := self._line(node)) is not None:
+            across = [
+                abs(dot((line.end[0] - line.start[0], line.end[1] - line.start[1]), self._way(k)))
+                for k in (0, 1)
+            ]
+            flat = _SLACK * math.dist(line.start, line.end)
+            return next((k for k in (0, 1) if across[k] <= flat), None)
+        value = self.wording.value(node)
+        return axis_of(node, value) if value is not None else None
+
+    def _at_axis(self, node: ast.Expression, axis: int) -> tuple[Vec, ...]:
+        """Returns points whose coordinate along an axis is that of something."""
+        if self._axis(node) == axis and (found := self._coordinate(node)) is not None:
+            return found[1]
+        if isinstance(node, ast.Member) and axis_of(node, self.wording.value(node) or NOTHING) == axis:
+            p = self._point(node.value)
+        else:
+            p = self._point(node)
+        return (p,) if p is not None else ()
 
     def _read(self) -> Iterator[tuple[Dimension, Num]]:
         """Dimensions with the values that are stated for them."""

@@ -28,6 +28,7 @@ _BETWEEN_SEARCHES = 100_000
 _VERBS = {
     "compile": "draw a program",
     "check": "find mistakes, write nothing",
+    "sheet": "put a technical drawing on paper",
     "show": "show the drawing in the terminal",
     "measure": "tell areas, walls, gaps and masses",
     "diff": "tell what differs between two versions",

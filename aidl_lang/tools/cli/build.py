@@ -137,7 +137,7 @@ def _write(
         (name, data)
         for target, result in made
         for name, data in zip(
-            _names(target, len(result.further)), (result.data, *result.further), strict=True
+            target_names(target, len(result.further)), (result.data, *result.further), strict=True
         )
     ]
     for name, data in contents:
@@ -160,7 +160,7 @@ class _Progress:
             print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def _names(target: Target, further: int) -> list[str]:
+def target_names(target: Target, further: int) -> list[str]:
     """Returns the name of the output, and those of further files."""
     from aidl_lang.export import file_names
 

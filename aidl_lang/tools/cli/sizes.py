@@ -6,18 +6,8 @@ import math
 import re
 from argparse import ArgumentTypeError
 
-PAPERS = {
-    "a0": (841.0, 1189.0),
-    "a1": (594.0, 841.0),
-    "a2": (420.0, 594.0),
-    "a3": (297.0, 420.0),
-    "a4": (210.0, 297.0),
-    "a5": (148.0, 210.0),
-    "letter": (215.9, 279.4),
-    "legal": (215.9, 355.6),
-    "tabloid": (279.4, 431.8),
-}
-"""Width and height in mm, upright."""
+from aidl_lang.common.papers import PAPERS
+
 LARGEST = 1e5
 """Largest side of a sheet, mm."""
 

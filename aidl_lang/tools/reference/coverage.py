@@ -76,8 +76,8 @@ _ALSO = (
 )
 """Measures, which constrain when compared."""
 
-_OF_ONE_SHAPE = ("meshes",)
-"""Constraints between things of one shape only (gears), which have no table."""
+_WITHOUT_TABLE = ("meshes", "dimension")
+"""Constraints without a table: between things of one shape only (gears), and one that constrains nothing."""
 
 
 @record()
@@ -107,7 +107,7 @@ def constraints() -> list[str]:
     """Returns all constraints, in the order of the reference."""
     entries = collect.reference().entries.values()
     found = [e.name for e in entries if e.sort in ("constraint", "relation") or e.name in _ALSO]
-    return [name for name in found if name not in _OF_ONE_SHAPE]
+    return [name for name in found if name not in _WITHOUT_TABLE]
 
 
 def cells(name: str) -> Iterator[Cell]:

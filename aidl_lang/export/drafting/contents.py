@@ -1,0 +1,228 @@
+"""What a drawing of some parts has to show: the sheets, the views on each, the dimensions of each view."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from aidl_lang.common.numbers import fixed
+from aidl_lang.common.records import record
+from aidl_lang.export.dimension_marks import Pen
+from aidl_lang.export.dimension_sheet import Sheet
+from aidl_lang.export.dimensioning import visible
+from aidl_lang.geometry.contacts import Contacts
+from aidl_lang.geometry.curves import Circle, Vec
+from aidl_lang.geometry.dimensions import dimensions, overall
+from aidl_lang.geometry.dimensions.completing import completed
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
+from aidl_lang.geometry.engraving import engraved
+from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel, SolvedStructure
+from aidl_lang.geometry.styles import Style
+
+Wanted = tuple[Dimension, ...]
+"""Equal dimensions that are shown once."""
+
+_ALIKE = 1e-6
+
+
+@record()
+class Hole:
+    """A round hole of a table: its sign, a letter for its size and a number, and its place from the lower
+    left corner of the part.
+    """
+
+    sign: str
+    circle: Circle
+    x: float
+    y: float
+
+
+@record()
+class View:
+    """Parts seen from one side. `label` tells it from others of the sheet; `balloons`: numbers of the list of
+    parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell;
+    `holes`: those that a table tells.
+    """
+
+    label: str
+    drawing: Drawing
+    wanted: tuple[Wanted, ...]
+    balloons: tuple[tuple[int, Body], ...] = ()
+    free: tuple[str, ...] = ()
+    holes: tuple[Hole, ...] = ()
+
+
+@record()
+class Item:
+    """Equal parts: an entry of the list of parts."""
+
+    number: int
+    bodies: tuple[Body, ...]
+    name: str
+
+    @property
+    def style(self) -> Style:
+        return self.bodies[0].style
+
+    @property
+    def size(self) -> str:
+        left, bottom, right, top = self.bodies[0].box
+        sides = [right - left, top - bottom]
+        sides += [self.style.thickness] if self.style.thickness is not None else []
+        return " × ".join(fixed(side, 2) for side in sides)
+
+
+@record()
+class Content:
+    """A sheet: what it is of, and its views. `items` is the list of parts that it bears."""
+
+    subject: SolvedStructure
+    style: Style
+    views: tuple[View, ...]
+    items: tuple[Item, ...] = ()
+    count: int = 1
+
+
+def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
+    """Returns the sheets that are needed: one for a single part, else one of all parts with a list of them,
+    and one for each that differs from the others.
+    """
+    root, styles = model.root, drawing.styles
+    if len(drawing.bodies) < 2:
+        style = drawing.bodies[0].style if drawing.bodies else styles[root.path]
+        return [Content(root, style, (_view(model, drawing),))]
+    items = _items(drawing.bodies)
+    parts = []
+    on, _ = engraved(drawing.bodies, drawing.strokes)
+    for item in items:
+        body = item.bodies[0]
+        alone = _only(drawing, [body], on.get(body.path, ()))
+        subject = root.find(body.path) or root
+        own = _of_body(model, alone, [b.path for b in drawing.bodies if b is not body])
+        parts.append(Content(subject, body.style, (_view(own, alone),), count=len(item.bodies)))
+    shown = {d.group for content in parts for view in content.views for g in view.wanted for d in g}
+    between = [size for size in model.sizes if size.origin == "hand" and size.group not in shown]
+    return [Content(root, styles[root.path], tuple(_overview(model, drawing, items, between)), items), *parts]
+
+
+def _view(model: SolvedModel, drawing: Drawing) -> View:
+    stated = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    done = completed(drawing, stated)
+    return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
+
+
+def _holes(drawing: Drawing, circles: Sequence[Circle]) -> Iterator[Hole]:
+    """Yields holes with their signs: equal ones of one letter, from left to right and upwards."""
+    left, bottom, _, _ = drawing.box
+    sizes = sorted({round(c.radius, 6) for c in circles})
+    for number, size in enumerate(sizes):
+        own = sorted(
+            (c for c in circles if round(c.radius, 6) == size),
+            key=lambda c: (round(c.center[0], 6), round(c.center[1], 6)),
+        )
+        for k, circle in enumerate(own, 1):
+            x, y = circle.center
+            yield Hole(f"{_letters(number)}{k}", circle, x - left, y - bottom)
+
+
+def _letters(number: int) -> str:
+    """Returns A, B, … Z, AA, AB, …"""
+    more, last = divmod(number, 26)
+    return (_letters(more - 1) if more else "") + chr(ord("A") + last)
+
+
+def _overview(
+    model: SolvedModel, drawing: Drawing, items: Sequence[Item], between: Sequence[Dimension]
+) -> Iterator[View]:
+    """Yields a view for each orientation that parts have, the first with the dimensions from part to part."""
+    orientations = {s.path: s.orientation for s in model.root.walk()}
+    seen = dict.fromkeys(orientations[body.path] for body in drawing.bodies)
+    for orientation in seen:
+        bodies = [b for b in drawing.bodies if orientations[b.path] == orientation]
+        strokes = [s for s in drawing.strokes if orientations[s.path] == orientation]
+        part = drawing if len(seen) == 1 else _only(drawing, bodies, strokes)
+        label = f"Seen from the {orientation}" if len(seen) > 1 else ""
+        balloons = tuple((item.number, b) for item in items for b in item.bodies[:1] if b in bodies)
+        wanted = [*overall(part), *(between if orientation == next(iter(seen)) else ())]
+        yield View(label, part, tuple((d,) for d in wanted), balloons)
+
+
+def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
+    """Returns the bodies with equal ones together, in order of writing."""
+    alike: dict[object, list[Body]] = {}
+    for body in bodies:
+        alike.setdefault(_shape(body), []).append(body)
+    return tuple(
+        Item(number, tuple(group), _stem(group[0].path)) for number, group in enumerate(alike.values(), 1)
+    )
+
+
+def _shape(body: Body) -> object:
+    """Returns a key that bodies share which are moved copies of each other, and of one stock."""
+    left, bottom, right, top = region_bounds(body.region)
+    size = max(right - left, top - bottom)
+    slack = _ALIKE * size
+    places = sorted(
+        tuple(round(v / slack) for v in _relative(bounds(p), left, bottom)) for p in body.region.pieces
+    )
+    return body.style.material, body.style.thickness, round(size, 6), tuple(places)
+
+
+def _relative(box: Bounds, left: float, bottom: float) -> Bounds:
+    return box[0] - left, box[1] - bottom, box[2] - left, box[3] - bottom
+
+
+def _stem(path: str) -> str:
+    return path.rpartition(".")[2].partition("[")[0]
+
+
+def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:
+    """Returns the drawing of some of its bodies and strokes."""
+    boxes = [b.box for b in bodies] + [bounds(p) for s in strokes for p in s.pieces]
+    paths = {b.path for b in bodies}
+    return replace(
+        drawing,
+        bodies=tuple(bodies),
+        strokes=tuple(strokes),
+        seams=tuple(seam for seam in drawing.seams if seam.body in paths),
+        plans=(),
+        contacts=Contacts(),
+        box=union_bounds(boxes),
+    )
+
+
+def _of_body(model: SolvedModel, alone: Drawing, others: Sequence[str]) -> SolvedModel:
+    """Returns the model with the sizes that concern the one body of a drawing."""
+    path = alone.bodies[0].path
+    sheet = Sheet(alone, Pen(0.005 * alone.size))
+    centers = [p.center for p in alone.bodies[0].region.pieces if isinstance(p, Circle)]
+
+    def is_there(points: Sequence[Vec]) -> bool:
+        near = any(
+            abs(c[0] - p[0]) + abs(c[1] - p[1]) <= _ALIKE * alone.size for c in centers for p in points
+        )
+        return near or bool(sheet.seen(tuple(points)))
+
+    def concerns(size: Dimension) -> bool:
+        if size.origin != "constraint":
+            if _is_of(size.of, path):
+                return True
+            if any(_is_of(size.of, other) for other in others):
+                return False
+        match size:
+            case Length(start=start, end=end):
+                return is_there(start) and is_there(end)
+            case Roundness(curve=curve):
+                return curve in alone.bodies[0].region.pieces
+            case Opening(corner=corner):
+                return is_there([corner])
+        return False
+
+    return replace(model, size_up=lambda _: tuple(size for size in model.sizes if concerns(size)))
+
+
+def _is_of(of: str, path: str) -> bool:
+    return of == path or of.startswith((f"{path}.", f"{path}:"))

@@ -1,0 +1,105 @@
+"""`aidl sheet`: a technical drawing on paper, with dimensions, a frame and a title block."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import time
+from pathlib import Path
+
+from aidl_lang.common.papers import PAPERS
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.options import add_params, add_pixels, add_program
+from aidl_lang.tools.cli.report import UseError, exit_code, say, show
+
+_DEFAULT = ".pdf"
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)",
+    )
+    add_params(parser)
+    parser.add_argument("--paper", type=_paper, metavar="NAME", help=f"{', '.join(PAPERS)} (default: by fit)")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument(
+        "--landscape", dest="landscape", action="store_const", const=True, help="lay the paper wide"
+    )
+    way.add_argument("--portrait", dest="landscape", action="store_const", const=False, help="stand it up")
+    parser.add_argument("--scale", type=_scale, metavar="N:M", help="as in 1:2 (default: by fit)")
+    parser.add_argument(
+        "--date", default="", metavar="TEXT", help="the date in the title block (default: none)"
+    )
+    parser.add_argument(
+        "--standard", choices=("iso", "ansi"), default="iso", help="paper and projection (default: iso)"
+    )
+    add_pixels(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+    from aidl_lang.export import ExportError, Options
+    from aidl_lang.export.drafting import Draft
+    from aidl_lang.tools.cli.build import Target, target_names
+
+    start = time.perf_counter()
+    source = files.read(arguments.file)
+    targets = [Target(name, _suffix(name)) for name in arguments.output or [_default(arguments.file)]]
+    for target in targets:
+        files.require_directory(target.name)
+    compiled = pipeline.compile(source, files.world(arguments.file), params=dict(arguments.params))
+    show(compiled.diagnostics)
+    if not compiled.ok:
+        return exit_code(compiled.diagnostics) or 1
+    draft = Draft(
+        arguments.paper, arguments.landscape, arguments.scale, arguments.standard, arguments.date.strip()
+    )
+    try:
+        made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    written = []
+    for target, result in zip(targets, made, strict=True):
+        names = target_names(target, len(result.further))
+        for name, data in zip(names, (result.data, *result.further), strict=True):
+            files.write(name, data)
+            written.append(name)
+    show(dict.fromkeys(note for result in made for note in result.notes))
+    say(f"{', '.join(written)}: {time.perf_counter() - start:.2f} s")
+    return exit_code(compiled.diagnostics)
+
+
+def _default(program: str) -> str:
+    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT))
+
+
+def _suffix(name: str) -> str:
+    from aidl_lang.export import PICTURES
+
+    suffix = _DEFAULT if name == files.STANDARD else Path(name).suffix.lower()
+    if suffix not in PICTURES:
+        asked = suffix.lstrip(".")
+        message = f"there are no sheets of the format `{asked}`" if asked else f"`{name}` tells no format"
+        raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
+    return suffix
+
+
+def _paper(text: str) -> str:
+    name = text.strip().lower()
+    if name not in PAPERS:
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(PAPERS)}")
+    return name
+
+
+def _scale(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"\s*([1-9]\d{0,4})\s*[:/]\s*([1-9]\d{0,4})\s*", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"expected a scale such as 1:2 or 5:1, not `{text}`")
+    return int(found[1]), int(found[2])
