@@ -41,12 +41,12 @@ shape coil(start: point, end: point, width: length, turns: integer = 8, lead: nu
     let pitch = (end - start) * ((1 - 2 * lead) / turns)
     let up = turned(unit(end - start), 90deg) * (width / 2mm)
     fn quarter(x, y, i) = lerp(start, end, lead) + pitch * (i / 4 + loop_reach * x) + up * y
-    fn at(i) = quarter([0, 1, 0, -1][i % 4], [-1, 0, 1, 0][i % 4], i)
+    fn place(i) = quarter([0, 1, 0, -1][i % 4], [-1, 0, 1, 0][i % 4], i)
     fn way(i) = pitch * (1 / 12 + loop_handle * loop_reach * [1, 0, -1, 0][i % 4])
         + up * (loop_handle * [0, 1, 0, -1][i % 4])
     let quarters = 4 * turns
     let last = quarters + 1
-    for i in 0..quarters { knot[i] = at(i) }
+    for i in 0..quarters { knot[i] = place(i) }
     segment[0] = bezier(
         start, start + (end - start) * (lead / 2), knot[0] - (end - start) * (lead / 2), knot[0]
     )

@@ -2,13 +2,12 @@
 
 /// Lettering, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
 ///
-/// In a `drawing` a text is engraved: filled with the colour of the drawing in pictures, or with `outline: true` drawn as
-/// outlines, which cutters, DXF and STEP get of all letters. In a `hole` it is cut out, in a `solid` it is material. `bold: true` takes
-/// the bold face. A number is written as text. Instead of its center `start` may be said: the point of
-/// the baseline where the text begins (or has its middle or its end, as `align` says); instead of a height a `width`.
-/// `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart their baselines
-/// are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first line. The letters
-/// are those of one font, DejaVu Sans, in two faces, one behind the other without kerning.
+/// In a `drawing` it is engraved: filled in pictures, or with `outline: true` drawn as the outlines that cutters, DXF and
+/// STEP get of all letters. In a `hole` it is cut out, in a `solid` it is material. Instead of its center `start` may be
+/// said: the point of the baseline where the text begins (or has its middle or its end, as `align` says); instead of a
+/// height a `width`. `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart
+/// their baselines are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first
+/// line. The letters are those of DejaVu Sans, one behind the other without kerning.
 ///
 /// ```aidl
 /// solid badge {
