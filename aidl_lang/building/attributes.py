@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+from aidl_lang.building.clipping import StatedClip, state_clip
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
@@ -20,7 +21,7 @@ from aidl_lang.building.values import (
     members,
 )
 from aidl_lang.checking import units
-from aidl_lang.checking.builtins import ATTRIBUTES, STACKING, WORDED
+from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
 
@@ -33,6 +34,8 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
+        elif name == CLIP:
+            state_clip(it, s, StatedClip(attribute, scope))
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 
@@ -94,13 +97,13 @@ def _misplaced(
 def _read(
     it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
 ) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
-    """Yields attributes with the values of their arguments; those of order are read later."""
+    """Yields attributes with the values of their arguments; those that name things are read later."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
             continue
         values: list[Value] = []
-        for argument in attribute.arguments if name not in STACKING else ():
+        for argument in attribute.arguments if name not in NAMING else ():
             value = argument.value
             is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
             if name in WORDED and is_bare:
