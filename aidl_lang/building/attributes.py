@@ -137,10 +137,11 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
 
 def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
     """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
-    if name == "edges" and of.kind in ("drawing", "hole"):
+    if (name == "edges" and of.kind in ("drawing", "hole")) or (name == "halo" and of.kind == "hole"):
+        has = "material or strokes" if name == "halo" else "material"
         it.report(
             "E0517",
-            f"`@{attribute.name.text}` is said of what has material, and `{of.name}` is a {of.kind}",
+            f"`@{attribute.name.text}` is said of what has {has}, and `{of.name}` is a {of.kind}",
             attribute,
             hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
         )
@@ -207,6 +208,12 @@ def _dash(values: list[Value]) -> str:
     return "" if is_paired else "a gap for each dash, as in `@dash(6, 1.5, 1, 1.5)`"
 
 
+def _halo(values: list[Value]) -> str:
+    lengths = _numbers(values, units.LENGTH)
+    is_one = lengths is not None and len(lengths) == 1 and 0 <= lengths[0] <= WIDEST
+    return "" if is_one else f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
+
+
 def _opacity(values: list[Value]) -> str:
     shares = _numbers(values, units.PLAIN)
     is_one = shares is not None and len(shares) == 1 and 0 < shares[0] <= 1
@@ -243,5 +250,6 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "dash": _dash,
     "opacity": _opacity,
     "edges": _edges,
+    "halo": _halo,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

@@ -181,7 +181,7 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "edges", "behind", "in_front", "clip"),
+    *("stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip"),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 
