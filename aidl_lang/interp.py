@@ -16,6 +16,7 @@ from functools import cache
 
 from aidl_lang.building.anchors import anchored
 from aidl_lang.building.calls import call
+from aidl_lang.building.clipping import settle_clips
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.modules import run_module
@@ -65,6 +66,9 @@ def interpret(
     try:
         with limited_to(limits.seconds):
             root = run_module(it, _library_scope(program))
+            settle_clips(it)
+            for copier in tuple(it.copiers):
+                copier.clip()
             for copier in it.copiers:
                 copier.finish()
     except Stop:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
-from aidl_lang.checking.builtins import STACKING
+from aidl_lang.checking.builtins import NAMING
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
@@ -297,6 +297,6 @@ class Checker:
 
     def _attributes(self, attributes: tuple[ast.Attribute, ...]) -> None:
         for attribute in attributes:
-            is_named = word_meant(attribute.name.text, (*STACKING, ast.ALLOW)) is not None
+            is_named = word_meant(attribute.name.text, (*NAMING, ast.ALLOW)) is not None
             for argument in () if is_named else attribute.arguments:
                 self.infer.known(argument.value, f"the argument of `@{attribute.name.text}`")

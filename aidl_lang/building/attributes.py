@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+from aidl_lang.building.clipping import StatedClip, state_clip
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
@@ -20,7 +21,7 @@ from aidl_lang.building.values import (
     members,
 )
 from aidl_lang.checking import units
-from aidl_lang.checking.builtins import ATTRIBUTES, STACKING, WORDED
+from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
 
@@ -33,6 +34,8 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
+        elif name == CLIP:
+            state_clip(it, s, StatedClip(attribute, scope))
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 
@@ -94,13 +97,13 @@ def _misplaced(
 def _read(
     it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
 ) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
-    """Yields attributes with the values of their arguments; those of order are read later."""
+    """Yields attributes with the values of their arguments; those that name things are read later."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None or name == ast.ALLOW:
             continue
         values: list[Value] = []
-        for argument in attribute.arguments if name not in STACKING else ():
+        for argument in attribute.arguments if name not in NAMING else ():
             value = argument.value
             is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
             if name in WORDED and is_bare:
@@ -134,10 +137,11 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
 
 def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
     """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
-    if name == "edges" and of.kind in ("drawing", "hole"):
+    if (name == "edges" and of.kind in ("drawing", "hole")) or (name == "halo" and of.kind == "hole"):
+        has = "material or strokes" if name == "halo" else "material"
         it.report(
             "E0517",
-            f"`@{attribute.name.text}` is said of what has material, and `{of.name}` is a {of.kind}",
+            f"`@{attribute.name.text}` is said of what has {has}, and `{of.name}` is a {of.kind}",
             attribute,
             hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
         )
@@ -204,6 +208,12 @@ def _dash(values: list[Value]) -> str:
     return "" if is_paired else "a gap for each dash, as in `@dash(6, 1.5, 1, 1.5)`"
 
 
+def _halo(values: list[Value]) -> str:
+    lengths = _numbers(values, units.LENGTH)
+    is_one = lengths is not None and len(lengths) == 1 and 0 <= lengths[0] <= WIDEST
+    return "" if is_one else f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
+
+
 def _opacity(values: list[Value]) -> str:
     shares = _numbers(values, units.PLAIN)
     is_one = shares is not None and len(shares) == 1 and 0 < shares[0] <= 1
@@ -240,5 +250,6 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "dash": _dash,
     "opacity": _opacity,
     "edges": _edges,
+    "halo": _halo,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

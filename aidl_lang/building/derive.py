@@ -191,6 +191,19 @@ class Copier:
             return replace(value, expression=self.motion.direction(value.expression))
         return replace(value, expression=self.motion.measure(value.expression, value.dimension))
 
+    # --- Outlines around structures ------------------------------------------------------------
+
+    def clip(self) -> None:
+        """Gives copies of structures the outlines that their sources are clipped to, when these are known;
+        one outside of the source lies to the copy as it lies to the source.
+        """
+        for source, copy in tuple(self.structures.items()):
+            if source.clip and copy not in self.it.clips:
+                seen = Copier(self.it, source, STILL, span=self.span)
+                copy.clip = tuple(
+                    self.geometry(g if g.owner in self.structures else seen.geometry(g)) for g in source.clip
+                )
+
     # --- Finishes ------------------------------------------------------------------------------
 
     def finish(self) -> None:

@@ -233,6 +233,7 @@ class Structure:
     converted   coordinates in it as other structures see them (see `convert`)
     scope       the names its body sees (see interp)
     finishes    fillets and chamfers of its geometry
+    clip        the outline that all in it is drawn inside of; empty for none
     """
 
     kind: str
@@ -253,6 +254,7 @@ class Structure:
         default_factory=dict, repr=False
     )
     finishes: list[Finish] = field(default_factory=list)
+    clip: tuple[Geometry, ...] = ()
     doc: str | None = None
     is_complete: bool = False
     is_nameless: ClassVar[bool] = False

@@ -24,6 +24,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
+    from aidl_lang.building.clipping import StatedClip
     from aidl_lang.building.derive import Copier
     from aidl_lang.building.overloads import CallSite
     from aidl_lang.building.scopes import Candidate
@@ -112,6 +113,8 @@ class Interpreter:
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
     """what is said of the order of structures beside others"""
+    clips: dict[Structure, StatedClip] = field(default_factory=dict)
+    """what is said of the outlines that structures are clipped to"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
     used_overrides: set[str] = field(default_factory=set)

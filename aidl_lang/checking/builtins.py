@@ -181,13 +181,19 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "edges", "behind", "in_front"),
+    *("stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip"),
     *("title", "author", "number", "revision", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 
 STACKING = (BEHIND, IN_FRONT) = ("behind", "in_front")
 """Attributes whose arguments are names of structures beside the one that they stand before."""
+
+CLIP = "clip"
+"""The attribute whose argument is the outline that a structure is clipped to."""
+
+NAMING = frozenset((*STACKING, CLIP))
+"""Attributes whose arguments are names of structures or geometry, read when these are there."""
 
 WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note", "stroke", "edges"})
 """Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""

@@ -85,6 +85,8 @@ def _plain(mark: Mark) -> Mark | None:
             return replace(mark, fill=fill, opacity=1.0, ink=None if ink is None else _solid(ink))
         case Curves(role="seam"):
             return None
+        case Curves(role="halo", ink=ink):
+            return replace(mark, ink=replace(ink, color=_WHITE))
         case Curves(ink=ink):
             return replace(mark, ink=_solid(ink))
         case Text() | Dot() | Frame():

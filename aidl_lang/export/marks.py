@@ -14,6 +14,9 @@ from aidl_lang.geometry.region import Face, Loop
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
 
+HALO = "halo"
+"""The role of what has the colour of the paper: a gap around what lies in front."""
+
 
 @record()
 class Ink:
@@ -41,7 +44,7 @@ class Area:
     @property
     def is_sign(self) -> bool:
         """True for a mark of its own, such as the head of an arrow; false for a solid without outline."""
-        return self.ink is None and self.role != ""
+        return self.ink is None and self.role not in ("", HALO)
 
 
 def polygon(*corners: Vec) -> Face:

@@ -14,6 +14,7 @@ FILLS = (
     "#d8cf98",  # straw
     "#bcc0c6",  # stone
 )
+PAPER = "#ffffff"
 OUTLINE = "#2f3b4a"
 LIGHT = "#b4bfcc"
 LOOSE = "#c2410c"

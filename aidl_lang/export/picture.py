@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from aidl_lang.export import Job, palette
 from aidl_lang.export.marks import CHARACTER, Area, Curves, Group, Ink, Mark, Picture, Text
@@ -20,6 +21,9 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import stacked
 from aidl_lang.geometry.styles import DASH, GAP, Style
+
+if TYPE_CHECKING:
+    from aidl_lang.export.halos import Halos
 
 MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
@@ -46,7 +50,7 @@ def _whole(job: Job) -> Picture:
 
         seen, dimensions = dimensioned(job.model, job.drawing, box)
     overlay = explain(job.model, job.drawing, options.show, seen, size)
-    marks = _cut_marks(job.drawing) if options.for_cutter else _marks(job.drawing, size)
+    marks = _cut_marks(job.drawing) if options.for_cutter else _marks(job.model.root, job.drawing, size)
     groups = [*_groups(job.model, job.drawing, marks)]
     groups += dimensions
     groups += [
@@ -127,18 +131,37 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
     return identity if style.layer is None else {**identity, "data-layer": style.layer}
 
 
-def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
+def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
     """Yields all marks, with the path of the structure they belong to."""
+    halos = _halos(root, drawing)
     for index, body in enumerate(drawing.bodies):
-        for area in _areas(body, index, size):
+        areas = list(_areas(body, index, size))
+        line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
+        for area in (*halos.around_body(body, line), *areas) if halos else areas:
             yield body.path, area
     styles = {body.path: body.style for body in drawing.bodies}
     for seam in drawing.seams:
         if seam.is_asked or not styles[seam.body].is_unlined:
             yield seam.path, _seam(seam, styles[seam.body], size)
-    for stroke in drawing.strokes:
-        for mark in _strokes(stroke, size):
+    marks = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
+    for stroke, own in (
+        marks if halos else ()
+    ):  # the lines of a drawing, which may join, clear none of its own
+        line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
+        for mark in halos.around_stroke(stroke, line) if halos else ():
             yield stroke.path, mark
+    for stroke, own in marks:
+        for mark in own:
+            yield stroke.path, mark
+
+
+def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
+    """Returns the gaps around what lies in front; None where none are asked for, as in most drawings."""
+    if not any(style.halo for style in drawing.styles.values()):
+        return None
+    from aidl_lang.export.halos import Halos
+
+    return Halos(drawing, root)
 
 
 def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:

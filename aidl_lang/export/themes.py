@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import singledispatch
 
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, polygon
+from aidl_lang.export.marks import HALO, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, polygon
 
 AS_COLOURED, FOR_CUTTER = "colour", "cutter"
 
@@ -46,6 +46,8 @@ def _reduced(mark: Mark, theme: Theme) -> Mark:
 
 @_reduced.register
 def _(mark: Area, theme: Theme) -> Mark:
+    if mark.role == HALO:
+        return replace(mark, fill=theme.paper)
     if mark.is_sign:
         return replace(mark, fill=theme.line)
     ink = None if mark.ink is None else _ink(mark.ink, theme)
@@ -54,6 +56,8 @@ def _(mark: Area, theme: Theme) -> Mark:
 
 @_reduced.register
 def _(mark: Curves, theme: Theme) -> Mark:
+    if mark.role == HALO:
+        return replace(mark, ink=replace(mark.ink, color=theme.paper))
     return replace(mark, ink=_ink(mark.ink, theme))
 
 

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -25,6 +26,7 @@ from aidl_lang.geometry.sections import (
     covers,
     difference,
     holes_of,
+    inside_mask,
     intersection,
     is_nothing,
     union,
@@ -122,11 +124,12 @@ Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
 @record(frozen=False)
 class Bodies:
     """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
-    what each draws itself.
+    what each draws itself. `clips`: for each structure that is clipped, what it may lie in.
     """
 
     network: Network
     shapes: Mapping[str, Sequence[Shape]]
+    clips: Mapping[str, Section] = field(default_factory=dict)
     sections: dict[str, Section] = field(default_factory=dict)
     faces: dict[str, list[OwnFace]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
@@ -164,9 +167,27 @@ class Bodies:
             self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
         if not own.faces:
             return None
-        self.faces[structure.path] = own.faces
         self._find_inner_loops(structure, own.faces)
-        return union_of(own.faces)
+        faces = self._clipped(structure, own.faces)
+        if not faces:
+            return None
+        self.faces[structure.path] = faces
+        return union_of(faces)
+
+    def _clipped(self, structure: SolvedStructure, faces: list[OwnFace]) -> list[OwnFace]:
+        """Returns the faces of a structure as far as they lie in what it is clipped to."""
+        if (clip := self.clips.get(structure.path)) is None:
+            return faces
+        inner = [replace(face, section=intersection(face.section, clip)) for face in faces]
+        return [face for face in inner if not is_nothing(face.section)]
+
+    def inner_pieces(self, structure: SolvedStructure, number: int) -> tuple[Piece, ...]:
+        """Returns a curve of a structure as far as it lies in what the structure is clipped to."""
+        if (clip := self.clips.get(structure.path)) is None:
+            return (self.network.curves[number],)
+        uses = self.network.uses[number]
+        within = inside_mask(clip, self.network.midpoints([edge for edge, _ in uses])) if uses else ()
+        return tuple(self.network.piece(use) for use, is_in in zip(uses, within, strict=True) if is_in)
 
     def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
         """Faces that the others cover; of two alike the later one."""

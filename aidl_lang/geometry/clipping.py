@@ -44,8 +44,8 @@ def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
     return [piece for one in clipped_each(curves, region) for piece in one.inner]
 
 
-def clipped_each(curves: Sequence[Piece], region: Region) -> list[Clipped]:
-    """Returns for each curve what of it lies inside."""
+def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool = False) -> list[Clipped]:
+    """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:
         return [Clipped((), is_whole=False) for _ in curves]
     boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
@@ -56,7 +56,10 @@ def clipped_each(curves: Sequence[Piece], region: Region) -> list[Clipped]:
     spots = [point(c, _middle(s)) for c, of in zip(curves, stretches, strict=True) for s in of]
     polygons = region_polygons(region, CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
-    return [_clipped(c, of, [next(within) for _ in of]) for c, of in zip(curves, stretches, strict=True)]
+    return [
+        _clipped(c, of, [next(within) for _ in of], with_border)
+        for c, of in zip(curves, stretches, strict=True)
+    ]
 
 
 def _borders(curves: Sequence[Piece], region: Region, tolerance: float) -> list[list[Piece]]:
@@ -110,10 +113,12 @@ def _middle(stretch: _Stretch) -> float:
     return (stretch.t0 + stretch.t1) / 2
 
 
-def _clipped(curve: Piece, stretches: Sequence[_Stretch], within: Sequence[bool]) -> Clipped:
+def _clipped(
+    curve: Piece, stretches: Sequence[_Stretch], within: Sequence[bool], with_border: bool
+) -> Clipped:
     inner: list[_Stretch] = []
     for stretch, is_within in zip(stretches, within, strict=True):
-        if not is_within or stretch.on_border:
+        if not (with_border if stretch.on_border else is_within):
             continue
         if inner and inner[-1].t1 == stretch.t0:
             before = inner.pop()

@@ -12,6 +12,7 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
+from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
@@ -126,7 +127,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
     notes: list[Diagnostic] = []
     curves, boxes, shapes = _collect(model.root, notes)
-    network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)
+    clips, around = clip_shapes(model.root, len(curves))
+    network = Network([*curves, *around], [*boxes, *map(bounds, around)])
+    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips)
     notes += [gap_note(gap) for gap in gaps]
     regions = {path: outline.region for path, outline in traced.items()}
     styles = styles_of(model.root)
@@ -166,6 +169,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
     notes += idle_orders(model.root, [b.path for b in bodies])
+    drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
+    notes += empty_clips(model.root, drawn)
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
@@ -174,16 +179,16 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 
 
 def _closed(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
+    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network after small gaps between curves are closed, what the curves enclose, and these
     gaps.
     """
-    found = with_finer_chords(network, lambda: _arranged(root, network, shapes))
+    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps))
-        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes))
+        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -194,10 +199,10 @@ def _closed(
 
 
 def _arranged(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
+    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
 ) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
-    walk = Bodies(network, shapes)
+    walk = Bodies(network, shapes, clip_sections(network, root, clips))
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
     paths = [s.path for s in root.walk() if s.path in walk.sections]
@@ -305,7 +310,6 @@ def _strokes(
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
     """Yields the curves of drawings, and those of other structures that bound nothing."""
-    curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
     for place, structure in enumerate(stacked(root)):
@@ -313,7 +317,8 @@ def _strokes(
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
         for leaf, number in loose.get(path, ()):
-            yield Stroke(path, leaf.path, (curves[number],), style, "open")
+            if pieces := walk.inner_pieces(structure, number):
+                yield Stroke(path, leaf.path, pieces, style, "open")
     if root.kind == "hole" and root.path in regions:
         outline = tuple(p for loop in regions[root.path].loops for p in loop.pieces)
         yield Stroke(root.path, root.path, outline, styles[root.path], "hole")

@@ -72,6 +72,19 @@ def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeomet
     )
 
 
+def open_clip(s: SolvedStructure) -> Diagnostic:
+    """Returns the diagnostic on a structure clipped to curves that enclose nothing."""
+    names = [g.name for g in s.clip]
+    enclose, it = ("enclose", "them") if len(names) > 1 else ("encloses", "it")
+    return Diagnostic(
+        "E0338",
+        f"{named(names)} {enclose} nothing, and `{s.path}` is clipped to {it}",
+        s.span,
+        "the curves are not closed",
+        hints=("close the outline, sharing the end points", "curves that close together are given as a list"),
+    )
+
+
 def no_lattice(g: SolvedGeometry, recipe: Recipe) -> Diagnostic:
     """Returns the diagnostic on steps that lead to no second copy, or along one line."""
     one = len(recipe.operands[2]) == _ONE_WAY

@@ -10,13 +10,14 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped
+from aidl_lang.geometry.clipping import clipped, clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
 from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
 from aidl_lang.geometry.faces import Shape, own_faces, union_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
+from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.misfits import Misfit, merged_notes, misfits
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
@@ -82,14 +83,18 @@ class _Outliner:
     carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
     misfits: list[Misfit] = field(default_factory=list)
 
-    def structure(self, s: SolvedStructure) -> SolvedStructure:
+    def structure(self, s: SolvedStructure, around: Region | None = None) -> SolvedStructure:
+        """Returns a structure with its outlines worked out; `around`: what those around it are clipped to."""
         geometry = tuple(map(self._completed, s.geometry))
-        children = tuple(map(self.structure, s.structures))
+        inside = self._inside(s, around) if s.clip else around
+        children = tuple(self.structure(child, inside) for child in s.structures)
         self.carried_out = {}
         finished = self._finished(tuple(map(self._drawn, geometry)), s.finishes, s)
         for g in geometry:
             if g.construction:
                 self._finished([_shown(self._drawn(g))], s.finishes, s)
+        if s.kind == "drawing" and inside is not None:
+            finished = _clipped(finished, inside)
         return replace(
             s,
             geometry=geometry,
@@ -97,7 +102,18 @@ class _Outliner:
             box=_box(s, geometry, children),
             finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
+            inside=inside if s.clip else None,
         )
+
+    def _inside(self, s: SolvedStructure, around: Region | None) -> Region | None:
+        """Returns what the outline around a structure encloses within those around it; that of the latter if
+        it encloses nothing.
+        """
+        own = _region(self._operand(s.clip))
+        if not own:
+            self.notes.append(notes.open_clip(s))
+            return around
+        return own if around is None else common(own, around)
 
     def _with_corners(self, own: Sequence[Finish]) -> Iterator[Finish]:
         """Yields the finishes of a structure in their order, with the corners where they were carried out, if
@@ -377,6 +393,29 @@ def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result)
 
 
 # --- Small things ----------------------------------------------------------------------------------
+
+
+def _clipped(geometry: Sequence[SolvedGeometry], region: Region) -> list[SolvedGeometry]:
+    """Returns the geometry of a drawing as far as it lies in a region or along its border: parts of curves,
+    and the outlines of what is left of filled letters.
+    """
+    leaves = [leaf for g in geometry for leaf in _leaves(g)]
+    found = clipped_each([c for _, c in leaves], region, with_border=True)
+    kept = {id(g): (c, one) for (g, c), one in zip(leaves, found, strict=True)}
+
+    def parts(g: SolvedGeometry, pieces: Sequence[Piece]) -> tuple[SolvedGeometry, ...]:
+        return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
+
+    def inner(g: SolvedGeometry) -> SolvedGeometry:
+        own = [c for _, c in _leaves(g)] if g.filled else []
+        if own and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
+            return replace(g, parts=parts(g, common(Region(letter_faces(own)), region).pieces))
+        curve, one = kept.get(id(g), (None, None))
+        if one is None or one.inner == (curve,):
+            return replace(g, parts=tuple(map(inner, g.parts)))
+        return replace(g, curve=None, parts=parts(g, one.inner))
+
+    return [g if g.construction else inner(g) for g in geometry]
 
 
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:

@@ -171,6 +171,7 @@ class _Reader:
             span=s.span,
             finishes=tuple(self._finish(s, f) for f in s.finishes),
             doc=s.doc,
+            clip=tuple(map(self.geometry, s.clip)),
         )
 
     def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:

@@ -13,6 +13,7 @@ from typing import Protocol, TypeAlias
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
+from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
 
 Scalar: TypeAlias = float | int | bool | str
@@ -132,7 +133,9 @@ class SolvedStructure:
     what is around it. `attributes`: name → argument values as written (`color`, `layer`, `thickness`,
     `elevation`, `material`, `detached`, `note`, `orientation`). `degrees` is None if they could not be
     counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
-    that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`.
+    that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`. `clip`: the geometry that
+    all in it is drawn inside of; `inside` is what it encloses, as far as that lies in those around it, once
+    it is worked out.
     """
 
     name: str
@@ -152,10 +155,12 @@ class SolvedStructure:
     state: str = "unknown"
     finishes: tuple[Finish, ...] = ()
     finished: tuple[SolvedGeometry, ...] | None = None
+    clip: tuple[SolvedGeometry, ...] = ()
+    inside: Region | None = None
 
     @property
     def drawn(self) -> tuple[SolvedGeometry, ...]:
-        """The geometry as it is drawn: with its corners finished."""
+        """The geometry as it is drawn: with its corners finished, that of drawings clipped."""
         return self.geometry if self.finished is None else self.finished
 
     def walk(self) -> Iterator[SolvedStructure]:
@@ -350,10 +355,12 @@ class SolvedModel:
 
     @property
     def is_unfinished(self) -> bool:
-        """True if outlines are to be derived from others, or corners to be finished (see
-        `geometry.outlines`).
+        """True if outlines are to be derived from others, corners to be finished, or structures to be clipped
+        (see `geometry.outlines`).
         """
-        return any(s.finishes for s in self.root.walk()) or any(g.recipe for g in self.root.walk_geometry())
+        return any(s.finishes or s.clip for s in self.root.walk()) or any(
+            g.recipe for g in self.root.walk_geometry()
+        )
 
     @cached_property
     def ways(self) -> tuple[Motion, ...]:

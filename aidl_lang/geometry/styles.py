@@ -16,7 +16,7 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("color", "stroke", "dash", "opacity")
+_OF_BODIES = ("color", "stroke", "dash", "opacity", "halo")
 """Looks that a body has as a whole."""
 
 
@@ -28,6 +28,7 @@ class Style:
     stroke   width of its lines, mm; 0 for solids without outline, whose drawings have lines as ever
     dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
     opacity  how much of what lies behind is covered, from 0 to 1
+    halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
     """
 
@@ -39,6 +40,7 @@ class Style:
     dash: tuple[float, ...] | None = None
     opacity: float | None = None
     edges: str | None = None
+    halo: float | None = None
 
     @property
     def is_clear(self) -> bool:
@@ -73,12 +75,16 @@ def styles_of(root: SolvedStructure) -> dict[str, Style]:
     """Returns the style of each structure by its path."""
     styles: dict[str, Style] = {}
 
-    def visit(structure: SolvedStructure, around: Style) -> None:
+    def visit(structure: SolvedStructure, around: Style, kind: str) -> None:
+        if structure.kind == "drawing" != kind:
+            around = replace(
+                around, halo=None
+            )  # a gap around bodies is none around all that is drawn on them
         styles[structure.path] = style = _within(around, structure.attributes)
         for child in structure.structures:
-            visit(child, style)
+            visit(child, style, structure.kind)
 
-    visit(root, Style())
+    visit(root, Style(), "")
     return styles
 
 
@@ -102,6 +108,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
         _text(stated.get("edges")) or around.edges,
+        _number(stated.get("halo"), around.halo),
     )
 
 

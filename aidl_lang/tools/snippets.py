@@ -125,6 +125,8 @@ SNIPPETS = (
     Snippet("@dash", "dashed lines", "@dash(${1:3}, ${2:1.5})$0", "attribute"),
     Snippet("@opacity", "what shows through", "@opacity(${1:0.5})$0", "attribute"),
     Snippet("@edges", "seams in a solid", "@edges(${1:seams})$0", "attribute"),
+    Snippet("@halo", "a clear gap around what lies in front", "@halo(${1:1mm})$0", "attribute"),
+    Snippet("@clip", "drawn inside an outline only", "@clip(${1:outline})$0", "attribute"),
     Snippet("@behind", "drawn behind another", "@behind(${1:other})$0", "attribute"),
     Snippet("@in_front", "drawn in front of another", "@in_front(${1:other})$0", "attribute"),
     Snippet("@layer", "the layer", '@layer("${1:cut}")$0', "attribute"),

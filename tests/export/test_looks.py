@@ -368,3 +368,56 @@ def test_a_cutter_gets_the_outlines_of_letters() -> None:
     entities = [e for e in made.modelspace() if e.dxf.layer == "drawing"]
     assert {e.dxftype() for e in entities} == {"LWPOLYLINE", "SPLINE"}
     assert all(e.closed for e in entities if e.dxftype() == "LWPOLYLINE")
+
+
+HALOED = """
+@thickness(3mm)
+assembly a {
+    @color("blue") solid plate { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
+    @color("yellow") @halo(5)
+    solid ring {
+        band = ring(center: fixed((-20, 0)), outer_radius: 20, inner_radius: 15)
+        @color("red") drawing dot { rim = circle(center: fixed((-20, 17.5)), radius: 1) }
+    }
+    @halo(4) @stroke(2) drawing cord { way = line(fixed((20, 50)), fixed((20, -50))) }
+    @halo(4) solid away { rim = circle(center: fixed((80, 0)), radius: 10) }
+}
+"""
+
+
+def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
+    image = Image.open(io.BytesIO(written(".png", HALOED, pixels=1400).data)).convert("RGB")
+    scale = image.width / (140 + 2 * 0.03 * 140)
+
+    def at(x: float, y: float) -> tuple[int, int, int]:
+        found = image.getpixel(
+            (round(image.width / 2 + (x - 20) * scale), round(image.height / 2 - y * scale))
+        )
+        assert isinstance(found, tuple)
+        return found
+
+    white, blue, yellow = (255, 255, 255), (0, 0, 255), (255, 255, 0)
+    assert near(at(-46, 0), blue)
+    assert near(at(-43, 0), white)
+    assert near(at(-37.5, 0), yellow)
+    assert near(at(-32, 0), white)  # in the ring
+    assert near(at(-20, 0), blue)
+    assert near(at(-20, 15.4), yellow)  # beside what is drawn on it
+    assert near(at(16.2, 0), white)
+    assert near(at(23.8, 0), white)
+    assert near(at(14, 0), blue)
+    assert near(at(26, 0), blue)
+
+
+def test_only_what_lies_over_something_has_a_gap() -> None:
+    svg = written(".svg", HALOED).data.decode()
+    assert [name for name in ("plate", "ring", "cord", "away") if "halo" in group(svg, f"a.{name}")] == [
+        "ring",
+        "cord",
+    ]
+    assert "halo" not in written(".svg", HALOED, cut=True).data.decode()
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".step", ".stl", ".3mf"])
+def test_other_files_say_that_they_have_no_gaps(suffix: str) -> None:
+    assert any("`@halo`" in note.message for note in written(suffix, HALOED).notes)

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from enum import Enum
 from functools import cached_property
 
-from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS, STACKING
+from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.types import ANY, ListType, NumberType, StructureType, TextType, Type
+from aidl_lang.checking.types import ANY, GeometryType, ListType, NumberType, StructureType, TextType, Type
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -21,9 +21,10 @@ from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.vocabulary import vocabulary
 
 _ATTRIBUTES: dict[str, Type] = {
-    **dict.fromkeys(("thickness", "elevation", "stroke", "dash"), NumberType(LENGTH)),
+    **dict.fromkeys(("thickness", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
     "opacity": NumberType(PLAIN),
     **dict.fromkeys(STACKING, StructureType()),
+    CLIP: GeometryType(""),
 }
 
 

@@ -1,0 +1,72 @@
+"""The outlines that structures are clipped to: `@clip`, read when all geometry is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.scopes import Scope
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.values import Nothing, TextVal, Value, kind_of, members
+from aidl_lang.checking.builtins import CLIP
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+
+@record()
+class StatedClip:
+    """A `@clip`, and the scope in which it is read."""
+
+    attribute: ast.Attribute
+    scope: Scope
+
+
+def state_clip(it: Interpreter, s: Structure, stated: StatedClip) -> None:
+    """Keeps what a structure is clipped to until all geometry is there. Of two, the later counts."""
+    it.clips[s] = stated
+    s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in stated.attribute.arguments)
+
+
+def settle_clips(it: Interpreter) -> None:
+    """Gives structures the outlines that they are clipped to; those of copies come with the copies."""
+    for s, stated in it.clips.items():
+        s.clip = tuple(_outline(it, s, stated))
+
+
+def _outline(it: Interpreter, s: Structure, stated: StatedClip) -> Iterator[Geometry]:
+    """Yields the geometry that `@clip` names; reports what is no outline."""
+    attribute = stated.attribute
+    env = Env(stated.scope, s.parent or s, Reach.READ)
+    values = [evaluate(it, argument.value, env) for argument in attribute.arguments]
+    if any(isinstance(value, Nothing) for value in values):
+        return
+    found = list(_geometry(values[0])) if len(values) == 1 else []
+    if found and all(g.type != "point" and not g.is_nameless for g in found):
+        yield from found
+        return
+    hints = []
+    if len(values) == 1:
+        written = attribute.arguments[0].value.span.one_line
+        if isinstance(values[0], Structure):
+            outline = next(iter(values[0].geometry), "outline")
+            hints.append(f"name the outline in it, as in `@{attribute.name.text}({written}.{outline})`")
+        elif found and all(g.type != "point" for g in found):
+            hints.append(f"give it a name that is not drawn: `construction outline = {written}`")
+        else:
+            hints.append(f"`{written}` is {kind_of(values[0])}")
+    it.report(
+        "E0517",
+        f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`",
+        attribute,
+        hints=hints,
+    )
+
+
+def _geometry(value: Value) -> Iterator[Geometry]:
+    """Yields the geometry of a value or of a list; nothing if there is anything else in it."""
+    if isinstance(value, Geometry):
+        yield value
+    elif not isinstance(value, Structure) and (items := members(value)) is not None:
+        found = [list(_geometry(item)) for item in items]
+        yield from (g for group in found for g in group if all(found))

@@ -1,0 +1,122 @@
+"""What holds for all that is clipped: it is what it was, cut off at the outline, as Shapely cuts it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import Phase, given
+from hypothesis import strategies as st
+
+from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import points
+from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import Loop, Region
+from tests.amount import tries
+
+CHORDS = 400
+"""Into how many straight lines a curve is cut for the comparison with polygons."""
+CLOSE = 0.01
+"""Relative to the size of what is compared."""
+SHAPES = (
+    "circle(center: {at}, radius: 13)",
+    "rectangle(center: {at}, width: 30, height: 17)",
+    "rectangle(center: {at}, width: 24, height: 19, angle: 20deg)",
+    "rounded_rectangle(center: {at}, width: 34, height: 18, radius: 5)",
+    "star(center: {at}, outer_radius: 19, inner_radius: 8, points: 5)",
+    "ring(center: {at}, outer_radius: 18, inner_radius: 9)",
+    "ellipse(center: {at}, rx: 19, ry: 8, angle: 15deg)",
+    "slot(center: {at}, length: 34, width: 12)",
+)
+
+places = st.tuples(st.integers(-20, 20), st.integers(-20, 20))
+shapes = st.builds(lambda shape, at: shape.format(at=at), st.sampled_from(SHAPES), places)
+outlines = st.builds(
+    lambda shape, at: shape.format(at=at),
+    st.sampled_from([s for s in SHAPES if "ring" not in s]),
+    st.tuples(st.integers(-6, 6), st.integers(-6, 6)),
+)
+lines = st.tuples(places, places).filter(lambda ends: ends[0] != ends[1])
+profile = tries(24, phases=(Phase.explicit, Phase.generate))
+
+
+def drawing_of(text: str) -> Drawing:
+    found = pipeline.compile(SourceFile("clips.aidl", text), MemoryWorld({}))
+    assert {d.code for d in found.diagnostics if d.is_error} <= {"E0339"}
+    assert found.drawing is not None
+    return found.drawing
+
+
+def flat(piece: Piece) -> np.ndarray:
+    return points(piece, np.linspace(0, 1, CHORDS))
+
+
+def polygon(loop: Loop) -> shapely.Geometry:
+    return shapely.make_valid(shapely.Polygon(np.concatenate([flat(p)[:-1] for p in loop.pieces])))
+
+
+def area_of(region: Region) -> shapely.Geometry:
+    faces = [
+        polygon(f.outer).difference(shapely.unary_union([polygon(h) for h in f.holes])) for f in region.faces
+    ]
+    return shapely.unary_union(faces)
+
+
+def ink_of(drawing: Drawing) -> shapely.Geometry:
+    return shapely.unary_union([shapely.LineString(flat(p)) for s in drawing.strokes for p in s.pieces])
+
+
+def program(window: str, clip: str, one: str, hole: str, other: str, line: object, drawn: str) -> str:
+    start, end = line  # type: ignore[misc]
+    return f"""
+    assembly view {{
+        construction window = {window}
+        {clip} assembly scene {{
+            solid one {{ rim = {one} hole gap {{ rim = {hole} }} }}
+            solid other {{ rim = {other} }}
+            drawing ink {{ way = line({start}, {end}) rim = {drawn} }}
+        }}
+        twin = mirror(scene, about: line((0, 60), (100, 70)))
+    }}"""
+
+
+@profile
+@given(outlines, shapes, shapes, shapes, lines, shapes)
+def test_what_is_clipped_is_what_it_was_inside_the_outline(
+    window: str, one: str, hole: str, other: str, line: object, drawn: str
+):
+    whole = drawing_of(program(window, "", one, hole, other, line, drawn))
+    clipped = drawing_of(program(window, "@clip(window)", one, hole, other, line, drawn))
+    pane = area_of(drawing_of(f"solid pane {{ rim = {window} }}").regions["pane"])
+    for name in ("one", "other"):
+        path = f"view.scene.{name}"
+        expected = area_of(whole.regions.get(path, Region())).intersection(pane)
+        found = area_of(clipped.regions.get(path, Region()))
+        assert found.symmetric_difference(expected).area <= CLOSE * pane.area
+        own, twin = (area(clipped.regions.get(f"view.{of}.{name}", Region())) for of in ("scene", "twin"))
+        assert twin == pytest.approx(own, rel=1e-6, abs=1e-6)
+    ink, all_ink = ink_of(clipped), ink_of(whole)
+    own = all_ink.intersection(pane)
+    assert own.difference(ink.buffer(0.05)).length <= CLOSE * pane.length
+    near = ink.intersection(shapely.box(-60, -60, 60, 55))
+    assert near.difference(pane.buffer(0.05)).length <= CLOSE * pane.length
+    assert near.difference(all_ink.buffer(0.05)).length <= CLOSE * pane.length
+
+
+@profile
+@given(outlines, shapes, shapes)
+def test_an_outline_in_another_leaves_what_lies_in_both(outer: str, inner: str, one: str):
+    drawing = drawing_of(f"""
+    assembly view {{
+        construction outer = {outer}
+        construction inner = {inner}
+        @clip(outer) assembly a {{ @clip(inner) solid b {{ rim = {one} }} }}
+    }}""")
+    panes = [area_of(drawing_of(f"solid pane {{ rim = {s} }}").regions["pane"]) for s in (outer, inner, one)]
+    expected = panes[0].intersection(panes[1]).intersection(panes[2])
+    found = area_of(drawing.regions.get("view.a.b", Region()))
+    assert found.symmetric_difference(expected).area <= CLOSE * panes[0].area
