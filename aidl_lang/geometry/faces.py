@@ -79,8 +79,8 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:
-    """Yields what alternates by itself: each letter of a text along a curve, where letters may overlap."""
-    letters = [part for part in shape.geometry.parts if part.type == "glyphs"]
+    """Yields what alternates by itself: each letter of a text, as letters may overlap."""
+    letters = [part for part in shape.geometry.walk() if part.type == "glyph"]
     if len(letters) < 2:
         yield uses
         return
