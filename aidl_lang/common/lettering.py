@@ -1,7 +1,7 @@
 """Lettering: texts as exact outlines, measured in the height of a capital letter.
 
-The outlines are those of a font file (see `font_files`): of one that ships with the package, plain or bold, or
-of one's own. Characters stand one behind the other by their advance widths, without kerning. All
+The outlines are those of a font file (see `font_files`): of one that ships with the package, plain or bold,
+or of one's own. Characters stand one behind the other by their advance widths, without kerning. All
 places go by the ink: a line of text begins where its first letter has its leftmost point.
 """
 
