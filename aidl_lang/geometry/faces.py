@@ -85,10 +85,10 @@ def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list
         yield uses
         return
     letter_of = {id(leaf): k for k, letter in enumerate(letters) for leaf in letter.walk()}
-    of_edge = {edge: letter_of.get(id(leaf)) for leaf, n in shape.leaves for edge, _ in network.uses[n]}
+    closed = set(uses)
     parts: dict[int | None, list[Use]] = defaultdict(list)
-    for use in uses:
-        parts[of_edge.get(use[0])].append(use)
+    for leaf, number in shape.leaves:
+        parts[letter_of.get(id(leaf))] += [use for use in network.uses[number] if use in closed]
     yield from parts.values()
 
 
