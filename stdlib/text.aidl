@@ -7,7 +7,8 @@
 /// said: the point of the baseline where the text begins (or has its middle or its end, as `align` says); instead of a
 /// height a `width`. `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart
 /// their baselines are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first
-/// line. The letters are those of DejaVu Sans, one behind the other without kerning.
+/// line. The letters are those of DejaVu Sans without kerning, or of a font file of one's own, found as an import is:
+/// `font: "Lobster.ttf"` (or `.otf`).
 ///
 /// ```aidl
 /// solid badge {
@@ -29,13 +30,14 @@ shape text(
     align: text = "center",
     line_spacing = 1.6,
     bold: bool = false,
+    font: text = "DejaVu Sans",
     outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(str(text), side, line_spacing, bold)
+    let ink = ink(str(text), side, line_spacing, bold, font)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
     let glyph = letters.glyph
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
@@ -49,13 +51,14 @@ shape text(
     align: text = "left",
     line_spacing = 1.6,
     bold: bool = false,
+    font: text = "DejaVu Sans",
     outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
     let glyph = letters.glyph
-    let ink = ink(str(text), side, line_spacing, bold)
+    let ink = ink(str(text), side, line_spacing, bold, font)
     let center = start + turned(middle_of(ink, height), angle)
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
@@ -69,14 +72,15 @@ shape text(
     align: text = "center",
     line_spacing = 1.6,
     bold: bool = false,
+    font: text = "DejaVu Sans",
     outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(str(text), side, line_spacing, bold)
+    let ink = ink(str(text), side, line_spacing, bold, font)
     let height = width / (ink.right - ink.left)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
     let glyph = letters.glyph
     let baseline = baseline_of(ink, start, height, angle)
 }
@@ -94,10 +98,11 @@ shape text(
     align: text = "center",
     line_spacing = 1.6,
     bold: bool = false,
+    font: text = "DejaVu Sans",
     outline: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold)
+    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold, font)
 }
 
 // The middle of the ink of a text from its start, and the line under its first line.

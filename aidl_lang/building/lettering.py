@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, number
 from aidl_lang.common import lettering
-from aidl_lang.common.lettering import Glyph
+from aidl_lang.common.font_files import FontError
+from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
 from aidl_lang.syntax import ast
 
@@ -41,15 +43,29 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         return ()
     if len(text.value) > it.limits.entities:
         it.count_entity(node, len(text.value))  # stops here, before the letters are set
-    font = lettering.bold_font() if a["bold"] is True else lettering.plain_font()
-    if unknown := lettering.unknown_characters(text.value, font):
-        _report_unknown(it, unknown, node)
+    assert isinstance(a["font"], TextVal)
+    name = a["font"].value
+    try:
+        font = fonts.font(it, name, bold=a["bold"] is True)
+        if unknown := lettering.unknown_characters(text.value, font):
+            _report_unknown(it, unknown, node, name)
+            return ()
+        glyphs = _set(name, text.value, align.value, apart, font)
+    except fonts.NoFontError as lack:
+        report_once(it, lack.code, lack.message, node, lack.hints)
         return ()
-    glyphs = lettering.typeset(text.value, align.value, apart, font)
     if not glyphs:
         hint = "write what is to be drawn, or leave the text out"
         report_once(it, "E0351", "there is nothing to draw in this text", node, [hint])
     return glyphs
+
+
+def _set(name: str, text: str, align: str, apart: float, font: Font) -> tuple[Glyph, ...]:
+    """Returns the characters of a text. Raises NoFontError."""
+    try:
+        return lettering.typeset(text, align, apart, font)
+    except FontError as reason:
+        raise fonts.broken(name, reason) from None
 
 
 def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
@@ -59,11 +75,14 @@ def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints:
         it.report(code, message, span, hints=hints)
 
 
-def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None:
+def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node, font: str) -> None:
     names = first_few(list(map(lettering.described, unknown)), 5)
     instead = [
         f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
     ]
+    if font != fonts.PLAIN:
+        report_once(it, "E0350", f"`{font}` has no {names}", node, instead)
+        return
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
     report_once(it, "E0350", f"the font has no {names}", node, [*instead, has])
 

@@ -17,7 +17,8 @@ from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
 from aidl_lang.checking.registry import fields_of
 from aidl_lang.checking.units import MaybeDimension
-from aidl_lang.common.lettering import Curve, Glyph, silhouette
+from aidl_lang.common.font_files import Curve
+from aidl_lang.common.lettering import Glyph, silhouette
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast

@@ -23,7 +23,7 @@ from aidl_lang.building.model import (
 from aidl_lang.building.values import Num, PointVal, point
 from aidl_lang.checking.registry import fields_of
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.common.lettering import Vec
+from aidl_lang.common.font_files import Vec
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.overloads import CallSite
     from aidl_lang.building.scopes import Candidate
     from aidl_lang.building.stacking import StatedOrder
+    from aidl_lang.common.lettering import Font
 
 
 _LARGEST_GUESS = 1e12
@@ -138,6 +139,8 @@ class Interpreter:
     text"""
     numbers: dict[ast.Number, Num] = field(default_factory=dict)
     """numbers of the text, which are the same each time they are met"""
+    fonts: dict[str, Font] = field(default_factory=dict)
+    """font files by path, as texts name them"""
     frames_turn: bool = False
     """the program mentions the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None

@@ -53,6 +53,7 @@ def resolve(module: ast.Module, world: World | None, library: Library) -> Resolu
         imports=loaded.targets,
         diagnostics=[*misplaced, *loaded.diagnostics, *notes],
         library_scope=library_scope(library),
+        world=world,
     )
     resolution.enter_library = Resolver(resolution, is_library=True).of_library
     for each in modules:

@@ -1,8 +1,7 @@
 """Lettering: texts as exact outlines, measured in the height of a capital letter.
 
-The outlines are those of a TrueType font that ships with the package, plain or bold. It has no overlapping
-contours, so that nested ones alternate. The splines of such a font are quadratic; as cubic Bézier curves they
-are the same curves. Characters stand one behind the other by their advance widths, without kerning. All
+The outlines are those of a font file (see `font_files`): of one that ships with the package, plain or bold,
+or of one's own. Characters stand one behind the other by their advance widths, without kerning. All
 places go by the ink: a line of text begins where its first letter has its leftmost point.
 """
 
@@ -10,20 +9,13 @@ from __future__ import annotations
 
 import unicodedata
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, cached_property, lru_cache
-from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from functools import cache, lru_cache
 
+from aidl_lang.common.font_files import Curve, FontFile, Vec
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 
-if TYPE_CHECKING:
-    from fontTools.ttLib import TTFont
-
-Vec = tuple[float, float]
-Curve = tuple[Vec, ...]
-"""The two ends of a line, or the four control points of a cubic Bézier curve; a single point is a place."""
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
 
@@ -34,15 +26,20 @@ _FOLDER = "aidl_lang/common/fonts"
 
 @record()
 class Glyph:
-    """The outline of one character; `box` is that of its ink."""
+    """The outline of one character; `box` is that of its ink.
+
+    is_nested  its contours do not overlap, so that nested ones alternate; otherwise they are to be united by
+               the non-zero rule
+    """
 
     curves: tuple[Curve, ...]
     box: Box
+    is_nested: bool = True
 
     def moved(self, dx: float, dy: float) -> Glyph:
         left, bottom, right, top = self.box
         curves = tuple(tuple((x + dx, y + dy) for x, y in curve) for curve in self.curves)
-        return Glyph(curves, (left + dx, bottom + dy, right + dx, top + dy))
+        return Glyph(curves, (left + dx, bottom + dy, right + dx, top + dy), self.is_nested)
 
 
 def box_around(glyphs: Sequence[Glyph]) -> Box:
@@ -127,7 +124,8 @@ def unknown_characters(text: str, font: Font | None = None) -> list[str]:
 
 @lru_cache(maxsize=1024)
 def typeset(text: str, align: str, line_spacing: float, font: Font | None = None) -> tuple[Glyph, ...]:
-    """Returns the characters of a text that have ink, in order, with known characters only.
+    """Returns the characters of a text that have ink, in order, with known characters only. Raises
+    FontError.
 
     The origin lies on the baseline of the first line, at the left end, the middle or the right end of every
     line, as `align` says. Baselines are `line_spacing` apart.
@@ -160,86 +158,49 @@ def _set_line(line: str, font: Font) -> Iterator[Glyph]:
 
 
 class Font:
-    """A font file, of which each character is read once."""
+    """The characters of a font file, each of which is read once.
 
-    def __init__(self, data: bytes) -> None:
-        # Not imported at the top: a program without text needs no font.
-        from fontTools.ttLib import TTFont
+    is_nested  of its characters (see `Glyph`)
+    """
 
-        self._file: TTFont = TTFont(BytesIO(data), lazy=True)
-        self._names: Mapping[int, str] = self._file.getBestCmap()
+    def __init__(self, data: bytes, *, is_nested: bool = False) -> None:
+        """Raises FontError."""
+        self.is_nested = is_nested
+        self._file = FontFile(data)
         self._made: dict[str, tuple[Glyph | None, float]] = {}
 
     def __contains__(self, character: str) -> bool:
-        return ord(character) in self._names
+        return character in self._file
 
     def glyph(self, character: str) -> tuple[Glyph | None, float]:
-        """Returns the outline of a character at the origin (None for a blank) and its advance width."""
+        """Returns the outline of a character at the origin (None for a blank) and its advance width.
+        Raises FontError.
+        """
         if character not in self._made:
             self._made[character] = self._read(character)
         return self._made[character]
 
     def _read(self, character: str) -> tuple[Glyph | None, float]:
-        from fontTools.pens.recordingPen import DecomposingRecordingPen
+        outline, advance = self._file.outline(character)
+        unit = 1.0 / self._file.capital_height
+        curves = tuple(tuple((x * unit, y * unit) for x, y in curve) for curve in outline)
+        return (Glyph(curves, _ink(curves), self.is_nested) if curves else None), advance * unit
 
-        glyphs, name = self._file.getGlyphSet(), self._names[ord(character)]
-        pen = DecomposingRecordingPen(glyphs)
-        glyphs[name].draw(pen)
-        unit = 1.0 / self._capital_height
-        curves = tuple(
-            tuple((x * unit, y * unit) for x, y in curve)
-            for curve in _curves(pen.value)
-            if len(set(curve)) > 1
-        )
-        advance = float(glyphs[name].width) * unit
-        return (Glyph(curves, _ink(curves)) if curves else None), advance
 
-    @cached_property
-    def _capital_height(self) -> float:
-        """The height of an H in font units."""
-        return float(self._file["glyf"][self._names[ord("H")]].yMax)
+@lru_cache(maxsize=8)
+def font_of(data: bytes) -> Font:
+    """Returns the font of a file. Raises FontError."""
+    return Font(data)
 
 
 @cache
 def plain_font() -> Font:
-    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL.ttf").read_bytes())
+    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL.ttf").read_bytes(), is_nested=True)
 
 
 @cache
 def bold_font() -> Font:
-    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL-Bold.ttf").read_bytes())
-
-
-def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
-    """Yields the curves of what a pen drew, contour by contour, in font units."""
-    from fontTools.pens.basePen import decomposeQuadraticSegment
-
-    first = here = (0.0, 0.0)
-    for command, points in commands:
-        if command == "moveTo":
-            first = here = points[0]
-        elif command == "lineTo":
-            yield here, points[0]
-            here = points[0]
-        elif command == "qCurveTo":
-            if points[-1] is None:  # a contour of control points only starts between two of them
-                (x0, y0), (x1, y1) = points[-2], points[0]
-                first = here = (x0 + x1) / 2, (y0 + y1) / 2
-                points = (*points[:-1], here)
-            for control, end in decomposeQuadraticSegment(points):
-                yield _raised(here, control, end)
-                here = end
-        elif command == "closePath":
-            yield here, first
-        else:
-            raise ValueError(f"{command} in a TrueType outline")
-
-
-def _raised(a: Vec, b: Vec, c: Vec) -> Curve:
-    """Returns a quadratic Bézier curve as the same cubic one."""
-    one = (a[0] + 2 * b[0]) / 3, (a[1] + 2 * b[1]) / 3
-    two = (c[0] + 2 * b[0]) / 3, (c[1] + 2 * b[1]) / 3
-    return a, one, two, c
+    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL-Bold.ttf").read_bytes(), is_nested=True)
 
 
 def _ink(curves: Sequence[Curve]) -> Box:

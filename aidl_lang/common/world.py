@@ -20,7 +20,7 @@ class ReadFailure(StrEnum):
     MISSING = "there is no such file"
     OUTSIDE = "it lies outside the project"
     NOT_TEXT = "it is not UTF-8 text"
-    TOO_LARGE = "it is too large for a program"
+    TOO_LARGE = "it is too large"
     UNREADABLE = "it cannot be read"
     ANOTHER_KIND = "it leads to another kind of file"
     NOT_A_PROGRAM = "it is no program without mistakes"
@@ -40,6 +40,10 @@ class World(Protocol):
 
     def read(self, path: str) -> str:
         """Returns the text of a file; the path is relative to the root. Raises FileError."""
+        ...
+
+    def read_bytes(self, path: str) -> bytes:
+        """Returns what is in a file, such as a font. Raises FileError."""
         ...
 
 
@@ -67,16 +71,22 @@ def relative_to(path: str, importer: str) -> str:
 
 
 class MemoryWorld:
-    """Files held in a mapping from path to text: for tests, the editor and the browser."""
+    """Files held in mappings from path to text, and to bytes: for tests, the editor and the browser."""
 
-    def __init__(self, files: Mapping[str, str]) -> None:
+    def __init__(self, files: Mapping[str, str], data: Mapping[str, bytes] | None = None) -> None:
         self.files = {normalize(path): text for path, text in files.items()}
+        self.data = {normalize(path): content for path, content in (data or {}).items()}
 
     def read(self, path: str) -> str:
         try:
             return self.files[normalize(path)]
         except KeyError:
             raise FileError(path, ReadFailure.MISSING) from None
+
+    def read_bytes(self, path: str) -> bytes:
+        if (content := self.data.get(normalize(path))) is not None:
+            return content
+        return self.read(path).encode()
 
 
 class DiskWorld:
@@ -86,6 +96,12 @@ class DiskWorld:
         self.root = Path(root).resolve()
 
     def read(self, path: str) -> str:
+        try:
+            return self.read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
+        except UnicodeDecodeError:
+            raise FileError(path, ReadFailure.NOT_TEXT) from None
+
+    def read_bytes(self, path: str) -> bytes:
         try:
             file = (self.root / normalize(path)).resolve()
             if not file.is_relative_to(self.root):
@@ -98,9 +114,7 @@ class DiskWorld:
                 raise FileError(path, ReadFailure.ANOTHER_KIND)
             if file.stat().st_size > MAX_BYTES:
                 raise FileError(path, ReadFailure.TOO_LARGE)
-            return file.read_text(encoding="utf-8")
-        except UnicodeDecodeError:
-            raise FileError(path, ReadFailure.NOT_TEXT) from None
+            return file.read_bytes()
         except FileError:
             raise
         except (OSError, ValueError, RuntimeError):  # no permission, a NUL in the name, a loop of links

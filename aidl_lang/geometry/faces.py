@@ -79,16 +79,16 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:
-    """Yields what alternates by itself: each letter of a text along a curve, where letters may overlap."""
-    letters = [part for part in shape.geometry.parts if part.type == "glyphs"]
+    """Yields what alternates by itself: each letter of a text, as letters may overlap."""
+    letters = [part for part in shape.geometry.walk() if part.type == "glyph"]
     if len(letters) < 2:
         yield uses
         return
     letter_of = {id(leaf): k for k, letter in enumerate(letters) for leaf in letter.walk()}
-    of_edge = {edge: letter_of.get(id(leaf)) for leaf, n in shape.leaves for edge, _ in network.uses[n]}
+    closed = set(uses)
     parts: dict[int | None, list[Use]] = defaultdict(list)
-    for use in uses:
-        parts[of_edge.get(use[0])].append(use)
+    for leaf, number in shape.leaves:
+        parts[letter_of.get(id(leaf))] += [use for use in network.uses[number] if use in closed]
     yield from parts.values()
 
 

@@ -1,17 +1,22 @@
-"""The areas of letters that a drawing fills, with their counters open."""
+"""The areas of letters that a drawing fills, with their counters open; overlapping contours united."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.common.font_files import Curve
+from aidl_lang.geometry.curves import Bezier, Line, Piece
 from aidl_lang.geometry.evaluate import ends, points, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Face, Loop
+from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.sections import fill
+from aidl_lang.geometry.trace import trace
 
 _STEPS = np.linspace(0, 1, 9)
 
@@ -32,6 +37,28 @@ def letter_faces(outline: Sequence[Piece]) -> tuple[Face, ...]:
             holder = max((other for other in outer if other in holes), key=lambda other: len(around[other]))
             holes[holder].append(_turning(contours[k], -1.0))
     return tuple(Face(_turning(contours[k], 1.0), tuple(inner)) for k, inner in holes.items())
+
+
+@lru_cache(maxsize=512)
+def united(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
+    """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
+    network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
+    numbers = {id(curve): number for number, curve in enumerate(network.curves)}
+    contours = [[numbers[id(piece)] for piece in contour] for contour in _contours(network.curves)]
+
+    def traced() -> Region:
+        uses = [[use for number in contour for use in network.uses[number]] for contour in contours]
+        return trace(network, fill([network.polyline(u) for u in uses if u], "NonZero")).region
+
+    region = with_finer_chords(network, traced)
+    return tuple(_points(piece) for piece in region.pieces)
+
+
+def _points(piece: Piece) -> Curve:
+    if isinstance(piece, Bezier):
+        return piece.p0, piece.p1, piece.p2, piece.p3
+    assert isinstance(piece, Line)
+    return piece.start, piece.end
 
 
 def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:

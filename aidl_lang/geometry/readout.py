@@ -26,11 +26,13 @@ from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scop
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.letters import united
 from aidl_lang.geometry.solved import (
     Box,
     Change,
@@ -297,7 +299,7 @@ class _Reader:
             u, v = height * p[0], up * height * p[1]
             return x + u * c - v * s, y + u * s + v * c
 
-        glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph.curves, at) for i, glyph in enumerate(g.glyphs))
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", _outline(glyph), at) for i, glyph in enumerate(g.glyphs))
         values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
         source = g.source.path if g.source is not None else None
@@ -365,6 +367,10 @@ class _Reader:
         return curves.Arc(
             center, self._number(g.fields["radius"]), start, end, -sweep if is_clockwise else sweep
         )
+
+
+def _outline(glyph: Glyph) -> tuple[tuple[Vec, ...], ...]:
+    return glyph.curves if glyph.is_nested else united(glyph.curves)
 
 
 def _glyph(

@@ -12,9 +12,11 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
+from pathlib import PurePosixPath
 
 from aidl_lang.checking import library
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
+from aidl_lang.common.font_files import SUFFIXES
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World
@@ -40,6 +42,12 @@ class Programs:
         if has_errors(parse(SourceFile(path, text)).diagnostics):
             raise FileError(path, ReadFailure.NOT_A_PROGRAM)
         return text
+
+    def read_bytes(self, path: str) -> bytes:
+        """Returns what is in a font file; no message on one quotes it."""
+        if PurePosixPath(path).suffix.lower() not in SUFFIXES:
+            raise FileError(path, ReadFailure.ANOTHER_KIND)
+        return self.world.read_bytes(path)
 
 
 @record()

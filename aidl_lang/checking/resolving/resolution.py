@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import EVERYWHERE, MATH, SIGNATURES
@@ -15,6 +16,9 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.common.world import World
 
 _NOWHERE = ast.Module(SourceFile("built in", ""), (), (), span=Span(SourceFile("built in", ""), 0, 0))
 
@@ -35,6 +39,7 @@ class Resolution:
     allowances   what notes and warnings are not to be told
     errors       how many the resolver has found so far
     scopes       structures, definitions, loops, comprehensions and files → their scopes
+    world        the files beside the program, such as fonts; None if only its text is at hand
     """
 
     main: ast.Module
@@ -52,6 +57,7 @@ class Resolution:
     of_definition: dict[ast.Node, Symbol] = field(default_factory=dict)
     library_scope: SymbolScope = field(default_factory=lambda: SymbolScope(_NOWHERE))
     enter_library: Callable[[ast.Node], None] = lambda _: None
+    world: World | None = None
 
     def scope_of(self, definition: ast.Node) -> SymbolScope:
         """Returns the scope of a definition's body; one of the library is resolved when it is first

@@ -82,6 +82,14 @@ class Surroundings:
                 raise
         return self.disk.read(path)
 
+    def read_bytes(self, path: str) -> bytes:
+        try:
+            return self.given.read_bytes(path)
+        except FileError as error:
+            if error.reason is not ReadFailure.MISSING or self.disk is None:
+                raise
+        return self.disk.read_bytes(path)
+
     def reader(self, source: SourceFile) -> Reader:
         """Returns the author of the program and of the files given with it."""
         return Reader({**self.given.files, source.name: source.text})

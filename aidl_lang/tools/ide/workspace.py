@@ -71,6 +71,12 @@ class OpenWorld:
         inside = normalize(path)
         if (text := self.workspace.open.get(self.folder / inside)) is not None:
             return text
+        return self._disk(path).read(inside)
+
+    def read_bytes(self, path: str) -> bytes:
+        return self._disk(path).read_bytes(normalize(path))
+
+    def _disk(self, path: str) -> DiskWorld:
         if not self.folder.is_dir():  # of a program that was never saved
             raise FileError(path, ReadFailure.MISSING)
-        return DiskWorld(self.folder).read(inside)
+        return DiskWorld(self.folder)
