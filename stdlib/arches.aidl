@@ -200,7 +200,8 @@ shape ogee_arch(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
-    assert rise < height, "the curved part of an arch is lower than the whole"
+    assert rise < height,
+        "the curved part of an ogee arch, as high as wide without a `rise`, is lower than the whole"
     assert rise >= width / 2, "the curved part of an ogee arch is at least half as high as wide"
     fn place(x, y) = center + turned((x, y), angle)
     let half = width / 2

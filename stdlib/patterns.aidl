@@ -314,7 +314,10 @@ fn shingles(
     margin: length = 0
 ) = tiled(
     if is_some(gap) then offset(
-        shingle_outline(width / 2, height, round), -gap / 2
+        if is_some(round) then shingle_outline(width / 2, height, round) else square_shingle(
+            width / 2, height
+        ),
+        -gap / 2
     ) else shingle_edge(width / 2, height, round),
     within: inset(of, margin),
     by: (width, 0),
@@ -322,14 +325,38 @@ fn shingles(
     angle: angle,
     start: corner
 )
+// By whether they are round.
+fn shingles(
+    of,
+    width: length,
+    height: length,
+    round: bool,
+    gap: length = 0,
+    angle: angle = 0deg,
+    margin: length = 0
+) = shingles(
+    of,
+    width: width,
+    height: height,
+    round: if round then width / 4 else 0mm,
+    gap: gap,
+    angle: angle,
+    margin: margin
+)
 // From the top of the left side around the bottom to where the next one has its left side.
 fn shingle_edge(half: length, height: length, round: length) = path(
     from: fixed((-half, height)),
-    line_to(fixed((-half, round))),
-    arc_to(fixed((-half + round, 0)), radius: round),
-    line_to(fixed((half - round, 0))),
-    arc_to(fixed((half, round)), radius: round)
+    if is_some(round) {
+        line_to(fixed((-half, round))),
+        arc_to(fixed((-half + round, 0)), radius: round),
+        line_to(fixed((half - round, 0))),
+        arc_to(fixed((half, round)), radius: round)
+    } else {
+        line_to(fixed((-half, 0))), line_to(fixed((half, 0))), line_to(fixed((half, height)))
+    }
 )
+fn square_shingle(half: length, height: length) =
+    polygon([fixed((-half, 0)), fixed((half, 0)), fixed((half, height)), fixed((-half, height))])
 // What is seen of it below the round corners of the two above.
 fn shingle_outline(half: length, height: length, round: length) = path(
     from: fixed((-half, height)),

@@ -222,6 +222,13 @@ shape rhombus(
     let corner = [right_corner, top_corner, left_corner, bottom_corner]
     let corners = corner
 }
+/// By its lower or upper corner, about which it turns.
+fn rhombus(bottom_corner: point, width: length, height: length, angle: angle = 0deg) = rhombus(
+    center: above_foot(bottom_corner, height, angle), width: width, height: height, angle: angle
+)
+fn rhombus(top_corner: point, width: length, height: length, angle: angle = 0deg) = rhombus(
+    center: above_foot(top_corner, -height, angle), width: width, height: height, angle: angle
+)
 
 /// A kite, pointing down: `shoulder` is how far above the lower tip it is widest.
 ///
@@ -251,6 +258,12 @@ shape kite(
     let corner = [right_corner, top_corner, left_corner, bottom_corner]
     let corners = corner
 }
+/// By its lower or upper corner, about which it turns.
+fn kite(
+    bottom_corner: point, width: length, height: length, shoulder: length, angle: angle = 0deg
+) = kite(above_foot(bottom_corner, height, angle), width, height, shoulder, angle)
+fn kite(top_corner: point, width: length, height: length, shoulder: length, angle: angle = 0deg) =
+    kite(above_foot(top_corner, -height, angle), width, height, shoulder, angle)
 
 /// A straight bar with square ends from `start` to `end`; with two widths it tapers. With round ends it is a `slot`.
 ///

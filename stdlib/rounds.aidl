@@ -1,7 +1,7 @@
 // The relatives of the circle: rings, slices, slots, and what is cut off straight.
 
 /// By its width and height. Numbers without a name are `rx` and `ry`.
-fn ellipse(angle: angle = 0deg, center: point = (0, 0), width: length, height: length) =
+fn ellipse(center: point = (0, 0), angle: angle = 0deg, width: length, height: length) =
     ellipse(center: center, rx: width / 2, ry: height / 2, angle: angle)
 
 /// A ring: the area between two circles about one centre, `outer` and `inner`.

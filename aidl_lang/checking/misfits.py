@@ -208,7 +208,9 @@ def _pair_for_one(
     text = shown(argument.value)
     start = argument.name.span.start if argument.name is not None else argument.value.span.start
     span = Span(argument.value.span.source, start, argument.value.span.start)
-    takes_two = any({"width", "height"} <= m.signature.by_fold.keys() for m in misses)
+    sizes = {"width", "height"}
+    is_said = any(a.name is not None and fold(a.name.text) in sizes for a in node.arguments)
+    takes_two = not is_said and any(sizes <= m.signature.by_fold.keys() for m in misses)
     takes_one = any("size" in m.signature.by_fold for m in misses)
     if takes_two and argument.name is None:
         check.report(
