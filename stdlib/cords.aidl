@@ -5,7 +5,7 @@
 ///
 /// `start` and `end` may be points of any structure above, which it follows. It is the Bézier `way`, a parabola.
 ///
-/// Lies with its middle below the straight way, wherever it goes.
+/// Its middle is below the straight way, wherever that goes.
 ///
 /// ```aidl
 /// assembly power_line {
@@ -25,7 +25,7 @@ shape cord(start: point, end: point, sag: length = norm(end - start) / 5) {
 /// It leaves and arrives straight on, over a share `lead` of its way at both ends. `start` and `end` may be points of any
 /// structure above, which it follows. `segment[i]` are its Béziers, the leads and four for each loop.
 ///
-/// Lies with its loops on the left of its way.
+/// The loops are on the left of its way.
 ///
 /// ```aidl
 /// assembly telephone {
@@ -67,7 +67,7 @@ let loop_handle = 0.5523
 /// It leaves and arrives straight, over a share `lead` of its way at both ends; with `round: false` its turns are
 /// sharp. `start` and `end` may be points of any structure above, which it follows. `segment[i]` are its pieces in order.
 ///
-/// Lies with its first half on the left of its way.
+/// The first half is on the left of its way.
 ///
 /// ```aidl
 /// assembly scale {

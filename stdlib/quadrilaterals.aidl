@@ -222,7 +222,7 @@ shape rhombus(
     let corner = [right_corner, top_corner, left_corner, bottom_corner]
     let corners = corner
 }
-/// By its lower or upper corner, about which it turns.
+// By its lower or upper corner, about which it turns.
 fn rhombus(bottom_corner: point, width: length, height: length, angle: angle = 0deg) = rhombus(
     center: above_foot(bottom_corner, height, angle), width: width, height: height, angle: angle
 )
@@ -258,7 +258,7 @@ shape kite(
     let corner = [right_corner, top_corner, left_corner, bottom_corner]
     let corners = corner
 }
-/// By its lower or upper corner, about which it turns.
+// By its lower or upper corner, about which it turns.
 fn kite(
     bottom_corner: point, width: length, height: length, shoulder: length, angle: angle = 0deg
 ) = kite(above_foot(bottom_corner, height, angle), width, height, shoulder, angle)

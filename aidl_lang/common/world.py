@@ -129,6 +129,7 @@ class KeptWorld:
     def __init__(self, world: World) -> None:
         self._world = world
         self._texts: dict[str, str] = {}
+        self._bytes: dict[str, bytes] = {}
 
     def read(self, path: str) -> str:
         wanted = normalize(path)
@@ -136,5 +137,11 @@ class KeptWorld:
             self._texts[wanted] = self._world.read(path)
         return self._texts[wanted]
 
+    def read_bytes(self, path: str) -> bytes:
+        wanted = normalize(path)
+        if wanted not in self._bytes:
+            self._bytes[wanted] = self._world.read_bytes(path)
+        return self._bytes[wanted]
+
     def __getstate__(self) -> dict[str, object]:
-        return {"_world": MemoryWorld({}), "_texts": self._texts}
+        return {"_world": MemoryWorld({}), "_texts": self._texts, "_bytes": self._bytes}

@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "edges", "behind", "in_front", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1034,6 +1034,8 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@dash", "title": "dashed lines", "body": "@dash(${1:3}, ${2:1.5})$0", "place": "attribute"},
   {"prefix": "@opacity", "title": "what shows through", "body": "@opacity(${1:0.5})$0", "place": "attribute"},
   {"prefix": "@edges", "title": "seams in a solid", "body": "@edges(${1:seams})$0", "place": "attribute"},
+  {"prefix": "@halo", "title": "a clear gap around what lies in front", "body": "@halo(${1:1mm})$0", "place": "attribute"},
+  {"prefix": "@clip", "title": "drawn inside an outline only", "body": "@clip(${1:outline})$0", "place": "attribute"},
   {"prefix": "@behind", "title": "drawn behind another", "body": "@behind(${1:other})$0", "place": "attribute"},
   {"prefix": "@in_front", "title": "drawn in front of another", "body": "@in_front(${1:other})$0", "place": "attribute"},
   {"prefix": "@layer", "title": "the layer", "body": "@layer(\"${1:cut}\")$0", "place": "attribute"},
