@@ -351,10 +351,18 @@ def parallelogram_by_sides(n: Draw) -> tuple[str, float, float]:
     return call, w * s * sin(radians(angle)), 2 * (w + s)
 
 
-@form
-def rhombus(n: Draw) -> tuple[str, float, float]:
-    w, h = n(1, 50), n(1, 50)
-    return f"rhombus(width: {w}, height: {h})", w * h / 2, 2 * hypot(w, h)
+_TIPS = ("", "bottom_corner: (3, 4), ", "top_corner: (3, 4), ")
+
+
+def rhombus(place: str) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h = n(1, 50), n(1, 50)
+        return f"rhombus({place}width: {w}, height: {h})", w * h / 2, 2 * hypot(w, h)
+
+    return make
+
+
+FORMS += [rhombus(place) for place in _TIPS]
 
 
 @form
@@ -363,12 +371,17 @@ def rhombus_by_side(n: Draw) -> tuple[str, float, float]:
     return f"rhombus(side: {s}, side_angle: {angle})", s**2 * sin(radians(angle)), 4 * s
 
 
-@form
-def kite(n: Draw) -> tuple[str, float, float]:
-    w, h = n(1, 50), n(10, 50)
-    s = n(1, h - 1)
-    call = f"kite(width: {w}, height: {h}, shoulder: {s})"
-    return call, w * h / 2, 2 * hypot(w / 2, s) + 2 * hypot(w / 2, h - s)
+def kite(place: str) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h = n(1, 50), n(10, 50)
+        s = n(1, h - 1)
+        call = f"kite({place}width: {w}, height: {h}, shoulder: {s})"
+        return call, w * h / 2, 2 * hypot(w / 2, s) + 2 * hypot(w / 2, h - s)
+
+    return make
+
+
+FORMS += [kite(place) for place in _TIPS]
 
 
 @form

@@ -56,7 +56,7 @@ def pictures(reference: Reference) -> dict[str, bytes]:
 
 
 def image(entry: Entry) -> str:
-    return f"{_IMAGES}/{entry.name.removeprefix('@')}.svg"
+    return f"{_IMAGES}/{entry.name.replace('@', 'attribute_')}.svg"
 
 
 def picture(entry: Entry) -> bytes:
