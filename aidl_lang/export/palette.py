@@ -34,7 +34,11 @@ _SHADE = 0.55
 _LIGHTEST_OUTLINE = 128
 """Brightness, of 255, up to which an outline is seen well on white paper."""
 _DARK = 112
-"""Brightness, of 255, up to which a dark line is hard to see."""
+"""Brightness, of 255, up to which dark letters are hard to read."""
+_DARKEST = 60
+"""Brightness, of 255, up to which a darker line is hard to see."""
+_TINT = 0.5
+"""The share of white in lines on what is darker."""
 
 
 def body_fill(index: int) -> str:
@@ -53,8 +57,15 @@ def outline_of(fill: str) -> str:
     return hexadecimal((red, green, blue))
 
 
+def etched(fill: str) -> str:
+    """Returns an ink for lines on a fill: a darker tone of it, or a lighter one of what is very dark."""
+    if _brightness(rgb(fill)) > _DARKEST:
+        return outline_of(fill)
+    return hexadecimal(part + _TINT * (255 - part) for part in rgb(fill))
+
+
 def contrasting(fill: str) -> str:
-    """Returns an ink that is visible on a fill of this colour, and on white beside it."""
+    """Returns an ink for letters that can be read on a fill of this colour, and on white beside it."""
     return OUTLINE if _brightness(rgb(fill)) > _DARK else LIGHT
 
 

@@ -201,7 +201,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
         return
     color = style.color or palette.OUTLINE
     if stroke.over is not None:
-        color = palette.contrasting(stroke.over)
+        color = palette.contrasting(stroke.over) if stroke.faces else palette.etched(stroke.over)
     if stroke.faces:
         yield from (Area(face, color, None, opacity=_opacity(style)) for face in stroke.faces)
         return
