@@ -3,12 +3,10 @@
 /// Lettering, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
 ///
 /// In a `drawing` it is engraved: filled in pictures, or with `outline: true` drawn as the outlines that cutters, DXF and
-/// STEP get of all letters. In a `hole` it is cut out, in a `solid` it is material. Instead of its center `start` may be
-/// said: the point of the baseline where the text begins (or has its middle or its end, as `align` says); instead of a
-/// height a `width`. `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart
-/// their baselines are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first
-/// line. The letters are those of DejaVu Sans without kerning, or of a font file of one's own, found as an import is:
-/// `font: "Lobster.ttf"` (or `.otf`).
+/// STEP get. In a `hole` it is cut out, in a `solid` it is material. Instead of its center `start` may be said: the point
+/// of the baseline where the text begins (or as `align` says); instead of a height a `width`. `\n` begins a new line, and
+/// `line_spacing` is between baselines, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line
+/// under the first line. The font is DejaVu Sans without kerning, or a file found as an import is: `font: "My.ttf"`.
 ///
 /// ```aidl
 /// solid badge {

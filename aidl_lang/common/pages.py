@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
@@ -28,6 +27,8 @@ def title(code: str) -> str:
 
 def near(code: str) -> list[str]:
     """Returns codes that may have been meant: those that look alike, else those of the same digits."""
+    from difflib import get_close_matches  # takes time to load
+
     digits = "".join(char for char in code if char.isdigit())
     same = [known for known in _pages() if digits and known[1:] == digits]
     return same or get_close_matches(code, _pages(), n=3, cutoff=0.7)

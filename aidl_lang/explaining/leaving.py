@@ -11,11 +11,12 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.numbers import short
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.explaining.failures import NAMED
 from aidl_lang.solver import Solution
 
 _FAR = 0.1
 """The part of the extent of both by which a detail may move without a word."""
+_NAMED = 3
+"""Siblings told by name."""
 _STILL = 1e-6
 """Moves below this, in mm, count as none."""
 
@@ -86,7 +87,7 @@ def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> fl
 def _left(structure: Structure, left: Sequence[_Detail], stayed: Sequence[_Detail]) -> Diagnostic:
     chief = max(left, key=lambda detail: detail.moved)
     inside = f"{structure.path}."
-    stays = named([d.geometry.path.removeprefix(inside) for d in stayed], NAMED)
+    stays = named([d.geometry.path.removeprefix(inside) for d in stayed], _NAMED)
     asking = list(dict.fromkeys(c for d in left for c in d.constraints))
     name = chief.geometry.path.removeprefix(inside)
     return Diagnostic(

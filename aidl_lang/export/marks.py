@@ -15,6 +15,7 @@ CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
 
 HALO = "halo"
+LETTERS = "letters"
 """The role of what has the colour of the paper: a gap around what lies in front."""
 
 
@@ -43,7 +44,9 @@ class Area:
 
     @property
     def is_sign(self) -> bool:
-        """True for a mark of its own, such as the head of an arrow; false for a solid without outline."""
+        """True for a mark of its own, such as a letter or the head of an arrow; false for a solid without
+        outline.
+        """
         return self.ink is None and self.role not in ("", HALO)
 
 

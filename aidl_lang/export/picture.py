@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.export import Job, palette
-from aidl_lang.export.marks import CHARACTER, Area, Curves, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import CHARACTER, LETTERS, Area, Curves, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.overlay import explain
 from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
@@ -203,7 +203,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = palette.contrasting(stroke.over) if stroke.faces else palette.etched(stroke.over)
     if stroke.faces:
-        yield from (Area(face, color, None, opacity=_opacity(style)) for face in stroke.faces)
+        yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)
         return
     ink = replace(_line(style, color, STROKE_WIDTH, size), opacity=_opacity(style))
     yield Curves(stroke.pieces, ink)

@@ -366,7 +366,7 @@ def test_a_cutter_gets_the_outlines_of_letters() -> None:
     assert set(re.findall('fill="(.*?)"', svg)) == {"none"}
     made = ezdxf.read(io.StringIO(written(".dxf", LETTERS).data.decode()))
     entities = [e for e in made.modelspace() if e.dxf.layer == "drawing"]
-    assert {e.dxftype() for e in entities} == {"LWPOLYLINE", "SPLINE"}
+    assert {e.dxftype() for e in entities} == {"LWPOLYLINE"}
     assert all(e.closed for e in entities if e.dxftype() == "LWPOLYLINE")
 
 

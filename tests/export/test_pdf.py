@@ -71,7 +71,7 @@ def test_areas_of_curves():
         1440: Loop((Bezier((0, 0), (0, 40), (60, 40), (60, 0)), Line((60, 0), (0, 0)))),
     }
     for area, loop in loops.items():
-        (body,) = read_pdf(of(Area(Face(loop), "#000000", None)))
+        (body,) = read_pdf(of(Area(Face(loop), "#000000", Ink("#000000", 0.1))))
         assert body.area == pytest.approx(area, rel=1e-5)
 
 

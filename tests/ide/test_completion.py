@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -377,6 +378,7 @@ _OPERANDS_FOLLOW = frozenset(
     )
 )
 _AFTER = ("", " == 0", "()")
+_BEHIND_AN_ATTRIBUTE = re.compile(r"@\w+(\([^()]*\))?\s*$")
 
 
 def closed(text: str) -> str:
@@ -412,6 +414,8 @@ def test_what_is_inserted_parses_no_worse(path: Path) -> None:
         for completion in chance.sample(found, min(8, len(found))):
             if completion.label in _OPERANDS_FOLLOW:
                 continue
+            if _BEHIND_AN_ATTRIBUTE.search(broken[: token.start]):
+                continue  # any statement may stand behind `@allow`, and few behind another
             made = [
                 broken[: token.start] + completion.plain + more + broken[token.start :] for more in _AFTER
             ]

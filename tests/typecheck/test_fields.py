@@ -15,7 +15,10 @@ from tests.compiled import compiled
 
 @pytest.mark.parametrize("kind", PRIMITIVES)
 def test_a_primitive_has_each_field_with_the_type_that_the_checker_expects(kind: str) -> None:
-    sample = PRIMITIVES[kind].sample.format(x=3, y=7) or f'{kind}("a", (0, 0), 5, 0deg, "left", 1)'
+    sample = (
+        PRIMITIVES[kind].sample.format(x=3, y=7)
+        or f'{kind}("a", (0, 0), 5, 0deg, "left", 1, false, false, "DejaVu Sans")'
+    )
     built = compiled(f"drawing d {{ a = {sample} }}").built
     assert built is not None
     (geometry,) = built.root.own()

@@ -65,8 +65,11 @@ def _compared(view: View, token: Token) -> str:
 
 def of_attribute(view: View, offset: int) -> Description | None:
     """Describes the attribute after an `@`."""
-    node = next((n for n in reversed(around(view.module, offset)) if isinstance(n, ast.Attribute)), None)
-    if node is None or offset > node.name.span.end:
+    path = reversed(around(view.module, offset))
+    stated = (ast.attributes(n) for n in path if isinstance(n, ast.Structure | ast.Assign | ast.Allowing))
+    before = (a for found in stated for a in found)
+    node = next((a for a in before if a.span.start <= offset <= a.name.span.end), None)
+    if node is None:
         return None
     name = node.name.text
     entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")

@@ -5,12 +5,6 @@ assembly lantern {
     let w = 0.42 * height
     let tall = 0.38 * height
 
-    @color("khaki")
-    @opacity(0.4)
-    @stroke(none)
-    @detached
-    solid light { glow = circle(radius: 0.8 * w) }
-
     @color("dimgray")
     @detached
     solid handle {
@@ -47,11 +41,6 @@ assembly lantern {
         constrain label.name.center == body.center
     }
 
-    @color("black")
-    @opacity(0.2)
-    @stroke(none)
-    solid shade { side = difference(tank.body, copy(tank.body, by: (-0.12 * w, 0))) }
-
     @color("firebrick")
     solid chimney {
         skirt = chamfered_rectangle(width: 0.66 * w, height: 12, chamfer: 3)
@@ -85,7 +74,6 @@ assembly lantern {
         burner.on_top_of(tank, align: center)
         globe.on_top_of(burner, align: center)
         chimney.on_top_of(globe, align: center)
-        light.glow.center == globe.center
         flame.bottom == burner.top
         flame.center_x == burner.center_x
         right_wire.way.corner[0].y == tank.body.top - 4
