@@ -124,12 +124,8 @@ class Exporter:
     def write(self, suffix: str) -> Exported:
         """Writes the drawing in the format of a file suffix (`.svg`). Raises as `export` does."""
         wanted, job = FORMATS[suffix], self._job
-        if wanted.needs is not None and find_spec(wanted.needs) is None:
-            raise ExportError(
-                "E0913",
-                f"`{suffix}` needs a package that is not installed",
-                f"pip install 'aidl-lang[{wanted.extra}]'",
-            )
+        if wanted.needs is not None and wanted.extra is not None:
+            require(wanted.needs, suffix, wanted.extra)
         _check(job.options, suffix, wanted)
         jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
         unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
@@ -152,6 +148,13 @@ def export(job: Job, suffix: str) -> Exported:
     for it is missing.
     """
     return Exporter(job).write(suffix)
+
+
+def require(package: str, for_what: str, extra: str) -> None:
+    """Raises ExportError if a package is not installed; the hint names the extra that installs it."""
+    if find_spec(package) is None:
+        message = f"`{for_what}` needs a package that is not installed"
+        raise ExportError("E0913", message, f"pip install 'aidl-lang[{extra}]'")
 
 
 def _check(options: Options, suffix: str, wanted: Format) -> None:

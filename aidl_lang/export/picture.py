@@ -144,12 +144,11 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
         if seam.is_asked or not styles[seam.body].is_unlined:
             yield seam.path, _seam(seam, styles[seam.body], size)
     marks = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
-    for stroke, own in (
-        marks if halos else ()
-    ):  # the lines of a drawing, which may join, clear none of its own
-        line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
-        for mark in halos.around_stroke(stroke, line) if halos else ():
-            yield stroke.path, mark
+    if halos:  # before all lines: those of a drawing, which may join, clear none of its own
+        for stroke, own in marks:
+            line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
+            for mark in halos.around_stroke(stroke, line):
+                yield stroke.path, mark
     for stroke, own in marks:
         for mark in own:
             yield stroke.path, mark

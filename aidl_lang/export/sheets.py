@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.util import find_spec
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed, size_text
 from aidl_lang.common.prose import named
-from aidl_lang.export import ExportError, Job, Progress
+from aidl_lang.export import ExportError, Job, Progress, require
 from aidl_lang.export.unsaid import twice_compensated
 from aidl_lang.geometry.arcs import as_arcs, has_slivers
 from aidl_lang.geometry.drawing import Drawing, Stroke
@@ -62,10 +61,8 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
     if len(bodies) > MOST_PARTS:
         message = f"{len(bodies)} parts are more than the {MOST_PARTS} that are laid on sheets"
         raise ExportError("E0924", message, "draw them in several programs")
-    if job.options.nest is not None and find_spec("spyrrow") is None:
-        raise ExportError(
-            "E0913", "`--nest` needs a package that is not installed", "pip install 'aidl-lang[nest]'"
-        )
+    if job.options.nest is not None:
+        require("spyrrow", "--nest", "nest")
     try:
         layout = laid_out(job.drawing, sheet, spacing, job.options.nest)
     except NestingError as reason:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling
 from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
@@ -30,13 +30,9 @@ _CODES = 4
 
 def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("request", metavar="REQUEST", help="what to draw, or with --edit what to change")
-    parser.add_argument(
-        "-o",
-        "--output",
-        action="append",
-        default=[],
-        metavar="OUT",
-        help="where to write: the program (.aidl) and drawings of it (.svg, .png, …); may be given several "
+    add_outputs(
+        parser,
+        "where to write: the program (.aidl) and drawings of it (.svg, .png, …); may be given several "
         "times (default: the program, or with --edit the change, on standard output)",
     )
     parser.add_argument("--edit", metavar="FILE", help="change this program instead of writing a new one")

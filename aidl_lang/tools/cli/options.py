@@ -82,15 +82,16 @@ def add_look(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
+    """Adds the option for where to write, which may be given several times."""
+    parser.add_argument("-o", "--output", action="append", default=[], metavar="OUT", help=help)
+
+
 def add_drawing(parser: argparse.ArgumentParser) -> None:
     """Adds the options for what to draw and where to write it."""
-    parser.add_argument(
-        "-o",
-        "--output",
-        action="append",
-        default=[],
-        metavar="OUT",
-        help="where to write; the suffix tells the format; may be given several times; - is standard output "
+    add_outputs(
+        parser,
+        "where to write; the suffix tells the format; may be given several times; - is standard output "
         "(default: FILE with .svg)",
     )
     parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from aidl_lang.common.papers import PAPERS
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_params, add_pixels, add_program
+from aidl_lang.tools.cli.options import add_outputs, add_params, add_pixels, add_program
 from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 _DEFAULT = ".pdf"
@@ -17,13 +17,9 @@ _DEFAULT = ".pdf"
 
 def register(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        action="append",
-        default=[],
-        metavar="OUT",
-        help="where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)",
+    add_outputs(
+        parser,
+        "where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)",
     )
     add_params(parser)
     parser.add_argument("--paper", type=_paper, metavar="NAME", help=f"{', '.join(PAPERS)} (default: by fit)")
