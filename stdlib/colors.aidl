@@ -46,6 +46,7 @@ fn lighter(color: text, by: number = 0.25) = mix(color, "white", by)
 fn darker(color: text, by: number = 0.25) = mix(color, "black", by)
 
 /// A colour by its hue on the wheel (0deg red, 120deg green, 240deg blue), its saturation and its lightness, from 0 to 1.
+/// Where one of them is larger, both are per cent.
 ///
 /// ```aidl
 /// assembly fan {
@@ -57,9 +58,13 @@ fn darker(color: text, by: number = 0.25) = mix(color, "black", by)
 /// }
 /// ```
 fn hsl(hue: angle, saturation: number, lightness: number) =
-    if min(saturation, lightness) < 0 or max(saturation, lightness) > 1 then refuse(
-        "saturation and lightness are from 0 to 1"
-    ) else of_hue(hue / 30deg, saturation * min(lightness, 1 - lightness), lightness)
+    if min(saturation, lightness) < 0 or max(saturation, lightness) > 100 then refuse(
+        "saturation and lightness are from 0 to 1, or per cent"
+    ) else if max(saturation, lightness) > 1 then of_shares(hue, saturation / 100, lightness / 100)
+    else of_shares(hue, saturation, lightness)
+
+fn of_shares(hue: angle, saturation: number, lightness: number) =
+    of_hue(hue / 30deg, saturation * min(lightness, 1 - lightness), lightness)
 
 // Red, green and blue of a hue, in twelfths of a turn (CSS Color Module Level 4, section 7.1).
 fn of_hue(hue, strength, lightness) = rgb(

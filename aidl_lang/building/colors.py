@@ -49,6 +49,8 @@ def _unknown(it: Interpreter, values: Sequence[str | float], node: ast.Node) -> 
     written = ", ".join(v if isinstance(v, str) else f"{v:g}" for v in values) or "nothing"
     similar = similar_colors(written) if len(values) == 1 else []
     hints = [*did_you_mean(similar), "a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
+    if written.startswith(("rgba(", "hsla(")) or re.fullmatch(r"#(?:[0-9a-fA-F]{4}){1,2}", written):
+        hints.append("what shows through a thing is told beside its colour: `@opacity(0.5)`")
     fix = _respelt(it.place(node), written, similar[0]) if similar else None
     it.report("E0525", f"`{written}` is no colour", node, hints=hints, fix=fix)
 

@@ -1,4 +1,4 @@
-"""Colours as authors write them: CSS names, `#rgb`, `#rrggbb`, or three numbers."""
+"""Colours as authors write them: CSS names, `#rgb`, `#rrggbb`, CSS's `rgb(…)` and `hsl(…)`, or three numbers."""
 
 from __future__ import annotations
 
@@ -38,6 +38,9 @@ COLOR_NAMES = dict(zip(_WORDS[::2], _WORDS[1::2], strict=True))
 """The named colours of CSS Color Module Level 4, section 6.1: red, green and blue in hexadecimal."""
 
 _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
+_PART = r"(\d+(?:\.\d*)?|\.\d+)"
+_RGB = re.compile(rf"rgb\(\s*{_PART}[\s,]+{_PART}[\s,]+{_PART}\s*\)")
+_HSL = re.compile(rf"hsl\(\s*{_PART}(?:deg)?[\s,]+{_PART}%[\s,]+{_PART}%\s*\)")
 
 
 def css_color(values: Sequence[object]) -> str | None:
@@ -47,6 +50,8 @@ def css_color(values: Sequence[object]) -> str | None:
     fraction.
     """
     if len(values) == 1 and isinstance(name := values[0], str):
+        if "(" in name:
+            return _of_function(name.strip().lower())
         name = re.sub(r"[\s_-]", "", name.strip().lower())
         return name if name in COLOR_NAMES or _HEX.fullmatch(name) else None
     numbers = [float(v) for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
@@ -57,6 +62,20 @@ def css_color(values: Sequence[object]) -> str | None:
     if not all(0 <= v <= 255 for v in numbers):
         return None
     return hexadecimal(numbers)
+
+
+def _of_function(text: str) -> str | None:
+    """Returns the colour of CSS's `rgb(200, 30, 30)` or `hsl(210, 60%, 50%)`; None for another text."""
+    if found := _RGB.fullmatch(text):
+        return css_color([float(part) for part in found.groups()])
+    if not (found := _HSL.fullmatch(text)):
+        return None
+    from colorsys import hls_to_rgb
+
+    hue, saturation, lightness = (float(part) for part in found.groups())
+    if max(saturation, lightness) > 100:
+        return None
+    return hexadecimal(255 * part for part in hls_to_rgb(hue % 360 / 360, lightness / 100, saturation / 100))
 
 
 def hexadecimal(parts: Iterable[float]) -> str:
