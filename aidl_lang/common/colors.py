@@ -1,4 +1,4 @@
-"""Colours as authors write them: CSS names, `#rgb`, `#rrggbb`, CSS's `rgb(…)` and `hsl(…)`, or three numbers."""
+"""Colours as authors write them: CSS names, `#rrggbb`, `rgb(…)` and `hsl(…)` of CSS, or three numbers."""
 
 from __future__ import annotations
 
