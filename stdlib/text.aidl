@@ -29,13 +29,14 @@ shape text(
     line_spacing = 1.6,
     bold: bool = false,
     font: text = "DejaVu Sans",
+    stencil = false,
     outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
     let ink = ink(str(text), side, line_spacing, bold, font)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font, stencil)
     let glyph = letters.glyph
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
@@ -50,11 +51,12 @@ shape text(
     line_spacing = 1.6,
     bold: bool = false,
     font: text = "DejaVu Sans",
+    stencil = false,
     outline: bool = false,
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font, stencil)
     let glyph = letters.glyph
     let ink = ink(str(text), side, line_spacing, bold, font)
     let center = start + turned(middle_of(ink, height), angle)
@@ -71,6 +73,7 @@ shape text(
     line_spacing = 1.6,
     bold: bool = false,
     font: text = "DejaVu Sans",
+    stencil = false,
     outline: bool = false,
     rotatable: bool = false
 ) {
@@ -78,7 +81,7 @@ shape text(
     let ink = ink(str(text), side, line_spacing, bold, font)
     let height = width / (ink.right - ink.left)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing, outline, bold, font, stencil)
     let glyph = letters.glyph
     let baseline = baseline_of(ink, start, height, angle)
 }
@@ -97,10 +100,11 @@ shape text(
     line_spacing = 1.6,
     bold: bool = false,
     font: text = "DejaVu Sans",
+    stencil = false,
     outline: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold, font)
+    glyph = lettered(str(text), along, height, side, line_spacing, inside, outline, bold, font, stencil)
 }
 
 // The middle of the ink of a text from its start, and the line under its first line.

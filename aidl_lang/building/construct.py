@@ -16,7 +16,7 @@ from aidl_lang.building.arcs import ROUND, check_bare_points, differ
 from aidl_lang.building.boxes import SIDES
 from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import typeset
+from aidl_lang.building.lettering import bridge, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
@@ -368,6 +368,7 @@ def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.glyphs = typeset(it, a)
     g.filled = a.get("outline") is not True
     it.count_entity(None, len(g.glyphs))
+    g.bridge = bridge(it, a["stencil"])
     _plain(it, g, a, env)
 
 

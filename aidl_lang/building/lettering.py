@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, number
+from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, kind_of, number
+from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
 from aidl_lang.common.font_files import FontError
 from aidl_lang.common.lettering import Font, Glyph
@@ -66,6 +67,25 @@ def _set(name: str, text: str, align: str, apart: float, font: Font) -> tuple[Gl
         return lettering.typeset(text, align, apart, font)
     except FontError as reason:
         raise fonts.broken(name, reason) from None
+
+
+_BRIDGE = 0.1
+"""Width of the bridges of a stencil, in heights of a capital, where none is told."""
+
+
+def bridge(it: Interpreter, stencil: Value) -> Num | None:
+    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for no bridges, and after an
+    error, reported here.
+    """
+    if isinstance(stencil, bool):
+        return number(_BRIDGE, PLAIN) if stencil else None
+    node = it.call_sites[-1]
+    width = constant(it, stencil, node, "the width of bridges") if isinstance(stencil, Num) else 0.0
+    if width is not None and width <= 0:
+        given = f"{width:g}" if isinstance(stencil, Num) else kind_of(stencil)
+        hint = "write `stencil: true` for bridges of a tenth of the height, or how wide they are: `stencil: 2mm`"
+        report_once(it, "E0342", f"`stencil` is {given}, and bridges have a width", node, [hint])
+    return number(width, LENGTH) if width and width > 0 else None
 
 
 def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:

@@ -10,7 +10,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.along import KINDS, reading_way
 from aidl_lang.building.construct import size
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import Arguments, report_once, typeset
+from aidl_lang.building.lettering import Arguments, bridge, report_once, typeset
 from aidl_lang.building.model import Geometry, reach_of
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
@@ -57,7 +57,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     share = 0.5 if way.is_closed else lettering.ALIGNMENTS[align.value]
     first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
     height: Expression | None = None
-    reach = reach_of([g.bound_to for g in given], env.here)
+    reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a["stencil"])
     for glyph in glyphs:
         it.count_entity(node)
         g = Geometry("glyphs", env.here, it.place(node), glyphs=(glyph,), reach=reach)
@@ -70,6 +70,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         start = point(ex.sub(x, ex.mul(middle, cos)), ex.sub(y, ex.mul(middle, sin)))
         angle = Num(heading, ANGLE, Exactness.REFERENCE)
         g.fields = {"start": start, "height": length(height), "angle": angle}
+        g.bridge = bridges
         found.append(g)
         if reach is not None:
             it.following.append(g)

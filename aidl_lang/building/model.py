@@ -97,6 +97,8 @@ class Geometry:
     reach      the structure that holds both, if it is derived of geometry outside of its owner
     glyphs     for a text, its characters in units of its height
     filled     a drawing fills what it encloses, as it does letters
+    bridge     for a text to be cut, how wide the bridges to what its letters enclose are: a length, or as a
+               plain number a share of its height
     recipe     the way its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
                `end.fillet` of the end of a curve
@@ -113,6 +115,7 @@ class Geometry:
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
     filled: bool = False
+    bridge: Num | None = None
     name: str | None = None
     container: Geometry | Structure | None = None
     construction: bool = False

@@ -51,7 +51,7 @@ written(value)
 nearest(value, candidates: list)
 ink(text: text, align: text, line_spacing: number, bold: bool, font: text)
 lettered(text: text, curve, height: length, align: text, line_spacing: number, inside: bool, \
-outline: bool, bold: bool, font: text)
+outline: bool, bold: bool, font: text, stencil)
 where(value, positive, negative)
 shown(value)
 sizes(of)

@@ -107,7 +107,7 @@ _RECORDS = (
         "glyphs",
         calls=(
             "text: text, start: point, height: length, angle: angle, align: text, line_spacing: number, "
-            "outline: bool, bold: bool, font: text",
+            "outline: bool, bold: bool, font: text, stencil",
         ),
         fields="start: point, height: size, angle: direction, glyph: glyphs[]",
         chief="start height angle",

@@ -1,17 +1,21 @@
-"""The areas of letters that a drawing fills, with their counters open; overlapping contours united."""
+"""The areas of letters that a drawing fills, with their counters open; overlapping contours united; the letters
+of stencils, with bridges to what they enclose.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.font_files import Curve
+from aidl_lang.geometry.boolean import common, without
 from aidl_lang.geometry.curves import Bezier, Line, Piece
 from aidl_lang.geometry.evaluate import ends, points, reverse
-from aidl_lang.geometry.measures import loop_area
+from aidl_lang.geometry.measures import loop_area, region_bounds
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
@@ -52,6 +56,49 @@ def united(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
 
     region = with_finer_chords(network, traced)
     return tuple(_points(piece) for piece in region.pieces)
+
+
+_ROUNDS = 4
+"""How often what is still enclosed gets bridges: a ring in a ring needs two."""
+
+
+@lru_cache(maxsize=512)
+def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
+    """Returns the outline of a character through which bridges lead to all that it encloses: upright ones of
+    that width, above and below the middle of each counter, through the strokes next to it.
+    """
+    region = Region(letter_faces([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]))
+    for wider in range(_ROUNDS):
+        counters = [hole for face in region.faces for hole in face.holes]
+        if not counters:
+            break
+        beyond = width * 2**wider
+        region = without(region, *(bar for hole in counters for bar in _bridges(region, hole, width, beyond)))
+    return tuple(_points(piece) for piece in region.pieces)
+
+
+def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iterator[Region]:
+    """Yields the areas of a letter to be taken away for a counter; `beyond` is how far they reach over the far
+    side of a stroke, which may be slanted, but no further than half of the way to the next one.
+    """
+    left, low, right, high = region_bounds(Region((Face(counter),)))
+    x, middle = (left + right) / 2, (low + high) / 2
+    _, bottom, _, top = region_bounds(region)
+    line = _rectangle(x - 1e-3 * width, bottom - width, x + 1e-3 * width, top + width)
+    strokes = sorted(region_bounds(Region((face,)))[1::2] for face in common(region, line).faces)
+    above = [stroke for stroke in strokes if stroke[0] > middle]
+    below = [stroke for stroke in reversed(strokes) if stroke[1] < middle]
+    if above:
+        end = min([above[0][1] + beyond, *((above[0][1] + next_low) / 2 for next_low, _ in above[1:2])])
+        yield _rectangle(x - width / 2, middle, x + width / 2, end)
+    if below:
+        end = max([below[0][0] - beyond, *((below[0][0] + next_high) / 2 for _, next_high in below[1:2])])
+        yield _rectangle(x - width / 2, end, x + width / 2, middle)
+
+
+def _rectangle(left: float, bottom: float, right: float, top: float) -> Region:
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+    return Region((Face(Loop(tuple(Line(a, b) for a, b in pairwise((*corners, corners[0]))))),))
 
 
 def _points(piece: Piece) -> Curve:

@@ -7,13 +7,15 @@ single geometry consists of.
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.numbers import rough
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
 from aidl_lang.geometry.distance import region_distance
@@ -316,11 +318,14 @@ def _cutting(
 
 
 def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: int) -> Diagnostic:
-    letters = all(g.type == LETTERING for f in walk.faces[hole.path] for g in f.geometries)
+    cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
     pieces = "a piece falls" if count == 1 else f"{count} pieces fall"
     hints = [f"leave a bridge: a `solid` in `{hole.name}` stays, so one across the gap holds the piece"]
-    if letters:
+    fix = None
+    if all(g.type == LETTERING for g in cuts):
+        hints[0] = "`stencil: true` in a text gives its letters bridges"
         hints.insert(0, "to write on it in place of cutting through, make it a `drawing`")
+        fix = _stencil_fix({g.span for g in cuts if g.span is not None})
     hints.append(f"if that is meant, say so: `@detached` before `{solid.name}`")
     return Diagnostic(
         "W0714",
@@ -329,7 +334,16 @@ def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: 
         hole.span or solid.span,
         "nothing holds what is inside",
         hints=tuple(hints),
+        fix=fix,
     )
+
+
+def _stencil_fix(texts: set[Span]) -> Fix | None:
+    """Returns the fix that makes texts those of a stencil; None where one of them ends with more than its call."""
+    if any(re.search(r"\)\s*(at|rotated)\b|[^)]$", span.text) for span in texts):
+        return None
+    ends = sorted((Span(span.source, span.end - 1, span.end) for span in texts), key=lambda end: end.start)
+    return Fix("bridge the letters: `stencil: true`", tuple(Edit(end, ", stencil: true)") for end in ends))
 
 
 def _between(a: Bounds, b: Bounds) -> float:

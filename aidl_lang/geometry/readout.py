@@ -24,6 +24,7 @@ from aidl_lang.building.primitives import clockwise, number, translate, xy
 from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
+from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.lettering import Glyph
@@ -32,7 +33,7 @@ from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.evaluate import bounds
-from aidl_lang.geometry.letters import united
+from aidl_lang.geometry.letters import stencilled, united
 from aidl_lang.geometry.solved import (
     Box,
     Change,
@@ -299,11 +300,18 @@ class _Reader:
             u, v = height * p[0], up * height * p[1]
             return x + u * c - v * s, y + u * s + v * c
 
-        glyphs = tuple(_glyph(g, f"glyph[{i}]", _outline(glyph), at) for i, glyph in enumerate(g.glyphs))
+        outlines = [_outline(glyph, self._bridge(g, height)) for glyph in g.glyphs]
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", outline, at) for i, outline in enumerate(outlines))
         values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
         source = g.source.path if g.source is not None else None
         return replace(whole, source=source, attributes=self._attributes(g))
+
+    def _bridge(self, text: Geometry, height: float) -> float:
+        """Returns the width of the bridges of a text in units of its height; 0 for none."""
+        if text.bridge is None or height <= 0:
+            return 0.0
+        return text.bridge.value if text.bridge.dimension == PLAIN else text.bridge.value / height
 
     def _at(self, value: Value, owner: Structure) -> Vec:
         """Returns a point of `owner` in the frame of the root."""
@@ -369,8 +377,10 @@ class _Reader:
         )
 
 
-def _outline(glyph: Glyph) -> tuple[tuple[Vec, ...], ...]:
-    return glyph.curves if glyph.is_nested else united(glyph.curves)
+def _outline(glyph: Glyph, bridge: float) -> tuple[tuple[Vec, ...], ...]:
+    """Returns the outline of a character in units of its height, with bridges of that width if any."""
+    outline = glyph.curves if glyph.is_nested else united(glyph.curves)
+    return stencilled(outline, bridge) if bridge else outline
 
 
 def _glyph(
