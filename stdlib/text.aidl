@@ -6,7 +6,10 @@
 /// STEP get. In a `hole` it is cut out, in a `solid` it is material. Instead of its center `start` may be said: the point
 /// of the baseline where the text begins (or as `align` says); instead of a height a `width`. `\n` begins a new line, and
 /// `line_spacing` is between baselines, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line
-/// under the first line. The font is DejaVu Sans without kerning, or a file found as an import is: `font: "My.ttf"`.
+/// under the first line. The font is DejaVu Sans without kerning, or a file found as an import is: `font: "My.ttf"`. The letters of
+/// `font: "single line"` are the way of a tool, to be engraved. `stencil: true` bridges letters that are cut out, so that the
+/// inside of an O stays; the bridges are a tenth of the height wide, or as wide as said (`stencil: 2mm`). The box and the
+/// `width` are those of the letters without bridges.
 ///
 /// ```aidl
 /// solid badge {

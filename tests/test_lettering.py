@@ -12,14 +12,15 @@ import pytest
 from fontTools.ttLib import TTFont
 from hypothesis import given
 from hypothesis import strategies as st
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import GeometryCollection, LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from aidl_lang import pipeline
 from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.curves import Bezier, Line
-from aidl_lang.geometry.letters import letter_faces
+from aidl_lang.geometry.letters import letter_faces, stencilled
 from aidl_lang.geometry.measures import loop_area
 from tests.amount import tries
 
@@ -53,6 +54,26 @@ def _on(points: lettering.Curve, t: float) -> tuple[float, float]:
     while len(points) > 1:
         points = tuple(((1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1]) for a, b in pairwise(points))
     return points[0]
+
+
+LATIN = (
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,:;!?'\"-–—_()[]{}/\\|+=<>*#%&@^~`$€£°±×÷·•…"
+    "\u2018\u2019“”„«»→←↑↓µØøÆæŒœßĐđŁłı¡¿§²³⌀ÀÁÂÃÄÅÇÈÉÊËÌÍÎÏÑÒÓÔÕÖÙÚÛÜÝŠŽČĚŘŤàáâãäåçèéêëìíîïñòóôõöùúûüýÿšžčěřąęşșőűğ"
+)
+
+
+def parts(area: BaseGeometry) -> list[Polygon]:
+    """The polygons of an area."""
+    found = list(area.geoms) if isinstance(area, MultiPolygon | GeometryCollection) else [area]
+    return [part for part in found if isinstance(part, Polygon) and not part.is_empty]
+
+
+def ink(glyph: lettering.Glyph) -> BaseGeometry:
+    """What the contours of a character enclose, nested ones in turns."""
+    found: BaseGeometry = Polygon()
+    for contour in contours(glyph):
+        found = found.symmetric_difference(contour)
+    return found
 
 
 @FACES
@@ -116,6 +137,47 @@ def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) 
             areas = [[loop_area(loop) for loop in face.loops] for face in faces]
             assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas), character
             assert sum(map(sum, areas)) == pytest.approx(alternating.area, rel=0.02), character
+
+
+@FACES
+def test_stencils_enclose_nothing(font: lettering.Font) -> None:
+    """Of what a character is made of nothing goes all around anything, and only bridges were taken away."""
+    for character in CHARACTERS:
+        for glyph in lettering.typeset(character, "left", 1.6, font):
+            whole, cut = ink(glyph), ink(lettering.Glyph(stencilled(glyph.curves, 0.1), glyph.box))
+            assert not any(part.interiors for part in parts(cut)), character
+            assert whole.buffer(0.01).contains(cut), character
+            if any(part.interiors for part in parts(whole)):
+                assert 0.3 * whole.area < cut.area < whole.area, character
+            else:
+                assert cut.area == pytest.approx(whole.area), character
+
+
+@given(st.sampled_from("ADOPQRabdegopq0469"), st.floats(0.02, 0.3))
+@tries(40)
+def test_bridges_are_as_wide_as_said(character: str, width: float) -> None:
+    """What is taken away is upright bars of that width, but for what the chords of curves are off."""
+    (glyph,) = lettering.typeset(character, "left", 1.6)
+    taken = ink(glyph) - ink(lettering.Glyph(stencilled(glyph.curves, width), glyph.box)).buffer(0.003)
+    widths = [part.bounds[2] - part.bounds[0] for part in parts(taken) if part.area > 1e-4]
+    assert max(widths) == pytest.approx(width, abs=0.02)
+
+
+def test_letters_of_single_lines_are_drawn_once() -> None:
+    """No two strokes of a character lie on each other, capitals stand on the line and are as high as said."""
+    font = lettering.single_line_font()
+    for character in LATIN:
+        (glyph,) = lettering.typeset(character, "left", 1.6, font)
+        strokes = [LineString([_on(c, k / 16) for k in range(17)]) for c in glyph.curves]
+        twice = [a.intersection(b).length for i, a in enumerate(strokes) for b in strokes[:i]]
+        assert max(twice, default=0.0) < 1e-6, character
+    for capital in "ABCDEFGHIJKLMNOPRSTUVWXYZ":
+        (glyph,) = lettering.typeset(capital, "left", 1.6, font)
+        assert (glyph.box[1], glyph.box[3]) == pytest.approx((0, 1), abs=1e-9), capital
+
+
+def test_what_single_lines_should_have() -> None:
+    assert lettering.unknown_characters(LATIN + " ", lettering.single_line_font()) == []
 
 
 def test_accents_written_apart_are_joined() -> None:

@@ -16,7 +16,7 @@ from aidl_lang.building.arcs import ROUND, check_bare_points, differ
 from aidl_lang.building.boxes import SIDES
 from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import bridge, typeset
+from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
@@ -366,9 +366,9 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.glyphs = typeset(it, a)
-    g.filled = a.get("outline") is not True
+    g.filled = is_filled(a, g.glyphs)
     it.count_entity(None, len(g.glyphs))
-    g.bridge = bridge(it, a["stencil"])
+    g.bridge = bridge(it, a)
     _plain(it, g, a, env)
 
 

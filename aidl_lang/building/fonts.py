@@ -14,8 +14,8 @@ from aidl_lang.common.lettering import Font
 from aidl_lang.common.world import FileError, ReadFailure, relative_to
 from aidl_lang.syntax import ast
 
-PLAIN = "DejaVu Sans"
-"""The name of the font that ships with the package."""
+PLAIN, SINGLE_LINE = "DejaVu Sans", "single line"
+"""The names of the fonts that ship with the package."""
 
 
 class NoFontError(Exception):
@@ -32,13 +32,21 @@ def font(it: Interpreter, name: str, *, bold: bool) -> Font:
     """Returns the font of this name, for the text that is being built. Raises NoFontError."""
     if name == PLAIN:
         return lettering.bold_font() if bold else lettering.plain_font()
+    if name == SINGLE_LINE:
+        if bold:
+            raise NoFontError(
+                "E0359",
+                "letters of single lines cannot be bold: they are as wide as the tool",
+                "leave out `bold`, or the font",
+            )
+        return lettering.single_line_font()
     if PurePosixPath(name).suffix.lower() not in SUFFIXES:
         raise NoFontError(
             "E0359",
             f'there is no font "{name}"',
             'name a font file beside the program, as in `font: "Lobster.ttf"`',
             "fonts of this machine are not looked through, as others have other ones",
-            f'`font: "{PLAIN}"` is what texts have unasked',
+            f'`font: "{PLAIN}"` is what texts have unasked, `font: "{SINGLE_LINE}"` is for engraving',
         )
     if bold:
         raise NoFontError(

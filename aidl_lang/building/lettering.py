@@ -6,7 +6,7 @@ is read out. Dozens of letters then cost the solver no more than one circle.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
@@ -69,21 +69,32 @@ def _set(name: str, text: str, align: str, apart: float, font: Font) -> tuple[Gl
         raise fonts.broken(name, reason) from None
 
 
+def is_filled(a: Arguments, glyphs: Sequence[Glyph]) -> bool:
+    """Tells whether a drawing fills the letters of a text."""
+    return a["outline"] is not True and not any(glyph.is_stroked for glyph in glyphs)
+
+
 _BRIDGE = 0.1
 """Width of the bridges of a stencil, in heights of a capital, where none is told."""
 
 
-def bridge(it: Interpreter, stencil: Value) -> Num | None:
+def bridge(it: Interpreter, a: Arguments) -> Num | None:
     """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for no bridges, and after an
     error, reported here.
     """
-    if isinstance(stencil, bool):
-        return number(_BRIDGE, PLAIN) if stencil else None
-    node = it.call_sites[-1]
+    stencil, node = a["stencil"], it.call_sites[-1]
+    if stencil is False:
+        return None
+    if a["font"] == TextVal(fonts.SINGLE_LINE):
+        what = "letters of single lines enclose nothing that a stencil could hold"
+        report_once(it, "E0342", what, node, ["leave out `stencil`, or the font"])
+        return None
+    if stencil is True:
+        return number(_BRIDGE, PLAIN)
     width = constant(it, stencil, node, "the width of bridges") if isinstance(stencil, Num) else 0.0
     if width is not None and width <= 0:
         given = f"{width:g}" if isinstance(stencil, Num) else kind_of(stencil)
-        hint = "write `stencil: true` for bridges of a tenth of the height, or how wide they are: `stencil: 2mm`"
+        hint = "write `stencil: true` for a tenth of the height, or how wide they are: `stencil: 2mm`"
         report_once(it, "E0342", f"`stencil` is {given}, and bridges have a width", node, [hint])
     return number(width, LENGTH) if width and width > 0 else None
 

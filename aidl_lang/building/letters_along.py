@@ -10,7 +10,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.along import KINDS, reading_way
 from aidl_lang.building.construct import size
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import Arguments, bridge, report_once, typeset
+from aidl_lang.building.lettering import Arguments, bridge, is_filled, report_once, typeset
 from aidl_lang.building.model import Geometry, reach_of
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
@@ -57,11 +57,11 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     share = 0.5 if way.is_closed else lettering.ALIGNMENTS[align.value]
     first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
     height: Expression | None = None
-    reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a["stencil"])
+    reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)
     for glyph in glyphs:
         it.count_entity(node)
         g = Geometry("glyphs", env.here, it.place(node), glyphs=(glyph,), reach=reach)
-        g.filled = a["outline"] is not True
+        g.filled = is_filled(a, glyphs)
         if height is None:
             height = size(it, a["height"], g, "height").expression
         middle = ex.mul(height, ex.constant((glyph.box[0] + glyph.box[2]) / 2))

@@ -15,6 +15,7 @@ from functools import cache, lru_cache
 from aidl_lang.common.font_files import Curve, FontFile, Vec
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
+from aidl_lang.common.single_line import SingleLines
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
@@ -30,16 +31,18 @@ class Glyph:
 
     is_nested  its contours do not overlap, so that nested ones alternate; otherwise they are to be united by
                the non-zero rule
+    is_stroked  its curves are the way of a tool and enclose nothing
     """
 
     curves: tuple[Curve, ...]
     box: Box
     is_nested: bool = True
+    is_stroked: bool = False
 
     def moved(self, dx: float, dy: float) -> Glyph:
         left, bottom, right, top = self.box
         curves = tuple(tuple((x + dx, y + dy) for x, y in curve) for curve in self.curves)
-        return Glyph(curves, (left + dx, bottom + dy, right + dx, top + dy), self.is_nested)
+        return Glyph(curves, (left + dx, bottom + dy, right + dx, top + dy), self.is_nested, self.is_stroked)
 
 
 def box_around(glyphs: Sequence[Glyph]) -> Box:
@@ -160,13 +163,14 @@ def _set_line(line: str, font: Font) -> Iterator[Glyph]:
 class Font:
     """The characters of a font file, each of which is read once.
 
-    is_nested  of its characters (see `Glyph`)
+    is_nested   of its characters (see `Glyph`)
+    is_stroked  of its characters
     """
 
-    def __init__(self, data: bytes, *, is_nested: bool = False) -> None:
-        """Raises FontError."""
+    def __init__(self, file: FontFile | SingleLines, *, is_nested: bool = False) -> None:
         self.is_nested = is_nested
-        self._file = FontFile(data)
+        self.is_stroked = isinstance(file, SingleLines)
+        self._file = file
         self._made: dict[str, tuple[Glyph | None, float]] = {}
 
     def __contains__(self, character: str) -> bool:
@@ -184,23 +188,29 @@ class Font:
         outline, advance = self._file.outline(character)
         unit = 1.0 / self._file.capital_height
         curves = tuple(tuple((x * unit, y * unit) for x, y in curve) for curve in outline)
-        return (Glyph(curves, _ink(curves), self.is_nested) if curves else None), advance * unit
+        glyph = Glyph(curves, _ink(curves), self.is_nested, self.is_stroked) if curves else None
+        return glyph, advance * unit
 
 
 @lru_cache(maxsize=8)
 def font_of(data: bytes) -> Font:
     """Returns the font of a file. Raises FontError."""
-    return Font(data)
+    return Font(FontFile(data))
 
 
 @cache
 def plain_font() -> Font:
-    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL.ttf").read_bytes(), is_nested=True)
+    return Font(FontFile(resource(f"{_FOLDER}/DejaVuSansAIDL.ttf").read_bytes()), is_nested=True)
 
 
 @cache
 def bold_font() -> Font:
-    return Font(resource(f"{_FOLDER}/DejaVuSansAIDL-Bold.ttf").read_bytes(), is_nested=True)
+    return Font(FontFile(resource(f"{_FOLDER}/DejaVuSansAIDL-Bold.ttf").read_bytes()), is_nested=True)
+
+
+@cache
+def single_line_font() -> Font:
+    return Font(SingleLines(), is_nested=True)
 
 
 def _ink(curves: Sequence[Curve]) -> Box:

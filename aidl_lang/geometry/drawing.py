@@ -29,7 +29,7 @@ from aidl_lang.geometry.legibility import (
 from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, unusable_note
+from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, stroked_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
@@ -223,6 +223,9 @@ def _collect(
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.drawn:
+            if structure.kind in ("solid", "hole") and _has_strokes(geometry):
+                notes.append(stroked_note(structure, geometry))
+                continue
             leaves = []
             vanished = []
             for leaf in _leaves(geometry):
@@ -239,6 +242,11 @@ def _collect(
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
     return curves, boxes, shapes
+
+
+def _has_strokes(geometry: SolvedGeometry) -> bool:
+    """Tells whether there are letters of strokes in what is drawn of a geometry."""
+    return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
 
 
 def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:

@@ -1,5 +1,5 @@
-"""The areas of letters that a drawing fills, with their counters open; overlapping contours united; the letters
-of stencils, with bridges to what they enclose.
+"""The areas of letters that a drawing fills, with their counters open; letters with overlapping contours
+united; letters of stencils, with bridges to what they enclose.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
 
 
 def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iterator[Region]:
-    """Yields the areas of a letter to be taken away for a counter; `beyond` is how far they reach over the far
-    side of a stroke, which may be slanted, but no further than half of the way to the next one.
+    """Yields the areas of a letter to be taken away for a counter. They reach `beyond` the far side of a
+    stroke, which may be slanted, but no further than half of the way to the next one.
     """
     left, low, right, high = region_bounds(Region((Face(counter),)))
     x, middle = (left + right) / 2, (low + high) / 2

@@ -391,6 +391,21 @@ def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str] 
     return Diagnostic("W0705", message, span, label, hints=tuple(hints), fix=fix)
 
 
+def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic:
+    """Returns the error on letters of single lines that are to enclose something."""
+    return Diagnostic(
+        "E0373",
+        f"the letters of `{local(structure, text)}` are single lines, and enclose nothing in "
+        f"{structure.kind} `{structure.path}`",
+        text.span or structure.span,
+        "lines without a width",
+        hints=(
+            "to engrave them, write them in a `drawing`",
+            "`thick(text(…), 1mm)` gives them a width, and texts in another font have one",
+        ),
+    )
+
+
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
     """Returns the diagnostic on a curve without extent or finite coordinates; `whole` is the geometry not
     drawn.

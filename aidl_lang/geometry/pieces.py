@@ -339,7 +339,7 @@ def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: 
 
 
 def _stencil_fix(texts: set[Span]) -> Fix | None:
-    """Returns the fix that makes texts those of a stencil; None where one of them ends with more than its call."""
+    """Returns the fix that makes texts those of a stencil; None where one ends with more than its call."""
     if any(re.search(r"\)\s*(at|rotated)\b|[^)]$", span.text) for span in texts):
         return None
     ends = sorted((Span(span.source, span.end - 1, span.end) for span in texts), key=lambda end: end.start)

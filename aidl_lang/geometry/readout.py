@@ -301,7 +301,10 @@ class _Reader:
             return x + u * c - v * s, y + u * s + v * c
 
         outlines = [_outline(glyph, self._bridge(g, height)) for glyph in g.glyphs]
-        glyphs = tuple(_glyph(g, f"glyph[{i}]", outline, at) for i, outline in enumerate(outlines))
+        glyphs = tuple(
+            replace(_glyph(g, f"glyph[{i}]", outline, at), stroked=glyph.is_stroked)
+            for i, (glyph, outline) in enumerate(zip(g.glyphs, outlines, strict=True))
+        )
         values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
         source = g.source.path if g.source is not None else None

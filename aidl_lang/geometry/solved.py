@@ -95,6 +95,7 @@ class SolvedGeometry:
     attributes  name → argument values as written: `note`, and in a drawing `color`
     piece_of  the path of the primitive that is made of it: it has no name by itself
     filled    it is a letter that a drawing fills
+    stroked   it is a letter of strokes, which encloses nothing
     """
 
     name: str
@@ -110,6 +111,7 @@ class SolvedGeometry:
     attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
     piece_of: str | None = None
     filled: bool = False
+    stroked: bool = False
 
     def walk(self) -> Iterator[SolvedGeometry]:
         """Yields this geometry and all its parts."""
