@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import singledispatch
 
@@ -13,7 +14,11 @@ AS_COLOURED, FOR_CUTTER = "colour", "cutter"
 
 @record()
 class Theme:
-    """The colours that a picture is reduced to: of the paper, of what is filled, and of every line."""
+    """The colours that a picture is reduced to: of the paper, of what is filled, and of every line.
+
+    Fills that show through, as light and shade do, are left out: of one colour they would be a veil over the
+    lines below.
+    """
 
     paper: str
     fill: str
@@ -35,8 +40,15 @@ def themed(picture: Picture, name: str) -> Picture:
     left, bottom, right, top = picture.box
     sheet = polygon((left, bottom), (right, bottom), (right, top), (left, top))
     paper = Group("paper", (Area(sheet, theme.paper, None, "paper"),))
-    groups = (replace(g, marks=tuple(_reduced(mark, theme) for mark in g.marks)) for g in picture.groups)
+    groups = (replace(g, marks=tuple(_all_reduced(g.marks, theme))) for g in picture.groups)
     return replace(picture, groups=(paper, *groups))
+
+
+def _all_reduced(marks: Iterable[Mark], theme: Theme) -> Iterator[Mark]:
+    for mark in marks:
+        reduced = _reduced(mark, theme)
+        if not isinstance(reduced, Area) or reduced.fill or reduced.ink:
+            yield reduced
 
 
 @singledispatch
@@ -51,7 +63,8 @@ def _(mark: Area, theme: Theme) -> Mark:
     if mark.is_sign:
         return replace(mark, fill=theme.line)
     ink = None if mark.ink is None else _ink(mark.ink, theme)
-    return replace(mark, fill=mark.fill and theme.fill, ink=ink)
+    fill = theme.fill if mark.fill and mark.opacity == 1.0 else None
+    return replace(mark, fill=fill, ink=ink, opacity=1.0)
 
 
 @_reduced.register

@@ -48,6 +48,24 @@ def test_dimensions_and_names_are_in_the_theme(name: str) -> None:
     assert colours(shown) <= {theme.paper, theme.fill, theme.line, "#ffffff"}  # dots have a white rim
 
 
+@pytest.mark.parametrize("name", REDUCED)
+def test_light_and_shade_leave_no_veil_over_the_lines_below(name: str) -> None:
+    """What shows through has no fill where all fills are of one colour; its outline stays."""
+    program = """
+    assembly jar {
+        solid body { wall = rectangle(center: fixed((0, 0)), width: 40, height: 30) }
+        @opacity(0.4) solid glass { pane = rectangle(center: fixed((0, 0)), width: 20, height: 10) }
+        @stroke(none) @opacity(0.3) @color("black")
+        solid shade { dark = rectangle(center: fixed((10, 0)), width: 20, height: 30) }
+    }
+    """
+    drawn = compiled(program)
+    reduced, coloured = (drawn.export(".svg", Options(theme=theme)).decode() for theme in (name, "colour"))
+    assert reduced.count("<path") == coloured.count("<path")  # one less, and the paper
+    assert "fill-opacity" in coloured
+    assert "fill-opacity" not in reduced
+
+
 def test_the_theme_of_a_cutter_is_what_a_cutter_follows() -> None:
     assert svg(theme="cutter") == svg(cut=True)
 
