@@ -91,14 +91,14 @@ shape text(
 
 /// Along a circle, an arc, a line or a path of these, of any structure above, and wherever it is solved to be.
 ///
-/// It stands on the outside of a circle or an arc, reading clockwise; with `inside: true` on the inside, reading
-/// counter-clockwise. On a circle it is centred at the top (inside: at the bottom), on other curves in their middle; `align` may be
-/// `left` or `right`, too. What is longer than its curve runs on beyond the ends.
+/// It stands on the outside of a circle, centred at the top and reading clockwise; with `inside: true` on the inside, centred
+/// at the bottom. On an arc, a line or a path it is centred in the middle, and there reads from left to right, upright; `inside` tells
+/// the side of an arc all the same. `align` may be `left` or `right`, too. What is longer than its curve runs on beyond the ends.
 shape text(
     text,
     along,
     height: length,
-    inside: bool = false,
+    inside = "upright",
     align: text = "center",
     line_spacing = 1.6,
     bold: bool = false,

@@ -170,22 +170,22 @@ def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stre
     )
 
 
-def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool) -> Way | None:
-    """Returns the way of writing that goes along curves: clockwise on the outside of a circle or an arc, from
-    the bottom of a circle; from left to right along a line, as it is written along other curves. `inside` is
-    the other side, from the top of a circle. None for curves that are no one line, or closed.
+def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | None) -> Way | None:
+    """Returns the way of writing that goes along curves: from left to right, by their middle at the first
+    guesses; around a circle clockwise on its outside, from the bottom. `inside` tells the side of a circle or
+    an arc; of other curves it is the one that is not read from left to right. None for curves that are no one
+    line, or closed.
     """
     if len(curves) == 1 and curves[0].type == "circle":
-        return Way((_written_round(curves[0], here, inside=inside),), is_closed=True)
+        return Way((_written_round(curves[0], here, inside=inside is True),), is_closed=True)
     way = way_along(curves, here)
     if way is None or way.is_closed:
         return None
-    backwards = inside
-    if len(curves) == 1 and curves[0].type == "arc":
+    if len(curves) == 1 and curves[0].type == "arc" and inside is not None:
         backwards = clockwise(curves[0], here) == inside
-    elif len(curves) == 1:
-        ahead = way.stretches[0].heading.value
-        backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == inside
+    else:
+        ahead = way.at(ex.mul(way.length, ex.constant(0.5)))[1].value
+        backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == (inside is True)
     return Way(tuple(s.turned_round for s in reversed(way.stretches)), is_closed=False) if backwards else way
 
 

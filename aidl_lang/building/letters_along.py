@@ -20,6 +20,7 @@ from aidl_lang.building.values import (
     Num,
     TextVal,
     Value,
+    kind_of,
     length,
     point,
     spliced,
@@ -29,13 +30,24 @@ from aidl_lang.common import lettering
 from aidl_lang.common.prose import with_article
 from aidl_lang.syntax import ast
 
+_UPRIGHT = TextVal("upright")
+"""The side of a curve that is not told."""
+
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
-    way = reading_way(curves, env.here, inside=a["inside"] is True) if curves and is_simple else None
+    inside = a["inside"]
+    if inside != _UPRIGHT and not isinstance(inside, bool):
+        what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
+        report_once(
+            it, "E0516", what, it.call_sites[-1], ["leave it out for the side on which it is upright"]
+        )
+        return NOTHING
+    side = inside if isinstance(inside, bool) else None
+    way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
     if way is None:
         what = with_article(given[0].type) if len(given) == 1 else "no one curve"
         report_once(

@@ -50,7 +50,7 @@ guess(value)
 written(value)
 nearest(value, candidates: list)
 ink(text: text, align: text, line_spacing: number, bold: bool, font: text)
-lettered(text: text, curve, height: length, align: text, line_spacing: number, inside: bool, \
+lettered(text: text, curve, height: length, align: text, line_spacing: number, inside, \
 outline: bool, bold: bool, font: text, stencil)
 where(value, positive, negative)
 shown(value)
