@@ -19,12 +19,15 @@ IDLE = "N0201"
 
 _LATER = frozenset({"N0731", "N0741", "W0720", "W0725", "W0726", "W0733", "W0736"})
 """Codes that are told only when a file is written or parts are measured."""
+_OF_TEXT = ("N02", "W01", "W02")
+"""Codes of what a text says, whatever the values of its params."""
 
 
 @record()
 class Allowance:
     """A code that is not to be told within a statement: `place` is where it is written, `attribute` the whole
-    of the attribute, `is_alone` whether it has no other code.
+    of the attribute, `is_alone` whether it has no other code, `may_come` whether there may be something to
+    silence though nothing is found: when a file is written, or with other values of the params.
     """
 
     code: str
@@ -32,6 +35,7 @@ class Allowance:
     place: Span
     attribute: Span
     is_alone: bool
+    may_come: bool
 
     def covers(self, found: Diagnostic) -> bool:
         here = self.statement
@@ -49,6 +53,7 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
     """Returns what the files of a program allow, and what is wrong with how they say it."""
     allowed: list[Allowance] = []
     wrong: list[Diagnostic] = []
+    modules = list(modules)
     for statement, attribute in _attributes(modules):
         if not attribute.arguments:
             wrong.append(_without_code(attribute))
@@ -57,10 +62,18 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
             code = value.value if isinstance(value, ast.String) else value.span.text
             if code in pages.codes() and not code.startswith("E"):
                 is_alone = len(attribute.arguments) == 1
-                allowed.append(Allowance(code, statement.span, value.span, attribute.span, is_alone))
+                may_come = code in _LATER or not (code.startswith(_OF_TEXT) or _is_still(modules))
+                allowed.append(
+                    Allowance(code, statement.span, value.span, attribute.span, is_alone, may_come)
+                )
             else:
                 wrong.append(_unknown(code, value.span))
     return tuple(allowed), wrong
+
+
+def _is_still(modules: Iterable[ast.Module]) -> bool:
+    """Tells whether a program has no params."""
+    return not any(isinstance(node, ast.Param) for module in modules for node in ast.walk(module))
 
 
 def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.Attribute]]:
@@ -117,7 +130,7 @@ def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diag
             fix=_without(each),
         )
         for each in allowed
-        if each.code not in _LATER and not any(each.covers(d) for d in found)
+        if not each.may_come and not any(each.covers(d) for d in found)
     ]
 
 

@@ -15,7 +15,8 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
 )
-from aidl_lang.checking.wording import shown
+from aidl_lang.checking.wording import in_box, shown
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -112,7 +113,11 @@ def compare(
         return
     if type(x.type) is type(y.type) and isinstance(x.type, TextType | TruthType) and operator in ("==", "!="):
         return
-    check.misfit(rules.no_comparison(operator, x.type, y.type, shown(left), shown(right)), node)
+    misfit = rules.no_comparison(operator, x.type, y.type, shown(left), shown(right))
+    sides = ((left, x.type, y.type), (right, y.type, x.type))
+    boxed = ((side, in_box(kind, side.span.text, other)) for side, kind, other in sides)
+    fix = next((Fix(f"write `{text}`", (Edit(side.span, text),)) for side, text in boxed if text), None)
+    check.misfit(misfit, node, fix)
 
 
 def membership(check: Inference, node: ast.Membership) -> Fact:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from aidl_lang.checking.fields import BOX
 from aidl_lang.checking.types import (
     AnyType,
     GeometryType,
@@ -31,6 +32,15 @@ def shown(node: ast.Node) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 
+def in_box(kind: Type, text: str, other: Type) -> str | None:
+    """Returns the text of a side or corner of a box that a part hides by its name, if that would compare with
+    the other side: `table.bb.top` for `table.top`.
+    """
+    whole, _, name = text.rpartition(".")
+    is_hiding = whole and isinstance(kind, GeometryType) and type(BOX.get(name)) is type(other)
+    return f"{whole}.bb.{name}" if is_hiding else None
+
+
 def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
     """Returns the hint for a comparison of things that have no order or equality."""
     if isinstance(x, ListType) or isinstance(y, ListType):
@@ -38,6 +48,8 @@ def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
     for kind, text, other in ((x, left, y), (y, right, x)):
         if isinstance(kind, PointType) and isinstance(other, NumberType):
             return f"points compare with points; of one coordinate say `{text}.x` or `{text}.y`"
+        if boxed := in_box(kind, text, other):
+            return f"`{text}` is a part of that name; the side or corner of the box is `{boxed}`"
     kinds = GeometryType | StructureType
     if isinstance(x, kinds) and isinstance(y, kinds):
         return f"say what shall agree: `{left}.center == {right}.center`, `equal({left}, {right})`, …"

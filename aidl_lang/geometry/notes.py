@@ -59,7 +59,8 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
         tuple(Label(g.span, "already covers it") for g in finding.around[:2] if g.span),
         (
             f"to cut it out, put it into a hole: `{hole}`",
-            f"to draw it on top, put it into a `drawing`; {GUIDE}",
+            "to draw it on top, put it into a `drawing`, in another colour into a `solid` beside this one; "
+            f"{GUIDE}",
         ),
         _wrap_fix(s, face.geometries) if one else None,
     )

@@ -17,7 +17,7 @@ from tests.compiled import compiled
 def test_a_primitive_has_each_field_with_the_type_that_the_checker_expects(kind: str) -> None:
     sample = (
         PRIMITIVES[kind].sample.format(x=3, y=7)
-        or f'{kind}("a", (0, 0), 5, 0deg, "left", 1, false, false, "DejaVu Sans")'
+        or f'{kind}("a", (0, 0), 5, 0deg, "left", 1, false, false, "DejaVu Sans", false)'
     )
     built = compiled(f"drawing d {{ a = {sample} }}").built
     assert built is not None
