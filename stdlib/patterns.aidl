@@ -3,7 +3,9 @@
 
 /// Parallel lines over an outline, a `pitch` apart; bars if a `width` is given.
 ///
-/// The lines run at `angle`; one goes through the middle of the outline.
+/// Lies at 45deg.
+///
+/// One line goes through the middle of the outline.
 ///
 /// ```aidl
 /// assembly section {
@@ -22,6 +24,8 @@ fn hatching(of, pitch: length, angle: angle = 45deg, width: length = 0, margin: 
 )
 
 /// Two sets of parallel lines over an outline, at right angles; bars if a `width` is given.
+///
+/// Lies at 45deg.
 ///
 /// ```aidl
 /// assembly handle {

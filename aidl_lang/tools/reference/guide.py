@@ -159,6 +159,8 @@ def _arguments(variant: Variant, entry: Entry) -> str:
     """
     calls = [call for call in short_calls(entry) if call.startswith(f"{entry.name}(")]
     forms = [call.removeprefix(entry.name) for call in calls]
+    if all(overload.form.endswith("(of: list)") for overload in entry.overloads):
+        forms = ["(a, b, …)"]  # as calls that gather their arguments are written
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
     for name in ("rotatable", *_UNSAID.get(variant, ())):
         forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
