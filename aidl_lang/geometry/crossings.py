@@ -1,4 +1,7 @@
-"""Outlines that cross themselves: their parts alternate, so what should be material may be open."""
+"""Outlines that cross themselves: their parts alternate, so what should be material may be open.
+
+The crossings are those of the arrangement: nodes that a way goes through twice, changing sides.
+"""
 
 from __future__ import annotations
 
