@@ -100,7 +100,7 @@ def test_a_hole_and_a_part_of_an_own_shape() -> None:
 @pytest.mark.parametrize(
     "program",
     [
-        "solid a { for i in 0..2 { o[i] = polygon([(9 * i, 0), (9 * i + 8, 8), (9 * i + 8, 0), (9 * i, 8)]) } }",
+        "solid a { for i in 0..2 { o[i] = polygon([(i, 0), (i + 8, 8), (i + 8, 0), (i, 8)]) } }",
         f"solid a {{ o = {BOW}; p = copy(o, by: (60, 0)) }}",
         f"@detached solid k() {{ o = {BOW} }}\na = k()\nb = mirror(a, about: y_axis)\nc = k() at (60, 0)",
     ],
