@@ -14,6 +14,7 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
@@ -131,6 +132,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     network = Network([*curves, *around], [*boxes, *map(bounds, around)])
     network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips)
     notes += [gap_note(gap) for gap in gaps]
+    notes += crossing_notes(network, model.root, shapes)
     regions = {path: outline.region for path, outline in traced.items()}
     styles = styles_of(model.root)
     bodies = tuple(

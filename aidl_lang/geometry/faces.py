@@ -96,20 +96,22 @@ def _is_closed(network: Network, shape: Shape, uses: list[Use]) -> bool:
     """Tells whether the shape may be a face by itself: not a single open curve."""
     if shape.geometry.parts or len(shape.leaves) > 1:
         return True
-    return bool(uses) and _start(network, uses[0]) == _end(network, uses[-1])
+    return bool(uses) and first_node(network, uses[0]) == last_node(network, uses[-1])
 
 
 def _touches(network: Network, curve: int, edges: set[int]) -> bool:
     return any(edge in edges for edge, _ in network.uses[curve])
 
 
-def _start(network: Network, use: Use) -> int:
+def first_node(network: Network, use: Use) -> int:
+    """Returns the node at which the use of an edge begins."""
     edge = network.edges[use[0]]
     return edge.start if use[1] else edge.end
 
 
-def _end(network: Network, use: Use) -> int:
-    return _start(network, (use[0], not use[1]))
+def last_node(network: Network, use: Use) -> int:
+    """Returns the node at which the use of an edge ends."""
+    return first_node(network, (use[0], not use[1]))
 
 
 def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
@@ -118,9 +120,9 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
     while True:
         degree: dict[int, int] = defaultdict(int)
         for use in kept:
-            degree[_start(network, use)] += 1
-            degree[_end(network, use)] += 1
-        rest = [u for u in kept if degree[_start(network, u)] > 1 and degree[_end(network, u)] > 1]
+            degree[first_node(network, use)] += 1
+            degree[last_node(network, use)] += 1
+        rest = [u for u in kept if degree[first_node(network, u)] > 1 and degree[last_node(network, u)] > 1]
         if len(rest) == len(kept):
             return rest
         kept = rest
@@ -132,8 +134,8 @@ def _alternating(network: Network, uses: list[Use]) -> Section:
     """
     degree: dict[int, int] = defaultdict(int)
     for use in uses:
-        degree[_start(network, use)] += 1
-        degree[_end(network, use)] += 1
+        degree[first_node(network, use)] += 1
+        degree[last_node(network, use)] += 1
     if any(d % 2 for d in degree.values()):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
@@ -143,8 +145,8 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
     """Returns closed walks that use every edge once; every node has an even degree."""
     ways: dict[int, list[Use]] = defaultdict(list)
     for edge, forward in reversed(uses):
-        ways[_start(network, (edge, forward))].append((edge, forward))
-        ways[_end(network, (edge, forward))].append((edge, not forward))
+        ways[first_node(network, (edge, forward))].append((edge, forward))
+        ways[last_node(network, (edge, forward))].append((edge, not forward))
     left: dict[int, int] = defaultdict(int)
     for edge, _ in uses:
         left[edge] += 1
@@ -159,7 +161,7 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
     """Returns the loop of edges from the first onwards until its start comes round again."""
     loop = [first]
     left[first[0]] -= 1
-    while (node := _end(network, loop[-1])) != _start(network, first):
+    while (node := last_node(network, loop[-1])) != first_node(network, first):
         following = next(use for use in ways[node] if left[use[0]])
         left[following[0]] -= 1
         loop.append(following)
@@ -195,7 +197,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
     for edge in edges:
         for forward in (True, False):
             use = (edge, forward)
-            leaving[_start(network, use)].append((_direction(network, use), use))
+            leaving[first_node(network, use)].append((_direction(network, use), use))
     turn: dict[Use, Use] = {}
     for ways in leaving.values():
         around = [use for _, use in sorted(ways)]
@@ -208,8 +210,8 @@ def _direction(network: Network, use: Use) -> float:
     """Returns the angle at which the polyline of an edge leaves its start."""
     edge = network.edges[use[0]]
     inner = edge.inner if use[1] else edge.inner[::-1]
-    target = inner[0] if len(inner) else network.node_grid[_end(network, use)]
-    dx, dy = target - network.node_grid[_start(network, use)]
+    target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
+    dx, dy = target - network.node_grid[first_node(network, use)]
     return math.atan2(dy, dx)
 
 
@@ -271,10 +273,10 @@ def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
         return node
 
     for use in uses:
-        parent[root(_start(network, use))] = root(_end(network, use))
+        parent[root(first_node(network, use))] = root(last_node(network, use))
     parts: dict[int, list[Use]] = defaultdict(list)
     for use in uses:
-        parts[root(_start(network, use))].append(use)
+        parts[root(first_node(network, use))].append(use)
     return list(parts.values())
 
 

@@ -1,16 +1,18 @@
 """The canonical form of a program: `aidl fmt`.
 
 Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
-statements. Synonyms of the syntax become one spelling; numbers stay as they were written.
+statements. Attributes stay on the line they were written on while it has room for them. Synonyms of the
+syntax become one spelling; numbers stay as they were written.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 
-from aidl_lang.common.records import record
 from aidl_lang.parser import Parsed
 from aidl_lang.syntax import ast
+from aidl_lang.syntax.commented_lines import CommentedLines, Line
 from aidl_lang.syntax.expression_printer import (
     CONDITION,
     INDENT,
@@ -28,6 +30,9 @@ from aidl_lang.syntax.expression_printer import (
 )
 
 __all__ = ["format_expression", "format_module", "format_statement"]
+
+_GAP = re.compile(r"(?:\s|//[^\n]*|#[^\n]*|/\*.*?\*/)*", re.DOTALL)
+"""White space and comments."""
 
 
 def format_module(
@@ -57,15 +62,7 @@ def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | N
     return format_module(module, names).rstrip("\n")
 
 
-@record(frozen=False)
-class _Line:
-    """A line of output; `comment` follows it, aligned with those of the lines around it."""
-
-    text: str
-    comment: str = ""
-
-
-class _Printer:
+class _Printer(CommentedLines):
     def __init__(
         self,
         module: ast.Module,
@@ -73,30 +70,12 @@ class _Printer:
         stated: Collection[ast.Node],
         declaring: Collection[ast.Node],
     ) -> None:
+        super().__init__(module)
         self.stated = stated
         self.declaring = declaring
-        self.source = module.source.text
-        self.comments = module.comments
-        self.next_comment = 0
-        self.lines: list[_Line] = []
         self.expressions = ExpressionPrinter(names)
 
-    def text(self) -> str:
-        """Returns all lines, the trailing comments of neighbouring lines in one column."""
-        out: list[str] = []
-        run: list[_Line] = []
-        for line in [*self.lines, _Line("")]:
-            if line.comment:
-                run.append(line)
-                continue
-            column = max((len(one.text) for one in run if len(one.text) <= WIDTH), default=0)
-            out += [f"{one.text.ljust(column)}  {one.comment}" for one in run]
-            run = []
-            out.append(line.text)
-        out.pop()
-        return "".join(line.rstrip() + "\n" for line in out)
-
-    # --- Lists of statements and the comments between them ---
+    # --- Lists of statements ---
 
     def statements(
         self, statements: Sequence[ast.Statement], start: int, end: int, indent: int, constraints: bool
@@ -113,57 +92,53 @@ class _Printer:
             place = self._trailing_comment(max(place, statement.span.end))
         self._comments_before(end, place, indent, first)
 
-    def _comments_before(self, offset: int, place: int, indent: int, first: bool) -> tuple[int, bool]:
-        """Prints the comments up to an offset on lines of their own."""
-        while (comment := self._peek(offset)) is not None:
-            self._blank_line(place, comment.span.start, first)
-            first = False
-            self.lines.append(_Line(" " * indent + comment.text.rstrip()))
-            self.next_comment += 1
-            place = comment.span.end
-        return place, first
-
-    def _peek(self, before: int) -> ast.Comment | None:
-        """Returns the next comment, if it begins before an offset."""
-        if self.next_comment < len(self.comments) and self.comments[self.next_comment].span.start < before:
-            return self.comments[self.next_comment]
-        return None
-
-    def _blank_line(self, place: int, start: int, first: bool) -> None:
-        if not first and self.source.count("\n", place, start) > 1:
-            self.lines.append(_Line(""))
-
-    def _comments_inside(self, statement: ast.Statement, indent: int, mark: int) -> None:
-        """Moves comments in the middle of a statement in front of it."""
-        moved = []
-        while (comment := self._peek(statement.span.end)) is not None:
-            moved.append(_Line(" " * indent + comment.text.rstrip()))
-            self.next_comment += 1
-        self.lines[mark:mark] = moved
-
-    def _trailing_comment(self, place: int) -> int:
-        """Puts a comment that follows on the same line behind the last line. Returns the offset to go on
-        from.
-        """
-        comment = self._peek(len(self.source) + 1)
-        if comment is None or comment.span.start < place or "\n" in comment.text:
-            return place
-        between = self.source[place : comment.span.start]
-        if between.strip(" \t,;") or self.lines[-1].comment:
-            return place
-        self.lines[-1].comment = comment.text.rstrip()
-        self.next_comment += 1
-        return comment.span.end
-
-    def _has_comment(self, start: int, end: int) -> bool:
-        comment = self._peek(end)
-        return comment is not None and comment.span.end > start
-
     # --- One statement ---
 
     def _statement(self, node: ast.Statement, indent: int, constraints: bool) -> None:
+        *above, beside = self._attribute_rows(node)
+        for row in above:
+            self._attributes(row, indent)
+            self._trailing_comment(row[-1].span.end)
+        mark = len(self.lines)
+        self._without_attributes(node, indent, constraints)
+        if beside:
+            self._attributes_before(beside, mark, indent)
+
+    def _attribute_rows(self, node: ast.Statement) -> list[list[ast.Attribute]]:
+        """Returns the attributes as they were written on lines, last those on the line of their statement."""
+        rows: list[list[ast.Attribute]] = [[]]
         for attribute in ast.attributes(node):
-            self._leaf(self._attribute(attribute), indent)
+            rows[-1].append(attribute)
+            gap = _GAP.match(self.source, attribute.span.end)
+            if gap and "\n" in gap[0]:
+                rows.append([])
+        return rows
+
+    def _attributes(self, row: Sequence[ast.Attribute], indent: int) -> None:
+        """Prints attributes together if a line has room for them, else each by itself."""
+        documents = [self._attribute(attribute) for attribute in row]
+        text = " ".join(document.flat() for document in documents)
+        if indent + len(text) <= WIDTH:
+            self.lines.append(Line(" " * indent + text))
+            return
+        for document in documents:
+            self._leaf(document, indent)
+
+    def _attributes_before(self, row: Sequence[ast.Attribute], mark: int, indent: int) -> None:
+        """Puts attributes on the first line of what was printed from `mark` on, above it if that has no room.
+
+        What was printed stays laid out as it is: attributes never break what fits without them.
+        """
+        text = "".join(self._attribute(attribute).flat() + " " for attribute in row)
+        first, statement = self.lines[mark], self.lines[mark:]
+        if len(text) + len(first.text) <= WIDTH:
+            first.text = " " * indent + text + first.text[indent:]
+        else:
+            del self.lines[mark:]
+            self._attributes(row, indent)
+            self.lines += statement
+
+    def _without_attributes(self, node: ast.Statement, indent: int, constraints: bool) -> None:
         if not self._blocks(node):
             document = self._head(node, constraints)
             if isinstance(node, ast.Assert) and node.message and indent + document.width > WIDTH:
@@ -175,13 +150,13 @@ class _Printer:
             return
         short = self._one_line(node, constraints)
         if short is not None and indent + len(short) <= WIDTH:
-            self.lines.append(_Line(" " * indent + short))
+            self.lines.append(Line(" " * indent + short))
             return
         self._long(node, indent, constraints)
 
     def _leaf(self, document: PrintDocument, indent: int) -> None:
         text = render(document, indent)
-        self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
+        self.lines += [Line(line) for line in (" " * indent + text).split("\n")]
 
     def _long_assert(self, node: ast.Assert, message: ast.Expression, indent: int) -> None:
         """Prints an assert with its reason on a line of its own, which saves breaking up the test."""
@@ -202,7 +177,7 @@ class _Printer:
     def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
         """Prints a statement whose blocks stand on lines of their own."""
         head = render(doc(self._head(node, constraints), " {"), indent)
-        self.lines += [_Line(line) for line in (" " * indent + head).split("\n")]
+        self.lines += [Line(line) for line in (" " * indent + head).split("\n")]
         block, *others = self._blocks(node)
         inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
         self._block(block, indent, inner)
@@ -217,10 +192,10 @@ class _Printer:
                 self._continue("} else {", indent)
                 others = []
             self._block(block, indent, inner)
-        self.lines.append(_Line(" " * indent + "}"))
+        self.lines.append(Line(" " * indent + "}"))
 
     def _continue(self, text: str, indent: int) -> None:
-        self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
+        self.lines += [Line(line) for line in (" " * indent + text).split("\n")]
 
     def _block(self, block: ast.Block, indent: int, constraints: bool) -> None:
         """Prints the inside of the braces."""

@@ -19,19 +19,15 @@ assembly bicycle {
     @color(tint)
     solid tube(a = (0, 0), b = (10, 0), size = 3.6, tint = paint) { v = slot(a, b, size) }
     assembly tyred_wheel() {
-        @color("#6b7078")
-        drawing wires {
+        @color("#6b7078") drawing wires {
             let t = 360 / spokes
             v = [line(
                 polar(2.6, t * i + 90 - 180 * (i % 2)), polar(r - 4, t * i)
             ) for i in 0..<spokes]
         }
-        @color("#2e2e33")
-        solid tyre { v = ring(origin, outer_radius: r, thickness: 3) }
-        @color("silver")
-        solid rim { v = ring(origin, outer_radius: r - 3, thickness: 1.6) }
-        @color("silver")
-        solid hub { v = circle(origin, radius: 3) }
+        @color("#2e2e33") solid tyre { v = ring(origin, outer_radius: r, thickness: 3) }
+        @color("silver") solid rim { v = ring(origin, outer_radius: r - 3, thickness: 1.6) }
+        @color("silver") solid hub { v = circle(origin, radius: 3) }
     }
     @color(paint)
     solid mudguard(from = 20, to = 170) { v = ring_sector(origin, r + 3.6, r + 1.6, from, to) }
@@ -56,23 +52,19 @@ assembly bicycle {
     solid fork { v = thick(path(crown, bezier_to(front + (-7, r / 2), front + (-6, 6), front)), 3) }
     quill = tube(head, stem, 2.8, "silver")
     head_tube = tube(crown, head, 5)
-    @color("silver")
-    solid handlebar {
+    @color("silver") solid handlebar {
         way = path(stem, bezier_to(stem + (11, 1), stem + (9, 11), stem + (-6, 8.4)))
         v = thick(way, 2.2)
     }
     grip = tube(stem + (-15, 6.5), stem + (-5, 8.6), 3.4, "sienna")
     bell = tube(stem + (5, 9), stem + (5, 10), 4, "gold")
     holder = tube(head + (2, -6), head + (12, -6), 2, "#2e2e33")
-    @color("#d9a860")
-    solid basket {
+    @color("#d9a860") solid basket {
         weave = trapezoid(head + (17, 3), bottom_width: 20, top_width: 26, height: 17)
-        @color("sienna")
-        drawing wicker { v = crosshatch(weave, pitch: 3) }
+        @color("sienna") drawing wicker { v = crosshatch(weave, pitch: 3) }
     }
     lamp = tube(crown + (5, 1), crown + (8, 1), 6, "gold")
-    @color("sienna")
-    solid saddle at post {
+    @color("sienna") solid saddle at post {
         v = path(
             (-13, 0),
             bezier_to((-15, 6), (-9, 7), (-4, 4.6)),
@@ -81,10 +73,8 @@ assembly bicycle {
             bezier_to((0, -2), (-6, -3), (-13, 0))
         )
     }
-    @color("dimgray")
-    drawing chain { v = hull(circle(crank, 8.6), circle(rear, 4)) }
-    @color("silver")
-    solid sprocket {
+    @color("dimgray") drawing chain { v = hull(circle(crank, 8.6), circle(rear, 4)) }
+    @color("silver") solid sprocket {
         v = cog(crank, outer_radius: 8.6, inner_radius: 7.4, teeth: 18)
         hole h { v = [circle(crank + polar(4.8, 72 * i), 1.8) for i in 0..4] }
     }

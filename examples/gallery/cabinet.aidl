@@ -19,20 +19,16 @@ assembly cabinet {
     @color(tint)
     solid slab(tint = dark, w = 100, h = 100) { v = rounded_rectangle((0, 0), w, h, 4) }
     wall = slab("#f2ead8", 1.5 * width, 1.9 * height + 160) at (0, 0.12 * height)
-    @color("#dfd0b0")
-    solid paper { v = ribs(wall.v, pitch: 0.1 * width, width: 0.04 * width) }
+    @color("#dfd0b0") solid paper { v = ribs(wall.v, pitch: 0.1 * width, width: 0.04 * width) }
     floor = slab("#8a6444", 1.5 * width, 0.33 * height - 30)
-    @color("#3b2a1e")
-    @opacity(0.5)
-    @stroke(none)
+    @color("#3b2a1e") @opacity(0.5) @stroke(none)
     solid shadow { v = ellipse((30, -height / 2 - 150), 0.56 * width, 34) }
     assembly plant {
         for i in 0..6 {
             @color("#5f8f58")
             solid leaf[i] at origin rotated 20 * i + 30 { v = lens((95, 0), 190, 56) }
         }
-        @color("#b8623c")
-        solid pot at origin { v = trapezoid((0, -50), 84, 130, 120) }
+        @color("#b8623c") solid pot at origin { v = trapezoid((0, -50), 84, 130, 120) }
     }
     assembly books {
         let tones = ["#7a2e2e", "#46708e", "#c29a45"]
@@ -48,19 +44,15 @@ assembly cabinet {
     drawing grain { v = wood_grain(case.v, pitch: 70, angle: 90deg, margin: 4) }
     inside = slab(dark, inner + 2 * gap, height - post - gap)
     skirt = slab(darker(wood, 0.2), width, 32)
-    @color(dark)
-    solid leg() { shaft = trapezoid((0, 0), 22, 44, 130) }
+    @color(dark) solid leg() { shaft = trapezoid((0, 0), 22, 44, 130) }
     right_leg = leg() at (width / 2 - 40, -500)
     left_leg = leg() at (40 - width / 2, -500)
     assembly drawer(w = 100mm, h = 80mm) {
         @color(lighter(wood, 0.15))
         solid front { v = rectangle(center: origin, width: w, height: h) }
-        @color(lighter(wood, 0.3))
-        solid field { v = rounded_rectangle(origin, w - 24, h - 24, 6) }
-        @color(wood)
-        drawing veins { v = wood_grain(field.v, pitch: 28) }
-        @color(brass)
-        solid cup { v = dome(center: origin, width: 60, height: 24) }
+        @color(lighter(wood, 0.3)) solid field { v = rounded_rectangle(origin, w - 24, h - 24, 6) }
+        @color(wood) drawing veins { v = wood_grain(field.v, pitch: 28) }
+        @color(brass) solid cup { v = dome(center: origin, width: 60, height: 24) }
     }
     for i in 0..<columns {
         for k in 0..<rows {
@@ -74,12 +66,9 @@ assembly cabinet {
         solid leaf { v = rectangle(center: origin, width: door_w, height: door_h) }
         @color(darker(wood, 0.15))
         solid groove { v = arch(center: origin, width: door_w - 70, height: door_h - 60, rise: 30) }
-        @color(lighter(wood, 0.3))
-        solid panel { v = offset(groove.v, -10) }
-        @color(wood)
-        drawing veins { v = wood_grain(panel.v, pitch: 34, angle: 90deg) }
-        @color(brass)
-        solid brasses {
+        @color(lighter(wood, 0.3)) solid panel { v = offset(groove.v, -10) }
+        @color(wood) drawing veins { v = wood_grain(panel.v, pitch: 34, angle: 90deg) }
+        @color(brass) solid brasses {
             knob = circle((18 - door_w / 2, 0), 11)
             for s in [-1, 1] { hinge[s] = square(center: (door_w / 2, s * door_h / 4), size: 24) }
         }

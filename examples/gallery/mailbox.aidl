@@ -10,8 +10,7 @@ assembly mailbox {
     let mouth = (-0.36 * depth, -0.22 * depth)
     let side = (width / 2, 0)
     /// The box from one share of its depth to another: what an arch passes over on its way back.
-    @color(tint)
-    solid tunnel(tint = paint, from = 0, to = 1, grow = 0) {
+    @color(tint) solid tunnel(tint = paint, from = 0, to = 1, grow = 0) {
         let top = (0, height - width / 2)
         let foot = side + (grow, -grow)
         let ends = [from * back, to * back]
@@ -21,46 +20,36 @@ assembly mailbox {
             from * back + (-foot.x, foot.y)
         )
     }
-    @color("white")
-    solid letter(w = 0.62 * width, h = 0.4 * width) {
+    @color("white") solid letter(w = 0.62 * width, h = 0.4 * width) {
         paper = rectangle(origin, w, h)
         @color("slategray")
         drawing folds { v = polyline([(-w / 2, h / 2), (0, -1), (w / 2, h / 2)]) }
     }
     assembly flower(tall = 20, tint = "tomato") {
-        @color("forestgreen")
-        solid stalk {
+        @color("forestgreen") solid stalk {
             v = thick(arc((0, 0), (2, tall), mid: (-1, tall / 2)), 1.4)
             leaf = lens((3, 0.35 * tall), 9, 3.4, angle: 35)
         }
         @color(tint)
         solid bloom { v = rosette((2, tall), outer_radius: 5, inner_radius: 3.8, lobes: 6) }
-        @color("gold")
-        solid eye { v = circle((2, tall), radius: 1.8) }
+        @color("gold") solid eye { v = circle((2, tall), radius: 1.8) }
     }
-    @color("#a87a4f")
-    solid post {
+    @color("#a87a4f") solid post {
         beam = rectangle(
             bottom_center: (0.42 * depth, -post_height), width: 18, height: post_height + 20
         )
-        @color("#7a5431")
-        drawing grain { v = wood_grain(beam, pitch: 3, angle: 90) }
+        @color("#7a5431") drawing grain { v = wood_grain(beam, pitch: 3, angle: 90) }
     }
-    @color("black")
-    @opacity(0.25)
-    @stroke(none)
+    @color("black") @opacity(0.25) @stroke(none)
     solid dusk { v = difference(post.beam, copy(post.beam, by: (-5, 0))) }
-    @color("#8a6039")
-    solid shelf {
+    @color("#8a6039") solid shelf {
         v = hull(
             [side + (-4, -3), back + side + (-4, -3), (-0.4 * width, -5), (0.4 * width, -5), back]
         )
     }
     back_rim = tunnel(lighter(paint), from: 0.93, grow: 1.4)
     body = tunnel(to: 0.93)
-    @color("black")
-    @opacity(0.2)
-    @stroke(none)
+    @color("black") @opacity(0.2) @stroke(none)
     solid belly { v = difference(body.v, copy(body.v, by: (0, 0.16 * height))) }
     front_rim = tunnel(lighter(paint), to: 0.08, grow: 1.4)
     @color("#26303c")
@@ -68,24 +57,19 @@ assembly mailbox {
     for i in 0..1 {
         letters[i] = letter() at (3 - 5 * i, 0.52 * width - 8 * i) rotated 10deg - 14deg * i
     }
-    @color(lighter(paint))
-    solid door {
+    @color(lighter(paint)) solid door {
         v = path(-side, bezier_to(-side + 1.4 * mouth, side + 1.4 * mouth, side), close())
     }
-    @color("crimson")
-    solid flag at side + 0.24 * back + (0, 0.4 * height) {
+    @color("crimson") solid flag at side + 0.24 * back + (0, 0.4 * height) {
         pole = strip((0, 0), (0, 0.58 * height), 3)
         cloth = rectangle(top_left: (0, 0.58 * height), width: 18, height: 12)
     }
-    @color("gold")
-    solid pivot { v = circle(radius: 3) }
+    @color("gold") solid pivot { v = circle(radius: 3) }
     @color("ivory")
     drawing number { v = text("42", height: 13, center: 0.6 * back + side + (-4, 0.2 * height)) }
-    @color("#6aa84f")
-    solid grass {
+    @color("#6aa84f") solid grass {
         v = dome(width: 150, height: 20)
-        @color("#4c8336")
-        drawing blades { v = scales(grass.v, width: 7) }
+        @color("#4c8336") drawing blades { v = scales(grass.v, width: 7) }
     }
     for i in 0..<flowers {
         plants[i] = flower(

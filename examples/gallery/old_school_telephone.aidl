@@ -11,13 +11,11 @@ assembly old_school_telephone {
     let shadow = darker(tint, 0.4)
     @color(tint)
     solid roundel(tint = "gainsboro", radius = 20) { rim = circle(center: origin, radius: radius) }
-    @color(tint)
-    solid pads(tint = "#33333a", x = 10, width = 20, height = 10) {
+    @color(tint) solid pads(tint = "#33333a", x = 10, width = 20, height = 10) {
         left = rounded_rectangle((-x, 0), width: width, height: height, radius: 0.4 * height)
         right = mirror(left, about: y_axis)
     }
-    @color("#33333a")
-    solid cord {
+    @color("#33333a") solid cord {
         let swing = arc((-48 * w, height), (-45 * w, 6), mid: (-60 * w - 20, 42 * h))
         wire = thick(swing, 2)
         for i in 0..<curls_of_cord {
@@ -26,8 +24,7 @@ assembly old_school_telephone {
         }
     }
     feet = pads(x: 36 * w, width: 15 * w) at (0, -3)
-    @color(tint)
-    solid casing {
+    @color(tint) solid casing {
         outline = path(
             from: (0, 0),
             right(50 * w - 5),
@@ -42,20 +39,16 @@ assembly old_school_telephone {
     }
     @color(shadow)
     solid skirt { rim = clip(rectangle(width: 2 * width, height: 20), by: casing.outline) }
-    @color("black")
-    @opacity(0.2)
-    @stroke(none)
+    @color("black") @opacity(0.2) @stroke(none)
     solid shade { v = difference(casing.outline, copy(casing.outline, by: (-8 * w, 0))) }
     /// The dial, about its own origin; the digits show through the holes of the wheel.
     assembly face {
         bezel = roundel(radius: r)
         plate = roundel("ivory", radius: 0.92 * r)
-        @color("black")
-        drawing digits {
+        @color("black") drawing digits {
             for i in 0..9 { d[i] = text(str((i + 1) % 10), polar(0.67 * r, 60 + 26 * i), 0.12 * r) }
         }
-        @color("#33333a")
-        solid finger_wheel {
+        @color("#33333a") solid finger_wheel {
             plate = circle(center: origin, radius: 0.87 * r)
             for i in 0..9 { hole h[i] { rim = circle(polar(0.67 * r, 60 + 26 * i), 0.128 * r) } }
         }
@@ -67,8 +60,7 @@ assembly old_school_telephone {
     }
     @color(shadow)
     solid saddle { block = trapezoid(bottom_width: 46 * w, top_width: 36 * w, height: 14) }
-    @color(tint)
-    solid handset {
+    @color(tint) solid handset {
         body = path(
             from: (0, 14 * w),
             bezier_to((22 * w, 14 * w), (29 * w, 13 * w), (32 * w, 3 * w)),
@@ -80,13 +72,10 @@ assembly old_school_telephone {
         @color(lighter(tint, 0.4))
         drawing shine { gleam = arc((-24 * w, 25 * w), (-51 * w, 17 * w), mid: (-39 * w, 25 * w)) }
     }
-    @color("black")
-    @opacity(0.2)
-    @stroke(none)
+    @color("black") @opacity(0.2) @stroke(none)
     solid under { v = difference(handset.body, copy(handset.body, by: (0, 4 * w))) }
     caps = pads(shadow, x: 44 * w, width: 28 * w, height: 4.5 * w)
-    @color(darker(tint, 0.2))
-    solid horns {
+    @color(darker(tint, 0.2)) solid horns {
         left = tapered_slot((-16 * w, 0), (-18 * w, 12 * w), 4.5 * w, 3 * w)
         right = mirror(left, about: y_axis)
     }

@@ -12,16 +12,12 @@ assembly robot_face {
     let steel = "#5b6470"
     let brass = "#e0b04c"
     let red = "#e5484d"
-    @color(red)
-    solid bulb { lamp = circle(radius: 6 * w) }
-    @color(brass)
-    @detached
-    solid waves {
+    @color(red) solid bulb { lamp = circle(radius: 6 * w) }
+    @color(brass) @detached solid waves {
         right = [thick(arc(origin, r * w, -35deg, 35deg), 1.6 * w, "butt") for r in [11, 16, 21]]
         left = mirror(right, about: y_axis)
     }
-    @color(steel)
-    solid antenna {
+    @color(steel) solid antenna {
         foot = dome(width: 26 * w, height: 8 * w)
         rod = rectangle(width: 3 * w, height: 18 * w)
         for i in 0..2 { coil[i] = slot(length: 9 * w, width: 3 * w) }
@@ -31,16 +27,13 @@ assembly robot_face {
             for c in coil { centered_horizontally(c, rod) }
         }
     }
-    @color(steel)
-    solid neck { pipe = rectangle(width: 40 * w, height: 14 * w) }
+    @color(steel) solid neck { pipe = rectangle(width: 40 * w, height: 14 * w) }
     @color(darker(steel, 0.35))
     solid bellows { folds = slats(neck.pipe, width: 2 * w, gap: 2.5 * w) }
     @color(darker(tin, 0.3))
     solid collar { v = trapezoid(bottom_width: 112 * w, top_width: 76 * w, height: 22 * w) }
-    @color(brass)
-    solid buttons { v = [circle((12 * w * i, 0), 3.4 * w) for i in -2..2] }
-    @color(brass)
-    solid right_ear {
+    @color(brass) solid buttons { v = [circle((12 * w * i, 0), 3.4 * w) for i in -2..2] }
+    @color(brass) solid right_ear {
         axle = rectangle(width: 6 * w, height: 12 * w)
         disc = rounded_rectangle(width: 7 * w, height: 32 * w, radius: 3 * w)
         knob = rounded_rectangle(width: 5 * w, height: 16 * w, radius: 2.4 * w)
@@ -55,29 +48,24 @@ assembly robot_face {
     solid plate { v = rounded_rectangle(width: 84 * w, height: tall - 14 * w, radius: 9 * w) }
     @color("#3a4a57")
     solid visor { v = rounded_rectangle((0, 0.14 * tall), 79 * w, 0.44 * tall, 12 * w) }
-    @color(steel)
-    solid studs {
+    @color(steel) solid studs {
         for i in 0..<rivets { left[i] = circle(center: (-37 * w, 10 * i), radius: 1.8 * w) }
     }
     right_studs = mirror(studs, about: y_axis)
     assembly lamp(d = 40) {
         let tones = [brass, "#22303c", "#4fe3d0"]
         for i, size in enumerate([1.18, 1, 0.68]) {
-            @color(tones[i])
-            solid disc[i] { v = circle(center: origin, diameter: size * d) }
+            @color(tones[i]) solid disc[i] { v = circle(center: origin, diameter: size * d) }
         }
         drawing rays { v = polar_array(line((0, 0), (0.08 * d, 0)), n: 24, radius: 0.25 * d) }
         @color("#0c3b44")
         solid pupil { v = cog(outer_radius: 0.22 * d, inner_radius: 0.16 * d, teeth: 8) }
-        @color("white")
-        solid glint { v = circle(center: (0.15 * d, 0.17 * d), radius: 0.07 * d) }
+        @color("white") solid glint { v = circle(center: (0.15 * d, 0.17 * d), radius: 0.07 * d) }
     }
     right_eye = lamp(d: min(eye, 0.34 * tallness) * width) at (20 * w, 14 * w)
     left_eye = mirror(right_eye, about: y_axis)
-    @color(red)
-    solid nose { v = triangle(center: (0, -5 * w), base: 9 * w, height: 8 * w) }
-    @color("#22303c")
-    solid features {
+    @color(red) solid nose { v = triangle(center: (0, -5 * w), base: 9 * w, height: 8 * w) }
+    @color("#22303c") solid features {
         mouth = rounded_rectangle(width: 52 * w, height: 15 * w, radius: 7.5 * w)
         brow = slot(start: (12 * w, 36 * w), end: (28 * w, 33 * w), width: 3.5 * w)
         other_brow = mirror(brow, about: y_axis)

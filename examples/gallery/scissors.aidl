@@ -11,8 +11,7 @@ assembly scissors {
     let low = 0.32 * reach
     let high = 1.12 * reach + 14
     let wide = 0.85 * reach
-    @color(tint)
-    solid sheet(tint = "#fdfbf3") {
+    @color(tint) solid sheet(tint = "#fdfbf3") {
         v = path(
             (-wide, low),
             polyline_to([(-7, low), (0, 0.6 * reach), (7, low), (wide, low), (wide, high)]),
@@ -24,12 +23,9 @@ assembly scissors {
     paper = sheet()
     @color("#9db7cf")
     drawing rules { v = hatching(paper.v, pitch: 0.1 * reach, angle: 0deg, margin: 4) }
-    @color("#d86a6a")
-    drawing margin { v = line((-0.75 * wide, low), (-0.75 * wide, high)) }
-    @dash(5, 3)
-    drawing way { v = line((0, 0.62 * reach), (0, high)) }
-    @color("#fdfbf3")
-    solid chips {
+    @color("#d86a6a") drawing margin { v = line((-0.75 * wide, low), (-0.75 * wide, high)) }
+    @dash(5, 3) drawing way { v = line((0, 0.62 * reach), (0, high)) }
+    @color("#fdfbf3") solid chips {
         v = [equilateral_triangle((x, low - y), 6) for x, y in [[-14, 7], [9, 12], [20, 4]]]
     }
     assembly half(side = 1, eye = 34mm, long = 1) {
@@ -37,8 +33,7 @@ assembly scissors {
         let tall = wide * long
         let x = side * (wide + 14)
         let y = -tall - 52
-        @color(steel)
-        solid body {
+        @color(steel) solid body {
             edge = path(
                 from: (-side * blade * 0.5, -14),
                 line_to((-side * blade * 0.42, reach * 0.55)),
@@ -51,12 +46,10 @@ assembly scissors {
                 close()
             )
         }
-        @color("#eef2f5")
-        solid ground {
+        @color("#eef2f5") solid ground {
             bevel = polygon((0, reach), (side * blade * 0.5, 6), (side * blade * 0.2, 14))
         }
-        @color(red)
-        solid handle {
+        @color(red) solid handle {
             stem = strip(
                 (side * blade * 0.25, -24),
                 (x - side * wide * 0.5, y + tall * 0.75),
@@ -67,13 +60,11 @@ assembly scissors {
             ear = ellipse(center: (x, y), rx: wide + 8, ry: tall + 8)
             hole finger { v = ellipse(center: (x, y), rx: wide, ry: tall) }
         }
-        @color(lighter(red, 0.45))
-        solid pad {
+        @color(lighter(red, 0.45)) solid pad {
             rim = ellipse(center: (x, y), rx: wide + 3, ry: tall + 3)
             hole finger { v = ellipse(center: (x, y), rx: wide, ry: tall) }
         }
-        @color(darker(red, 0.4))
-        drawing grip {
+        @color(darker(red, 0.4)) drawing grip {
             for i in 0..<ribs {
                 let a = 90deg - side * (60deg + 60deg / (ribs - 1) * i)
                 rib[i] = line(
@@ -85,12 +76,9 @@ assembly scissors {
     }
     left = half(side: -1, eye: thumb + 2, long: 1.45) rotated -opening / 2
     right = half(side: 1, eye: thumb, long: 1.1) rotated opening / 2
-    @color("#8b97a3")
-    solid washer { rim = circle(center: origin, radius: 0.34 * blade) }
-    @color("#5c6672")
-    solid screw { head = circle(center: origin, radius: 0.26 * blade) }
-    @color("#2c333c")
-    solid groove {
+    @color("#8b97a3") solid washer { rim = circle(center: origin, radius: 0.34 * blade) }
+    @color("#5c6672") solid screw { head = circle(center: origin, radius: 0.26 * blade) }
+    @color("#2c333c") solid groove {
         v = slot(center: origin, length: 0.4 * blade, width: 0.07 * blade, angle: 35deg)
     }
     constrain {

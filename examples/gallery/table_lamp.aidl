@@ -11,8 +11,7 @@ assembly table_lamp {
     @color(tint)
     solid part(w = 10, h = 4, r = 1, tint = bronze) { v = rounded_rectangle((0, 0), w, h, r) }
     /// The glass between two meridians of the shade, each a share of its half width.
-    @color(tint)
-    solid pane(a = 0, b = 1, tint = glass) {
+    @color(tint) solid pane(a = 0, b = 1, tint = glass) {
         v = path(
             (a * s, 0),
             line_to((b * s, 0)),
@@ -21,30 +20,20 @@ assembly table_lamp {
             bezier_to((0.62 * a * s, 0.86 * h), (0.98 * a * s, 0.5 * h), (a * s, 0))
         )
     }
-    @color("#b8322a")
-    solid jewel(width = 10) { v = ellipse(origin, 0.34 * width, 0.075 * h) }
+    @color("#b8322a") solid jewel(width = 10) { v = ellipse(origin, 0.34 * width, 0.075 * h) }
     wall = part(max(4 * s, 230), h + stem_height + 96, 0, "#4a4253")
-    @color("#544b5e")
-    @stroke(none)
-    solid paper { v = ribs(wall.v, pitch: 18, width: 8) }
-    @color("#8f7a55")
-    @stroke(none)
-    solid halo { v = circle((0, 0), 1.25 * s) }
-    @color("#fff3c4")
-    @opacity(0.85)
-    @stroke(none)
-    solid glow {
+    @color("#544b5e") @stroke(none) solid paper { v = ribs(wall.v, pitch: 18, width: 8) }
+    @color("#8f7a55") @stroke(none) solid halo { v = circle((0, 0), 1.25 * s) }
+    @color("#fff3c4") @opacity(0.85) @stroke(none) solid glow {
         v = trapezoid(bottom_width: 3.4 * s, top_width: 1.84 * s, height: stem_height + 13)
     }
     table = part(max(4 * s, 230), 10, 2, "#b07c4f")
-    @color("#7d5330")
-    drawing grain { v = wood_grain(table.v, pitch: 3) }
+    @color("#7d5330") drawing grain { v = wood_grain(table.v, pitch: 3) }
     front = part(max(4 * s, 230) - 12, 32, 1, "#8a5c3c")
     drawer = part(120, 22, 2, "#9c6b47")
     knob = part(9, 9, 4.5, "#d9b25f")
     foot = part(70, 6, 3)
-    @color(bronze)
-    solid stem {
+    @color(bronze) solid stem {
         v = path(
             (0, 0),
             right(30),
@@ -69,10 +58,8 @@ assembly table_lamp {
     }
     rim = part(shade_width + 4, 5, 2.5)
     cap = part(0.2 * shade_width, 5, 2)
-    @color(bronze)
-    solid finial { v = drop(radius: 5, height: 17) }
-    @color("#b08d57")
-    solid chain {
+    @color(bronze) solid finial { v = drop(radius: 5, height: 17) }
+    @color("#b08d57") solid chain {
         for i in 0..8 { bead[i] = circle((0, -4.4 * i), radius: 1.7) }
         thread = rectangle((0, -18), 0.8, 36)
         bob = drop((0, -42), radius: 3, height: 11)

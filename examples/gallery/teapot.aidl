@@ -17,16 +17,11 @@ assembly teapot {
         solid leaves { v = [lens((k * size, 0), 1.1 * size, 0.5 * size) for k in [-1, 1]] }
         @color("white")
         solid petals { v = rosette(origin, size, inner_radius: 0.72 * size, lobes: 6, angle: 90) }
-        @color("gold")
-        solid eye { v = circle(origin, radius: 0.36 * size) }
+        @color("gold") solid eye { v = circle(origin, radius: 0.36 * size) }
     }
 
-    @color("#d8cfc0")
-    @stroke(none)
-    @detached
-    solid cloth { v = ellipse((0, -5), 84 * w, 10) }
-    @color(glaze)
-    solid handle {
+    @color("#d8cfc0") @stroke(none) @detached solid cloth { v = ellipse((0, -5), 84 * w, 10) }
+    @color(glaze) solid handle {
         way = path(
             (-36 * w, 76 * h),
             bezier_to((-58 * w, 108 * h), (-90 * w, 92 * h), (-84 * w, 58 * h)),
@@ -37,8 +32,7 @@ assembly teapot {
         @color("goldenrod")
         drawing gilt { v = arc((-79 * w, 80 * h), (-70 * w, 35 * h), mid: (-82 * w, 56 * h)) }
     }
-    @color(glaze)
-    solid spout {
+    @color(glaze) solid spout {
         tube = path(
             (36 * w, 12 * h),
             bezier_to((66 * w, 14 * h), (50 * w + 0.4 * reach, 82 * h), (50 * w + reach, 102 * h)),
@@ -47,10 +41,8 @@ assembly teapot {
             close()
         )
     }
-    @color("goldenrod")
-    solid lip { edge = thick(line((0, 0), (-9, 6)), 4) }
-    @color("#fbf7ee")
-    solid pot {
+    @color("goldenrod") solid lip { edge = thick(line((0, 0), (-9, 6)), 4) }
+    @color("#fbf7ee") solid pot {
         body = path(
             (0, 0),
             right(26 * w),
@@ -66,24 +58,17 @@ assembly teapot {
     garland = linear_array(flower(min(0.34 * pitch, 11 * h)), n: flowers, pitch: pitch)
     @color(lighter(glaze, 0.6))
     drawing shine { v = arc((-20 * w, 91 * h), (-35 * w, 70 * h), mid: (-29 * w, 83 * h)) }
-    @color("black")
-    @opacity(0.18)
-    @stroke(none)
-    @detached
+    @color("black") @opacity(0.18) @stroke(none) @detached
     solid shade { v = difference(pot.body, copy(pot.body, by: (-11 * w, 4 * h))) }
     foot = bar(glaze, 58 * w, 6)
     neck = bar("goldenrod", 44 * w, 4)
-    @color("#fbf7ee")
-    solid lid {
+    @color("#fbf7ee") solid lid {
         cap = dome(width: 40 * w, height: 15 * h)
         drawing d { v = arc((-14 * w, 0), (-5 * w, 5 * h), mid: (-11 * w, 3.5 * h)) }
     }
     collar = bar("goldenrod", 9 * w, 3)
-    @color(glaze)
-    solid knob { ball = egg(width: 11 * w, height: 13 * w) }
-    @color("lightslategray")
-    @detached
-    drawing steam {
+    @color(glaze) solid knob { ball = egg(width: 11 * w, height: 13 * w) }
+    @color("lightslategray") @detached drawing steam {
         wisp = [wave((x, x / 4), (x + 4, 30 + x / 2), amplitude: 3, waves: 1.5) for x in [0, 8, 16]]
     }
     constrain {

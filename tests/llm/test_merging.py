@@ -43,6 +43,13 @@ def test_a_program_handed_back_as_it_was_is_not_touched(path: Path) -> None:
     assert merge(text, carelessly(text)) == text
 
 
+def test_attributes_on_other_lines_are_no_change() -> None:
+    before = '@color("red")\n@detached\nsolid a {\n    r = circle(radius: 5)  // a disc\n}\n'
+    after = '@color("red") @detached solid a {\n    r = circle(radius: 5)\n}\n'
+    assert merge(before, after) == before
+    assert merge(before, after.replace("5", "6")) == before.replace("5", "6")
+
+
 def test_a_number_is_one_line() -> None:
     after = carelessly(TELEPHONE).replace("radius: 28", "radius: 34")
     assert changed(TELEPHONE, merge(TELEPHONE, after)) == [

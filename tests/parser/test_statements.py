@@ -35,7 +35,7 @@ def read(text: str) -> tuple[ast.Statement, ...]:
             "solid w(outer = 20, inner: length = 10) {}",
         ),
         ("solid w() {}", "solid w() {}"),
-        ('@color("red") @detached solid a {}', '@color("red")\n@detached\nsolid a {}'),
+        ('@color("red")\n@detached solid a {}', '@color("red")\n@detached solid a {}'),
         ("solid a { todo }", "solid a { todo }"),
         # definitions
         ("x = circle(radius: 5)", "x = circle(radius: 5)"),

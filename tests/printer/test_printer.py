@@ -79,11 +79,9 @@ def test_allow_before_any_statement() -> None:
         "@allow('N0602')param k=3 @allow(\"W0201\",'N0602') /* c */ let a=k "
         "constrain{@allow('N0602')a==3,@allow('W0202') if k>2{@allow('N0605') prefer k==3}}",
         """
-        @allow("N0602")
-        param k = 3
+        @allow("N0602") param k = 3
         /* c */
-        @allow("W0201", "N0602")
-        let a = k
+        @allow("W0201", "N0602") let a = k
         constrain { @allow("N0602") a == 3; @allow("W0202") if k > 2 { @allow("N0605") prefer k == 3 } }
         """,
     )
@@ -94,9 +92,84 @@ def test_docs_and_attributes() -> None:
         "/// Doc.\n@thickness(3mm)  @color('red') solid a { @layer('b') c = circle(radius: 1) }",
         """
         /// Doc.
-        @thickness(3mm)
+        @thickness(3mm) @color("red") solid a { @layer("b") c = circle(radius: 1) }
+        """,
+    )
+
+
+def test_attributes_stay_on_the_line_they_were_written_on() -> None:
+    check(
+        """
+        @color("red")   @detached
+        solid a { r = circle(radius: 1) }
         @color("red")
-        solid a { @layer("b") c = circle(radius: 1) }
+        @detached solid b {
+        @layer("cut")   c = circle(radius: 1)
+        }
+        """,
+        """
+        @color("red") @detached
+        solid a { r = circle(radius: 1) }
+        @color("red")
+        @detached solid b {
+            @layer("cut") c = circle(radius: 1)
+        }
+        """,
+    )
+
+
+def test_attributes_that_find_no_room_stand_above() -> None:
+    red = '@color("' + "r" * 38 + '")'
+    circles = "solid a { r = circle(radius: 1); s = circle(radius: 2) }"
+    assert len(f"{red} {circles}") == 105
+    assert form(f"{red} {circles}") == f"{red}\n{circles}\n"
+    block = "solid a {\n    r = circle(radius: 1)\n}"
+    assert form(f"{red} {block}") == f"{red} {block}\n"
+    assert form(f"{red} {red} {block}") == f"{red} {red}\n{block}\n"
+    assert form(f"{red} {red} @detached\n{block}") == f"{red}\n{red}\n@detached\n{block}\n"
+
+
+@pytest.mark.parametrize("width", [99, 100, 101])
+def test_attributes_fill_a_line_to_its_end(width: int) -> None:
+    name = "a" * (width - len('@color("red") solid  {'))
+    gap = " " if width <= 100 else "\n"
+    assert form(f'@color("red") solid {name} {{\n}}') == f'@color("red"){gap}solid {name} {{\n}}\n'
+
+
+def test_attributes_leave_the_layout_of_what_they_stand_before() -> None:
+    fits = "[(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0), (-150, -50)]"
+    is_long = f"{fits[:-1]}, (-120, -80)]"
+    check(
+        f"hole h {{\n @layer('cut') e = polygon({fits})\n @layer('cut') f = polygon({is_long}) }}",
+        f"""
+        hole h {{
+            @layer("cut")
+            e = polygon({fits})
+            @layer("cut") f = polygon(
+                {is_long}
+            )
+        }}
+        """,
+    )
+
+
+def test_comments_behind_attributes_stay_there() -> None:
+    check(
+        """
+        @color("red") // the accent
+        @detached /* one */ solid a { // of it
+          @layer("cut") /// for the laser
+          r = circle(radius: 1)
+        }
+        """,
+        """
+        @color("red")  // the accent
+        @detached solid a {
+            /* one */
+            // of it
+            @layer("cut")  /// for the laser
+            r = circle(radius: 1)
+        }
         """,
     )
 

@@ -37,8 +37,8 @@ def _means(module: ast.Module) -> list[str]:
 
 
 def _key(statement: ast.Statement) -> str:
-    """Returns the meaning of a statement, in canonical form."""
-    return re.sub(r"\n\n+", "\n", format_statement(statement))
+    """Returns the meaning of a statement: its canonical form, wherever lines were ended."""
+    return re.sub(r"\s*\n\s*", " ", format_statement(statement))
 
 
 @record()

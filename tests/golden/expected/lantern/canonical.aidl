@@ -5,15 +5,12 @@ assembly lantern {
     let w = 0.42 * height
     let tall = 0.38 * height
 
-    @color("dimgray")
-    @detached
-    solid handle {
+    @color("dimgray") @detached solid handle {
         construction way = arch(width: 1.12 * w, height: 1.1 * w)
         bow = thick([way.right, way.top, way.left], 5, caps: "butt")
     }
 
-    @color("lightcyan")
-    solid globe {
+    @color("lightcyan") solid globe {
         glass = path(
             from: (0, 0),
             line_to(0.26 * w, 0),
@@ -24,25 +21,21 @@ assembly lantern {
         )
     }
 
-    @color("orange")
-    solid flame { tongue = drop(radius: 0.09 * w, height: 0.4 * w) }
+    @color("orange") solid flame { tongue = drop(radius: 0.09 * w, height: 0.4 * w) }
 
     @color(darker("firebrick"))
     solid burner { cone = trapezoid(bottom_width: 0.5 * w, top_width: 0.2 * w, height: 0.12 * w) }
 
-    @color("firebrick")
-    solid tank {
+    @color("firebrick") solid tank {
         body = trapezoid(bottom_width: w, top_width: 0.75 * w, height: 0.16 * height)
         foot = rounded_rectangle(width: 1.1 * w, height: 10, radius: 4)
         constrain foot.top_center == body.bottom_center + (0, 4)
 
-        @color("gold")
-        drawing label { name = text("STORM", height: 0.12 * w) }
+        @color("gold") drawing label { name = text("STORM", height: 0.12 * w) }
         constrain label.name.center == body.center
     }
 
-    @color("firebrick")
-    solid chimney {
+    @color("firebrick") solid chimney {
         skirt = chamfered_rectangle(width: 0.66 * w, height: 12, chamfer: 3)
         pipe = rectangle(width: 0.44 * w, height: 0.14 * height)
         lid = dome(width: 0.62 * w, height: 0.06 * height)
@@ -57,8 +50,7 @@ assembly lantern {
         }
     }
 
-    @color("dimgray")
-    solid right_wire {
+    @color("dimgray") solid right_wire {
         way = path(
             from: (0.36 * w, 0),
             up(0.2 * w),

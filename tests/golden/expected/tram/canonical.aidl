@@ -5,8 +5,7 @@ assembly tram {
     param paint = "crimson"
     let pane_width = (length - 132) / (windows + 2) - 8
 
-    @color("dimgray")
-    solid track {
+    @color("dimgray") solid track {
         rail = rectangle(width: length + 60, height: 5)
         for i in 0..10 { sleeper[i] = rectangle(width: 16, height: 6) }
         constrain {
@@ -15,8 +14,7 @@ assembly tram {
         }
     }
 
-    @color("black")
-    solid bogie(radius = 15) {
+    @color("black") solid bogie(radius = 15) {
         frame = trapezoid(center: origin, bottom_width: 50, top_width: 76, height: 24)
         for i in 0..1 {
             tyre[i] = circle(center: fixed((48 * i - 24, -12)), radius: radius)
@@ -28,30 +26,25 @@ assembly tram {
     front = bogie() at (110, 0)
     rear = bogie() at (-110, 0)
 
-    @color("dimgray")
-    solid pantograph {
+    @color("dimgray") solid pantograph {
         way = path(from: (-20, 0), line_to(22, 24), line_to(-4, 48))
         arms = thick(way, 3)
         shoe = rounded_rectangle(center: (-4, 50), width: 56, height: 5, radius: 2)
     }
 
-    @color(paint)
-    solid body {
+    @color(paint) solid body {
         hull = rounded_rectangle(width: length, height: 92, radius: 16)
         construction skirt = rectangle(width: length - 32, height: 26)
         constrain skirt.bottom_center == hull.bottom_center
 
-        @color(darker(paint))
-        drawing panels { seams = hatching(skirt, pitch: 8, angle: 90deg) }
+        @color(darker(paint)) drawing panels { seams = hatching(skirt, pitch: 8, angle: 90deg) }
 
-        @color("gold")
-        drawing lettering { name = text("CITY LINE 17", height: 9) }
+        @color("gold") drawing lettering { name = text("CITY LINE 17", height: 9) }
         constrain lettering.name.center == skirt.center
     }
 
     for i in 0..1 {
-        @color("lightcyan")
-        solid door[i] {
+        @color("lightcyan") solid door[i] {
             leaf = rounded_rectangle(width: 40, height: 74, radius: 4)
             drawing split { gap = line(start: (0, -37), end: (0, 37)) }
         }
