@@ -22,7 +22,9 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
+from aidl_lang.common.colors import css_color
 from aidl_lang.common.names import find
+from aidl_lang.common.prose import listed, ticked
 from aidl_lang.syntax import ast
 
 STROKED = ("color", "stroke", "dash", "opacity")
@@ -117,6 +119,7 @@ ORIENTATIONS = ("top", "front", "side")
 THINNEST, WIDEST = 0.01, 1000.0
 """mm, of lines, dashes and gaps that can be seen."""
 EDGES = ("seams", "outline")
+SHADES = ("round", "ball", "slope", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids without outline; a width of 0 says the same."""
 
@@ -220,6 +223,16 @@ def _opacity(values: list[Value]) -> str:
     return "" if is_one else "a share above 0, and up to 1, as in `@opacity(0.5)`"
 
 
+def _shade(values: list[Value]) -> str:
+    kind, angles = values[:1], _numbers(values[1:], units.ANGLE)
+    is_color = len(kind) == 1 and isinstance(kind[0], TextVal) and css_color([kind[0].value]) is not None
+    if (is_color or _is_one_of(kind, SHADES)) and angles is not None and len(angles) <= 1:
+        values[:1] = kind
+        return ""
+    words = ", ".join(ticked(SHADES))
+    return f"{words}, or a colour, and where wanted the way it goes, as in `@shade(round, 90deg)`"
+
+
 def _text(name: str) -> Callable[[list[Value]], str]:
     def rule(values: list[Value]) -> str:
         is_text = len(values) == 1 and isinstance(values[0], TextVal)
@@ -249,6 +262,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "stroke": _stroke,
     "dash": _dash,
     "opacity": _opacity,
+    "shade": _shade,
     "edges": _edges,
     "halo": _halo,
 }

@@ -181,7 +181,7 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip"),
+    *("stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip"),
     *("title", "author", "number", "revision", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
@@ -195,7 +195,9 @@ CLIP = "clip"
 NAMING = frozenset((*STACKING, CLIP))
 """Attributes whose arguments are names of structures or geometry, read when these are there."""
 
-WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note", "stroke", "edges"})
+WORDED = frozenset(
+    {"orientation", "color", "colour", "layer", "material", "note", "stroke", "shade", "edges"}
+)
 """Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
 
 

@@ -82,7 +82,8 @@ def _plain(mark: Mark) -> Mark | None:
                 return replace(mark, fill=_BLACK, opacity=1.0)
             is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH
             fill = _WHITE if is_hiding else None
-            return replace(mark, fill=fill, opacity=1.0, ink=None if ink is None else _solid(ink))
+            line = None if ink is None else _solid(ink)
+            return replace(mark, fill=fill, opacity=1.0, ink=line, gradient=None)
         case Curves(role="seam"):
             return None
         case Curves(role="halo", ink=ink):

@@ -31,9 +31,21 @@ class Ink:
 
 
 @record()
+class Gradient:
+    """A fill that goes from colour to colour along the way from `start` to `end`; with a `radius`, outwards
+    from `start`. `stops` are shares of the way, from 0 to 1, with their colours.
+    """
+
+    start: Vec
+    end: Vec
+    stops: tuple[tuple[float, str], ...]
+    radius: float | None = None
+
+
+@record()
 class Area:
-    """A face with its holes cut out, filled, outlined, or both; `opacity` is that of the fill. Readers of the
-    SVG find `role` in it.
+    """A face with its holes cut out, filled, outlined, or both; `opacity` is that of the fill, which a
+    `gradient` may take the place of. Readers of the SVG find `role` in it.
     """
 
     face: Face
@@ -41,6 +53,7 @@ class Area:
     ink: Ink | None
     role: str = ""
     opacity: float = 1.0
+    gradient: Gradient | None = None
 
     @property
     def is_sign(self) -> bool:

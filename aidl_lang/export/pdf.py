@@ -18,7 +18,7 @@ from aidl_lang.common.colors import rgb
 from aidl_lang.common.numbers import size_text
 from aidl_lang.export import ExportError
 from aidl_lang.export.font import FAMILY, font_file
-from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, Bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.region import Loop
@@ -100,7 +100,23 @@ class _Pen:
                 self._canvas.setFillAlpha(mark.opacity)
         if mark.ink is not None:
             self._ink(mark.ink)
-        self._canvas.drawPath(path, fill=mark.fill is not None, stroke=mark.ink is not None, fillMode=0)
+        if mark.gradient is not None:
+            self._shade(path, mark.gradient)
+        is_filled = mark.fill is not None and mark.gradient is None
+        self._canvas.drawPath(path, fill=is_filled, stroke=mark.ink is not None, fillMode=0)
+
+    def _shade(self, path: Any, gradient: Gradient) -> None:
+        """Fills a path with a gradient, as dense as the fill is set to be."""
+        shares, colors = (
+            [share for share, _ in gradient.stops],
+            [self._color(color) for _, color in gradient.stops],
+        )
+        with self._state():
+            self._canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
+            if gradient.radius is None:
+                self._canvas.linearGradient(*gradient.start, *gradient.end, colors, shares)
+            else:
+                self._canvas.radialGradient(*gradient.start, gradient.radius, colors, shares)
 
     @_draw.register
     def _(self, mark: Curves) -> None:
@@ -152,7 +168,13 @@ class _Pen:
         self._canvas.drawText(text)
 
     def _fill(self, color: str) -> None:
-        self._canvas.setFillColorRGB(*(c / 255 for c in rgb(color)))
+        self._canvas.setFillColor(self._color(color))
+
+    @staticmethod
+    def _color(color: str) -> Any:
+        from reportlab.lib.colors import Color
+
+        return Color(*(part / 255 for part in rgb(color)))
 
     def _ink(self, ink: Ink) -> None:
         canvas = self._canvas

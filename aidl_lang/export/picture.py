@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.export import Job, palette
 from aidl_lang.export.marks import CHARACTER, LETTERS, Area, Curves, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.overlay import explain
+from aidl_lang.export.shading import gradient_of
 from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
@@ -179,8 +180,10 @@ def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
     ink = (
         None if body.style.is_unlined else _line(body.style, _outline_color(body.style), OUTLINE_WIDTH, size)
     )
+    shade = body.style.shade
+    gradient = None if shade is None else gradient_of(shade, fill, body.region)
     for face in body.region.faces:
-        yield Area(face, fill, ink, opacity=_opacity(body.style))
+        yield Area(face, fill, ink, opacity=_opacity(body.style), gradient=gradient)
 
 
 def _outline_color(style: Style) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.numbers import fixed
-from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.paths import face_path, open_path
 from aidl_lang.export.svg_package import svgwrite
 from aidl_lang.geometry.evaluate import Bounds
@@ -35,8 +37,11 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
         path = svg.masking.ClipPath(id=name, debug=False)
         path.add(_rectangle(clip, svg))
         document.defs.add(path)
+    shades = _shades(picture)
+    for gradient, name in shades.items():
+        document.defs.add(_gradient(gradient, name, svg))
     for group in picture.groups:
-        element = _group(svg, group)
+        element = _group(svg, group, shades)
         if group.clip is not None:
             element["clip-path"] = f"url(#{clips[group.clip]})"
         document.add(element)
@@ -46,12 +51,35 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
     return text.getvalue().replace("><", ">\n<") + "\n"
 
 
-def _group(svg: Any, group: Group) -> Any:
+def _shades(picture: Picture) -> dict[Gradient, str]:
+    """Returns the names of the gradients of a picture, in order of use."""
+    marks = (mark for group in picture.groups for mark in group.marks)
+    used = (mark.gradient for mark in marks if isinstance(mark, Area) and mark.gradient is not None)
+    return {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
+
+
+def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
+    (x0, y0), (x1, y1) = gradient.start, gradient.end
+    start, end = (fixed(x0), fixed(-y0)), (fixed(x1), fixed(-y1))
+    looks = {"id": name, "gradientUnits": "userSpaceOnUse", "debug": False}
+    made = (
+        svg.gradients.LinearGradient(start, end, **looks)
+        if gradient.radius is None
+        else svg.gradients.RadialGradient(start, fixed(gradient.radius), **looks)
+    )
+    for share, color in gradient.stops:
+        made.add_stop_color(fixed(share), color)
+    return made
+
+
+def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
     attributes = {key: _clean(value) for key, value in group.attributes.items()}
     element = svg.container.Group(id=_clean(group.name), debug=False)
     element.attribs.update(attributes)
     for mark in group.marks:
         checkpoint()
+        if isinstance(mark, Area) and mark.gradient is not None:
+            mark = replace(mark, fill=f"url(#{shades[mark.gradient]})")
         element.add(_element(mark, svg))
     return element
 

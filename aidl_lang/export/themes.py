@@ -64,7 +64,7 @@ def _(mark: Area, theme: Theme) -> Mark:
         return replace(mark, fill=theme.line)
     ink = None if mark.ink is None else _ink(mark.ink, theme)
     fill = theme.fill if mark.fill and mark.opacity == 1.0 else None
-    return replace(mark, fill=fill, ink=ink, opacity=1.0)
+    return replace(mark, fill=fill, ink=ink, opacity=1.0, gradient=None)
 
 
 @_reduced.register

@@ -22,16 +22,18 @@ class _Limit:
 
 
 _UNLINED = "stroke(none)"
-_OF_LINES = ("stroke", "dash", "edges", "halo")
+_OF_LINES = ("stroke", "dash", "shade", "edges", "halo")
 _OF_CUTTERS = _Limit(
-    ("stroke", "dash", "opacity", "edges", "halo"),
+    ("stroke", "dash", "opacity", "shade", "edges", "halo"),
     "a cutter follows whole lines of one width, and fills nothing",
 )
 _OF_FORMATS = {
     ".step": _Limit(_OF_LINES, "STEP holds shapes with their colours, and its lines have no width"),
-    ".stl": _Limit(("stroke", "dash", "opacity", "edges", "halo"), "STL holds bare shapes"),
+    ".stl": _Limit(("stroke", "dash", "opacity", "shade", "edges", "halo"), "STL holds bare shapes"),
     ".3mf": _Limit(_OF_LINES, "3MF holds solids with their colours, and draws no lines"),
-    ".dxf": _Limit(("opacity", _UNLINED, "edges", "halo"), "DXF holds outlines, and nothing is filled"),
+    ".dxf": _Limit(
+        ("opacity", "shade", _UNLINED, "edges", "halo"), "DXF holds outlines, and nothing is filled"
+    ),
 }
 _OF_FORMATS[".stp"] = _OF_FORMATS[".step"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -10,14 +10,43 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry.notes import united_notes
-from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import Frame, Scalar, SolvedGeometry, SolvedStructure
 
 Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("color", "stroke", "dash", "opacity", "halo")
+_OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo")
 """Looks that a body has as a whole."""
+
+
+@record()
+class Shade:
+    """How the fill of a body changes over it: as on a `round` bar, a `ball` or a `slope`, or to another
+    colour; and the way it goes in the frame of the root, in degrees.
+    """
+
+    kind: str
+    way: float
+
+
+@record()
+class Turn:
+    """The directions of a structure in the frame of the root: `first` is that of its x axis in degrees,
+    `sense` is -1 where it is mirrored.
+    """
+
+    first: float = 0.0
+    sense: float = 1.0
+
+    def within(self, frame: Frame) -> Turn:
+        """Returns the turn of a structure with that frame in this one."""
+        own = frame.rotation + (180.0 if frame.mirrored else 0.0)
+        return Turn(self.first + self.sense * own, -self.sense if frame.mirrored else self.sense)
+
+    def of(self, angle: float) -> float:
+        """Returns the direction of an angle of the structure, from -180 up to 180."""
+        return (self.first + self.sense * angle + 180.0) % 360.0 - 180.0
 
 
 @record()
@@ -28,6 +57,7 @@ class Style:
     stroke   width of its lines, mm; 0 for solids without outline, whose drawings have lines as ever
     dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
     opacity  how much of what lies behind is covered, from 0 to 1
+    shade    how the fill of a body changes over it
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
     """
@@ -39,6 +69,7 @@ class Style:
     stroke: float | None = None
     dash: tuple[float, ...] | None = None
     opacity: float | None = None
+    shade: Shade | None = None
     edges: str | None = None
     halo: float | None = None
 
@@ -75,16 +106,19 @@ def styles_of(root: SolvedStructure) -> dict[str, Style]:
     """Returns the style of each structure by its path."""
     styles: dict[str, Style] = {}
 
-    def visit(structure: SolvedStructure, around: Style, kind: str) -> None:
+    def visit(structure: SolvedStructure, around: Style, kind: str, turn: Turn) -> None:
         if structure.kind == "drawing" != kind:
             around = replace(
                 around, halo=None
             )  # a gap around bodies is none around all that is drawn on them
-        styles[structure.path] = style = _within(around, structure.attributes)
+        style = _within(around, structure.attributes)
+        if "shade" in structure.attributes:
+            style = replace(style, shade=_shade(structure.attributes["shade"], turn))
+        styles[structure.path] = style
         for child in structure.structures:
-            visit(child, style, structure.kind)
+            visit(child, style, structure.kind, turn.within(child.frame))
 
-    visit(root, Style(), "")
+    visit(root, Style(), "", Turn())
     return styles
 
 
@@ -107,9 +141,29 @@ def _within(around: Style, stated: Attributes) -> Style:
         0.0 if is_unlined(stated) else _number(stated.get("stroke"), around.stroke),
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
+        around.shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
     )
+
+
+_DOWN = -90.0
+_LIT = ("round", "slope")
+"""Shades that light makes: it comes from the left and from above, however a part is turned."""
+
+
+def _shade(values: Sequence[Scalar], turn: Turn) -> Shade | None:
+    kind, *angles = values
+    if kind == "none":
+        return None
+    angle = angles[0] if angles else 0.0 if kind == "round" else _DOWN
+    assert isinstance(angle, int | float)
+    way = turn.of(float(angle))
+    is_upwards = way > 90.0 - _LEVEL or way <= -90.0 - _LEVEL
+    return Shade(str(kind), way + 180.0 if kind in _LIT and is_upwards else way)
+
+
+_LEVEL = 1e-6
 
 
 def _text(values: tuple[Scalar, ...] | None) -> str | None:

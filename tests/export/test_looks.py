@@ -146,12 +146,12 @@ def test_solids_that_show_through() -> None:
 
 
 @pytest.mark.parametrize("name", ["blueprint", "ink"])
-def test_reduced_pictures_keep_lines_and_opacity(name: str) -> None:
+def test_reduced_pictures_keep_lines(name: str) -> None:
     assert _looks(written(".svg", theme=name).data.decode()) == _looks(written(".svg").data.decode())
 
 
 def _looks(svg: str) -> list[str]:
-    return re.findall(r'(?:stroke-width|stroke-dasharray|opacity)="[^"]*"', svg)
+    return re.findall(r'(?:stroke-width|stroke-dasharray|stroke-opacity)="[^"]*"', svg)
 
 
 # --- Outlines --------------------------------------------------------------------------------------
@@ -173,7 +173,8 @@ assembly a {
 @pytest.mark.parametrize("theme", ["colour", "blueprint", "ink"])
 def test_a_solid_without_outline(theme: str) -> None:
     svg = written(".svg", BALL, theme=theme).data.decode()
-    assert 'stroke="none"' in group(svg, "a.shine")
+    # What shows through is left out where all fills are of one colour.
+    assert ('stroke="none"' in group(svg, "a.shine")) is (theme == "colour")
     assert 'stroke-width="0.4"' in group(svg, "a.skin")
     assert re.search(r'stroke-width="0\.\d+"', group(svg, "a.shine.mark"))
 
@@ -421,3 +422,87 @@ def test_only_what_lies_over_something_has_a_gap() -> None:
 @pytest.mark.parametrize("suffix", [".dxf", ".step", ".stl", ".3mf"])
 def test_other_files_say_that_they_have_no_gaps(suffix: str) -> None:
     assert any("`@halo`" in note.message for note in written(suffix, HALOED).notes)
+
+
+# --- Shade -----------------------------------------------------------------------------------------
+
+
+_PLACES = {
+    "left": (0.3, 0.5),
+    "middle": (0.5, 0.5),
+    "right": (0.85, 0.5),
+    "above": (0.5, 0.3),
+    "below": (0.5, 0.85),
+}
+
+
+def _brightness(attributes: str, *, frame: str = "", suffix: str = ".png") -> dict[str, float]:
+    """The brightness of a grey square, seen at the left, in its middle, on the right, above and below."""
+    square = "plate = rectangle(center: fixed((0, 0)), width: 40, height: 40)"
+    program = f'@stroke(none) assembly a {{ @color("gray") {attributes} solid s {frame} {{ {square} }} }}'
+    data = written(suffix, program, pixels=200).data if suffix == ".png" else written(suffix, program).data
+    image = (
+        Image.open(io.BytesIO(data)) if suffix == ".png" else PdfDocument(data)[0].render(scale=3).to_pil()
+    )
+    grey, (width, height) = image.convert("L"), image.size
+    return {name: float(grey.getpixel((int(x * width), int(y * height)))) for name, (x, y) in _PLACES.items()}
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_round_bar_is_lit_from_the_left(suffix: str) -> None:
+    seen = _brightness("@shade(round)", suffix=suffix)
+    assert seen["left"] > seen["middle"] > seen["right"]
+    assert seen["above"] == pytest.approx(seen["below"], abs=2)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_level_bar_is_lit_from_above(suffix: str) -> None:
+    seen = _brightness("@shade(round, 90deg)", suffix=suffix)
+    assert seen["above"] > seen["middle"] > seen["below"]
+    assert seen["left"] == pytest.approx(seen["right"], abs=2)
+
+
+@pytest.mark.parametrize("frame", ["", "rotated 180deg", "at (3, 4)"])
+def test_light_comes_from_one_side_however_a_part_is_turned(frame: str) -> None:
+    assert _brightness("@shade(round)", frame=frame) == pytest.approx(_brightness("@shade(round)"), abs=2)
+    assert _brightness("@shade(slope)", frame=frame) == pytest.approx(_brightness("@shade(slope)"), abs=2)
+
+
+def test_shade_goes_along_with_a_part_that_is_turned() -> None:
+    assert _brightness("@shade(round)", frame="rotated 90deg") == pytest.approx(
+        _brightness("@shade(round, 90deg)"), abs=2
+    )
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_ball_is_brightest_at_the_upper_left(suffix: str) -> None:
+    seen = _brightness("@shade(ball)", suffix=suffix)
+    assert seen["left"] > seen["right"]
+    assert seen["above"] > seen["below"]
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_fill_goes_over_into_another_colour(suffix: str) -> None:
+    seen = _brightness('@shade("white", 0deg)', suffix=suffix)
+    assert seen["left"] < seen["middle"] < seen["right"]
+    assert seen["right"] > 220
+
+
+def test_shade_ends_where_it_is_said() -> None:
+    program = """
+    @shade(round) assembly a {
+        solid b { p = rectangle(center: fixed((0, 0)), width: 9, height: 9) }
+        @shade(none) solid c { p = rectangle(center: fixed((9, 0)), width: 9, height: 9) }
+    }
+    """
+    svg = written(".svg", program).data.decode()
+    assert "url(#shade-1)" in group(svg, "a.b")
+    assert "url(" not in group(svg, "a.c")
+    assert "url(" not in written(".svg", program, theme="ink").data.decode()
+
+
+@pytest.mark.parametrize("arguments", ["", "3", '"nocolour"', "round, 3mm", "round, 1, 2"])
+def test_a_shade_that_is_none_is_told(arguments: str) -> None:
+    made = compiled(f"@shade({arguments}) solid s {{ p = circle(radius: 3) }}")
+    (found,) = [d for d in made.diagnostics if d.code == "E0517"]
+    assert found.message.startswith("`@shade` takes `round`, `ball`, `slope`, `none`, or a colour")

@@ -6,6 +6,7 @@ const SVG = "http://www.w3.org/2000/svg";
 
 const ELEMENTS = new Set([
   "svg", "g", "path", "circle", "ellipse", "rect", "line", "polyline", "polygon", "text", "tspan", "defs", "clipPath",
+  "linearGradient", "radialGradient", "stop",
 ]);
 
 const ATTRIBUTES = new Set([
@@ -13,9 +14,12 @@ const ATTRIBUTES = new Set([
   "transform", "viewBox", "class", "fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-opacity",
   "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-dasharray", "stroke-dashoffset", "opacity",
   "font-size", "font-family", "font-weight", "font-style", "text-anchor", "dominant-baseline", "clip-path",
-  "clip-rule", "clipPathUnits", "aria-hidden", "data-element",
+  "clip-rule", "clipPathUnits", "gradientUnits", "offset", "stop-color", "aria-hidden", "data-element",
 ]);
 
+/** What others refer to by its id, and the attributes that do. */
+const REFERRED = new Set(["clipPath", "linearGradient", "radialGradient"]);
+const REFERRING = new Set(["clip-path", "fill"]);
 const LOCAL = /^\s*url\(\s*["']?#([^"')]*)["']?\s*\)\s*$/;
 /** A function that names something elsewhere, or an escape that may hide one; `burlywood` is neither. */
 const OUTSIDE = /(url|image|image-set|src)\s*\(|\\/i;
@@ -61,7 +65,7 @@ function cleaned(node) {
     const safe = safeValue(name, value);
     if (safe !== null) copy.setAttribute(name, safe);
   }
-  if (node.localName === "clipPath") copy.id = PREFIX + node.id;
+  if (REFERRED.has(node.localName)) copy.id = PREFIX + node.id;
   for (const child of node.childNodes) {
     const clean = cleaned(child);
     if (clean) copy.append(clean);
@@ -77,7 +81,7 @@ function safeValue(name, value) {
   if (!ATTRIBUTES.has(name)) return null;
   if (name === "data-element") return /^\d{1,9}$/.test(value) ? String(Number(value)) : null;
   if (!OUTSIDE.test(value)) return value;
-  const id = name === "clip-path" ? LOCAL.exec(value)?.[1] : undefined;
+  const id = REFERRING.has(name) ? LOCAL.exec(value)?.[1] : undefined;
   return id === undefined ? null : `url(#${PREFIX}${id})`;
 }
 
