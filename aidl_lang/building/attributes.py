@@ -24,7 +24,7 @@ from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.names import find
-from aidl_lang.common.prose import listed, ticked
+from aidl_lang.common.prose import ticked
 from aidl_lang.syntax import ast
 
 STROKED = ("color", "stroke", "dash", "opacity")
