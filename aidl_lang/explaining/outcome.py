@@ -111,6 +111,8 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
     wording = assertion.wording
     shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
     if assertion.outline is not None:
+        if _is_fitted(false, assertion.outline, evaluate):
+            return None
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
     return Diagnostic(
@@ -122,6 +124,17 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         (_hint(assertion, false, places),),
         _stated(assertion),
     )
+
+
+def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluator) -> bool:
+    """Tells whether the box of an outline is off by no more than its curves are: parallel curves of cubics
+    and ellipses are fitted, and true only towards the axes of the drawing, while a structure may be turned.
+    """
+    from aidl_lang.geometry.strips import FIT
+
+    assert isinstance(evaluate.measure, _Measure)
+    slack = FIT * evaluate.measure.extent(outline)
+    return all(abs(evaluate(c.left) - evaluate(c.right)) <= slack for c in false)
 
 
 def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
@@ -247,6 +260,10 @@ class _Measure:
             curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
         left, bottom, right, top = union_bounds([bounds(c) for c in curves])
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
+
+    def extent(self, outline: Geometry) -> float:
+        left, bottom, right, top = union_bounds([bounds(c) for c in self._curves(outline.path)])
+        return max(right - left, top - bottom)
 
     def is_drawn(self, outline: Geometry) -> bool:
         """Tells whether an outline did not come out empty, which is told by itself."""

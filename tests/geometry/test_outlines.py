@@ -18,6 +18,7 @@ from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length, perimeter
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset, thick
 from aidl_lang.geometry.region import Face, Loop, Region
 from tests.amount import tries
@@ -235,6 +236,22 @@ def test_stroke_of_an_arc_wider_than_its_radius() -> None:
     assert area(thick(bow, 6, "butt")) == pytest.approx(math.pi * 25 / 2)
     theirs = shapely.LineString(points(bow[0], np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
     assert area(thick(bow, 6)) == pytest.approx(theirs.area, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        Ellipse((3, 1), 33, 20, 0.35),
+        Bezier((0, 0), (10, 40), (50, 30), (60, 3)),
+        Bezier((0, 0), (70, 50), (-30, 50), (40, 0)),
+    ],
+)
+def test_stroke_of_a_free_curve_has_its_box_moved_out(curve: Piece) -> None:
+    """Parallel curves are fitted, yet true where they are level or upright."""
+    fine = points(curve, np.linspace(0, 1, 400_001))
+    ours = thick([curve], 5).faces[0].outer.pieces
+    theirs = [*(fine.min(axis=0) - 2.5), *(fine.max(axis=0) + 2.5)]
+    assert union_bounds([bounds(p) for p in ours]) == pytest.approx(tuple(theirs), abs=1e-8)
 
 
 # --- Hulls and clips -----------------------------------------------------------------------------------
