@@ -277,6 +277,10 @@ class Inference:
             self.serves(side, common, node)
         return common
 
+    def is_measured(self, symbol: Symbol) -> bool:
+        """Tells whether the number that a name stands for is used as a length or an angle."""
+        return symbol in self._served
+
     def serves(self, fact: Fact, dimension: MaybeDimension, node: ast.Node) -> None:
         """Reports a number without a unit that is used both as a length and as an angle."""
         if fact.bare is None or dimension not in (LENGTH, ANGLE):
