@@ -13,7 +13,7 @@ from aidl_lang.syntax import ast
 
 def counting_params(check: Inference) -> frozenset[ast.Param]:
     """Returns the params of a checked program of which only whole numbers make sense: those that come to
-    where a whole number is asked for, by themselves, in sums and products, or by way of a `let` or an argument.
+    where a whole number is asked for, by themselves, in sums and products, by way of a `let` or an argument.
     """
     resolution = check.resolution
     if not any(isinstance(s.node, ast.Param) for s in resolution.symbols):

@@ -395,9 +395,7 @@ def _neat(target: float, onward: float, slack: float) -> float:
 # --- Other edits -----------------------------------------------------------------------------------
 
 
-_ALLOWING = re.compile(
-    r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(constrain\s*)?\Z", re.IGNORECASE
-)
+_ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(constrain\s*)?\Z", re.IGNORECASE)
 """`@allow(…)` right before what a constraint states, and all between them."""
 
 
