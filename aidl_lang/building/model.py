@@ -199,8 +199,9 @@ class Finish:
 
     of     the geometry whose corner it is; empty for a bare point
     at     the corner, in the frame of the structure that lists it; None for all corners of `of`
-    sizes  radius, or one distance or two
+    sizes  radius, or one distance or two; none for the largest that fits
     text   the corner as it was written
+    run    the same for those that one run of a statement makes
     """
 
     kind: str
@@ -209,6 +210,7 @@ class Finish:
     sizes: tuple[Num, ...]
     text: str
     span: Span
+    run: int = 0
 
 
 @record()
