@@ -151,7 +151,8 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
     if meant is None:
         choices = ", ".join(ticked(allowed))
-        it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[f"it is one of {choices}"])
+        hint = f"it is one of {choices}" if len(allowed) > 1 else f"it is a length, or {choices}"
+        it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[hint])
     return meant
 
 
@@ -363,10 +364,10 @@ def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env:
     """
     key, kind = "", find(name, dict.fromkeys(FINISHES))
     if isinstance(value, PointVal):
-        value, key = _base(it, node.value, env)
+        value, key = _base(it, node.value, env)  # type: ignore[assignment]
     while kind is not None and isinstance(value, Geometry):
         if (found := value.finishes.get(_named(key, kind))) is not None:
-            return found if may_read(it, value.owner, node, env) else as_written(found)  # type: ignore[return-value]
+            return found if may_read(it, value.owner, node, env) else as_written(found)
         if any(f.kind == kind and not f.sizes and value in f.of for f in value.owner.finishes):
             it.report(
                 "E0526",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.geometry.curves import Piece
@@ -11,6 +12,7 @@ from aidl_lang.geometry.finishing import Work, finish, largest
 
 _DOUBLINGS = 40
 _SAME = 1e-8
+_NOTHING = 1e-6
 _MORE = 1e-6
 """A size that may not grow by this share does not grow."""
 
@@ -21,15 +23,18 @@ def fitted(curves: Sequence[Piece], works: Sequence[Work], runs: Sequence[int], 
     """
     sizes: dict[int, float] = {}
     while growing := sorted({run for run in runs if run and run not in sizes}):
-
-        def fits(size: float, own: Sequence[int] = growing, level: float | None = None) -> bool:
-            others = dict.fromkeys(growing, size if level is None else level)  # noqa: B023
-            return _fit(curves, works, runs, sizes | others | dict.fromkeys(own, size), own)
-
-        size = _largest(fits, extent)
-        stuck = [run for run in growing if not fits(size * (1 + _MORE), [run], size)]
+        trial = partial(_fit, curves, works, runs, sizes)
+        size = _largest(partial(_level, trial, growing), extent)
+        level = dict.fromkeys(growing, size)
+        larger = max(size * (1 + _MORE), 2 * _NOTHING * extent)
+        stuck = [run for run in growing if not trial(level | {run: larger}, [run])]
         sizes |= dict.fromkeys(stuck or growing, size)
     return _sized(works, runs, sizes)
+
+
+def _level(fits: Callable[[dict[int, float], list[int]], bool], runs: list[int], size: float) -> bool:
+    """Tells whether runs fit that all have one size."""
+    return fits(dict.fromkeys(runs, size), runs)
 
 
 def _sized(works: Sequence[Work], runs: Sequence[int], sizes: Mapping[int, float]) -> list[Work]:
@@ -43,12 +48,15 @@ def _fit(
     curves: Sequence[Piece],
     works: Sequence[Work],
     runs: Sequence[int],
-    sizes: Mapping[int, float],
+    known: Mapping[int, float],
+    tried: Mapping[int, float],
     asked: Iterable[int],
 ) -> bool:
     """Tells whether nothing of the runs that are asked for fails or runs into another."""
     checkpoint()
-    sized = [(w, r) for w, r in zip(_sized(works, runs, sizes), runs, strict=True) if w.sizes[0] > 0]
+    sized = [
+        (w, r) for w, r in zip(_sized(works, runs, {**known, **tried}), runs, strict=True) if w.sizes[0] > 0
+    ]
     asked_for = set(asked)
     own = {id(work) for work, run in sized if run in asked_for}
     failures = finish(curves, [work for work, _ in sized]).failures
@@ -63,5 +71,7 @@ def _largest(fits: Callable[[float], bool], extent: float) -> float:
             break
         high *= 2
     found = largest(fits, high)
+    if found <= _NOTHING * extent:
+        return 0.0
     short = float(f"{found:.6g}")
     return short if abs(short - found) <= _SAME * found and fits(short) else found

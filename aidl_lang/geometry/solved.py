@@ -65,8 +65,8 @@ class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
 
     `corners` are the places where it was carried out, `literal` tells the number that its size is written as,
-    where nothing else depends on it. Without `sizes` it is as large as fits, the same at all corners of a `run` of
-    a statement.
+    where nothing else depends on it. Without `sizes` it is as large as fits, the same at all corners of a
+    `run` of a statement.
     """
 
     kind: str

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
@@ -93,8 +94,8 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
     x0, y0, x1, y1 = bounds(curve)
     scale = abs(left) + max(x1 - x0, y1 - y0)
     inner = sorted(t for t in extreme_parameters(curve) if _SHORTEST < t < 1 - _SHORTEST)
-    cuts = [t for t, after in zip(inner, [*inner[1:], 1.0], strict=True) if after - t > _SHORTEST]
-    stack = [(t0, t1, 0) for t0, t1 in zip((0.0, *cuts), (*cuts, 1.0), strict=True)][::-1]
+    cuts = [t for t, after in pairwise([*inner, 1.0]) if after - t > _SHORTEST]
+    stack = [(t0, t1, 0) for t0, t1 in pairwise([0.0, *cuts, 1.0])][::-1]
     while stack:
         t0, t1, depth = stack.pop()
         bent = [_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)]

@@ -16,6 +16,7 @@ from aidl_lang.geometry.clipping import clipped
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
+from aidl_lang.geometry.fitting import fitted
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length, perimeter
 from aidl_lang.geometry.network import union_bounds
@@ -206,6 +207,31 @@ def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
         assert outline.distance(shapely.Point(p)) == pytest.approx(abs(d), abs=1e-3)
     theirs = shapely.Polygon(outline).buffer(d, quad_segs=FINE)
     assert area(ours) == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
+
+
+@tries(40)
+@given(stars())
+def test_the_largest_fillet_of_a_polygon(corners: list[Vec]) -> None:
+    """Two tangents share each edge: the least of edge / (cot half one angle + cot half the other)."""
+    lines = [Line(p, q) for p, q in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    works = [Work("fillet", c, (0.0, 0.0)) for c in corners_of(lines, 1e-6)]
+    assume(len(works) == len(lines))
+    shares = {c.corner.at: 1 / math.tan(abs(c.corner.turn) / 2) for c in works}
+    most = min(math.dist(p, q) / (shares[p] + shares[q]) for p, q in map(ends, lines))
+    made = fitted(lines, works, [1] * len(works), 100.0)
+    assert made[0].sizes[0] == pytest.approx(most, rel=1e-6)
+    assert not finish(lines, made).failures
+    larger = [sized(w, w.sizes[0] * (1 + 1e-6)) for w in made]
+    assert finish(lines, larger).failures
+
+
+def test_runs_that_grow_together() -> None:
+    """Two share the short side, then the third takes what is left of the others beside a fillet of 5."""
+    lines = [Line(p, q) for p, q in pairwise([(0, 0), (60, 0), (60, 40), (0, 40), (0, 0)])]
+    works = {c.at: Work("fillet", c, (5.0, 5.0)) for c in corners_of(lines, 1e-6)}
+    runs = {(0, 0): 1, (0, 40): 2, (60, 40): 3, (60, 0): 0}
+    made = fitted(lines, list(works.values()), [runs[p] for p in works], 60.0)
+    assert {w.corner.at: w.sizes[0] for w in made} == {(0, 0): 20, (0, 40): 20, (60, 40): 35, (60, 0): 5}
 
 
 # --- Strokes -------------------------------------------------------------------------------------------
