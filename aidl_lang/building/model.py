@@ -493,6 +493,8 @@ class Assertion:
     """the condition, to be read again in parts (see building.wording)"""
     outline: Geometry | None = None
     """the outline whose box a constraint foresaw to be as this asks"""
+    is_followed: bool = False
+    """the members of a pattern are where they are on a curve that was solved to another form"""
 
 
 @record(eq=False)

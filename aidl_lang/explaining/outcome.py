@@ -105,6 +105,8 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
     """
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
+    if assertion.is_followed:
+        return _lost_way(assertion)
     message = assertion.message or f"`{assertion.text}` does not hold"
     where = f" [{assertion.label}]" if assertion.label else ""
     false = list(_false_parts(assertion.condition, evaluate))
@@ -123,6 +125,17 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         places,
         (_hint(assertion, false, places),),
         _stated(assertion),
+    )
+
+
+def _lost_way(assertion: Assertion) -> Diagnostic:
+    """Returns the diagnostic for a pattern along a curve that came out in another form."""
+    return Diagnostic(
+        "E0608",
+        f"the members of `{assertion.text}` are not at equal ways: the curve was solved to another form",
+        assertion.span,
+        "laid out along the curve as it was written",
+        hints=("write the points of the curve near to where the constraints bring them",),
     )
 
 
