@@ -168,7 +168,8 @@ class Inference:
         if node.condition is not None:
             self.test(node.condition)
         element = self.fact(node.element)
-        return replace(element.listed(), reads=element.reads | reads)
+        listed = element.listed() if node.innermost is node else element
+        return replace(listed, reads=element.reads | reads)
 
     def _for_arguments(self, node: ast.ForArguments) -> Fact:
         reads = self.iterable(node.iterable, len(node.variables)).reads
