@@ -38,6 +38,7 @@ _WORD = "assert"
 
 
 def solution_notes(
+    root: Structure,
     lowered: Lowered,
     solution: Solution,
     freedom: Freedom,
@@ -55,7 +56,7 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
-    found += leaving_notes(lowered, solution)
+    found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
         from aidl_lang.explaining.repetitions import repetition_notes

@@ -109,8 +109,8 @@ class List(Node):
 
 @record(eq=False, repr=False)
 class Comprehension(Node):
-    """`[element for variable in iterable if condition]`. A further `for` in the brackets is the element of the
-    one before it, and `is_joined`: its members are members of the whole.
+    """`[element for variable in iterable if condition]`. A further `for` in the brackets is the element of
+    the one before it, and `is_joined`: its members are members of the whole.
     """
 
     element: Expression
