@@ -176,7 +176,8 @@ def _lost_form(
             ways.setdefault(unknown.holder, []).append(unknown)
     for way, lengths in ways.items():
         changed = [u for u in lengths if u in moved]
-        if way.name is None or not changed or len(changed) == len(lengths):
+        has_form = sum(not u.angular for u in lengths) > 1  # two points alone are a line, which adapts
+        if way.name is None or not has_form or not changed or len(changed) == len(lengths):
             continue
         unknowns = source_unknowns(way, way.owner)
         asking = list(dict.fromkeys(c for u in unknowns for c in naming.get(u, ()) if not c.is_inherent))
