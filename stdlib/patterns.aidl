@@ -3,7 +3,7 @@
 
 /// Parallel lines over an outline, a `pitch` apart; bars if a `width` is given.
 ///
-/// The lines run at `angle`, 45° if it is not given; one goes through the middle of the outline, and the others lie from there.
+/// The lines run at `angle`, 45° if it is not given; one goes through the middle of the outline.
 ///
 /// ```aidl
 /// assembly section {
