@@ -516,7 +516,11 @@ export default grammar({
     comprehension: ($) =>
       seq(
         field("element", $.expression),
-        repeat1(seq($._for_head, optional(seq("if", field("condition", $._disjunction))))),
+        "for",
+        field("variables", $.variables),
+        "in",
+        field("iterable", $._iterable),
+        optional(seq("if", field("condition", $._disjunction))),
       ),
 
     // --- Tokens ------------------------------------------------------------------------------------------------
