@@ -50,8 +50,10 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
     naming: dict[Unknown | Structure, list[Constraint]] = {}
     for stated in filter(None, lowered.stated):
         for comparison in stated.comparisons:
-            for named_in in (*comparison.spoken_of, *comparison.boxes):
-                naming.setdefault(named_in, []).append(stated)
+            for unknown in comparison.spoken_of:
+                naming.setdefault(unknown, []).append(stated)
+            for structure in comparison.boxes:
+                naming.setdefault(structure, []).append(stated)
     places: dict[Structure, dict[Geometry, list[Unknown]]] = {}
     for unknown in written:
         holder = unknown.holder

@@ -229,7 +229,7 @@ def test_runs_that_grow_together() -> None:
     """Two share the short side, then the third takes what is left of the others beside a fillet of 5."""
     lines = [Line(p, q) for p, q in pairwise([(0, 0), (60, 0), (60, 40), (0, 40), (0, 0)])]
     works = {c.at: Work("fillet", c, (5.0, 5.0)) for c in corners_of(lines, 1e-6)}
-    runs = {(0, 0): 1, (0, 40): 2, (60, 40): 3, (60, 0): 0}
+    runs: dict[Vec, int] = {(0, 0): 1, (0, 40): 2, (60, 40): 3, (60, 0): 0}
     made = fitted(lines, list(works.values()), [runs[p] for p in works], 60.0)
     assert {w.corner.at: w.sizes[0] for w in made} == {(0, 0): 20, (0, 40): 20, (60, 40): 35, (60, 0): 5}
 
