@@ -415,7 +415,9 @@ def _drawn(
             from aidl_lang.explaining.giving import with_reasons
 
             model = with_reasons(model, troubles.given)
-        found = solution_notes(lowered, solution, freedom, model, troubles.given, troubles.failures)
+        found = solution_notes(
+            built.model.root, lowered, solution, freedom, model, troubles.given, troubles.failures
+        )
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
     return model, evaluator, drawing, found, notes

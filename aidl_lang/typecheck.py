@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
+from aidl_lang.checking.counts import counting_params
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
@@ -57,6 +58,7 @@ class Program:
     rejected     nodes with a reported error, which the builder treats as NOTHING without another report
     diagnostics  everything else that resolving and checking found, in text order
     inference    the facts about expressions, for later questions
+    counts       the params of which only whole numbers make sense
     """
 
     main: ast.Module
@@ -67,6 +69,7 @@ class Program:
     diagnostics: tuple[Diagnostic, ...]
     inference: Inference
     rejected: frozenset[ast.Node] = frozenset()
+    counts: frozenset[ast.Param] = frozenset()
 
 
 def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
@@ -91,6 +94,7 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
         diagnostics=diagnostics,
         inference=inference,
         rejected=frozenset(_rejected(resolution.modules, diagnostics)),
+        counts=counting_params(inference),
     )
 
 

@@ -446,7 +446,8 @@ fn tangent_arc_to(to: point, smooth: bool = true) =
 ///
 /// Several are one smooth curve through their points, its knots. It goes on from the step before and into a straight
 /// step behind it; into the first step where it closes the outline, and square to the axis of `mirrored(smooth: true)`.
-/// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then.
+/// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then. Without
+/// `leaving` the first step of an open path sets out as an arc does: turned from its chord as much as it arrives.
 ///
 /// ```aidl
 /// solid pear {

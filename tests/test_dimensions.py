@@ -9,6 +9,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
+from aidl_lang.export import Options
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
@@ -59,6 +60,24 @@ def test_what_is_derived_or_construction_is_not_dimensioned():
         construction c = circle(radius: 2)
     }"""
     assert of(text, "size") == [("diameter", 14)]
+
+
+def test_what_is_clipped_away_has_no_dimensions():
+    """Of the square half is left, and of the far disc nothing; what reaches there is not drawn."""
+    text = """assembly a {
+        construction window = rectangle(center: origin, width: 60, height: 40)
+        @clip(window) assembly inner {
+            solid disc { rim = circle(center: fixed((0, 0)), radius: 8) }
+            solid far { rim = circle(center: (60, 0), radius: 9) }
+            solid half { body = rectangle(center: fixed((30, 0)), width: 12, height: 7) }
+            solid tall { body = rectangle(center: fixed((-20, 0)), width: 6, height: 90) }
+            constrain far.rim.left == disc.rim.right + 43
+        }
+    }"""
+    assert of(text, "size") == [("diameter", 16), ("vertical", 7), ("horizontal", 6)]
+    for program, is_there in ((text, False), (text.replace("@clip(window)", ""), True)):
+        svg = pipeline.compile(SourceFile("test.aidl", program)).export(".svg", Options(dimension=True))
+        assert (b">43<" in svg) is is_there
 
 
 @pytest.mark.parametrize(

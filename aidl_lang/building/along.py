@@ -4,17 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.cubics_along import Cubic, of_ellipse
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.motion import Place
-from aidl_lang.building.primitives import clockwise, direction, distance, number, sweep, view, xy
+from aidl_lang.building.primitives import (
+    clockwise,
+    direction,
+    distance,
+    is_reflected,
+    number,
+    sweep,
+    view,
+    xy,
+)
 from aidl_lang.common.records import record
 
 KINDS = frozenset({"line", "arc", "circle"})
 """Curves whose length is an expression."""
+FREE_KINDS = frozenset({"bezier", "ellipse"})
+"""Curves that are walked as cubics."""
 
+_BESIDE = 0.125
+"""Share of a stretch from its ends where a place may come to lie on the one beside it."""
 _DEGREES = ex.constant(180.0 / math.pi)
 _RADIANS = ex.constant(math.pi / 180.0)
 _MEETS = 1e-6
@@ -59,32 +74,85 @@ class Stretch:
         return Stretch(self.at(self.length), heading, self.length, self.center, ex.apply("neg", self.bow))
 
     @property
+    def last(self) -> Place:
+        return self.at(self.length)
+
+    @property
     def end(self) -> tuple[float, float]:
-        return _value(self.at(self.length))
+        return _value(self.last)
 
 
 @record(eq=False)
 class Way:
     """Stretches that go on from one another, and whether the last ends where the first begins."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[Stretch | Cubic, ...]
     is_closed: bool
 
     @property
     def length(self) -> Expression:
-        total = ex.ZERO
+        return self._lengths[-1]
+
+    @cached_property
+    def _lengths(self) -> tuple[Expression, ...]:
+        """The lengths from the start up to each of the joints, and to the end."""
+        found = [ex.ZERO]
         for stretch in self.stretches:
-            total = ex.add(total, stretch.length)
-        return total
+            found.append(ex.add(found[-1], stretch.length))
+        return tuple(found)
+
+    @property
+    def is_free(self) -> bool:
+        """Tells whether places are followed from those at the first guesses, and have to be checked."""
+        return any(isinstance(stretch, Cubic) for stretch in self.stretches)
+
+    def followed(self, way: Expression) -> tuple[Place, Expression, list[Expression]]:
+        """Returns the place at a length from the start and the direction there, on the stretch where it lies
+        at the first guesses or on one beside it if it is near, and what is 0 as long as that is so.
+        """
+        index = sum(low.value <= way.value for low in self._lengths[1:-1])
+        whole = self.stretches[index].length
+        own = ex.sub(way, self._lengths[index])
+        before = index > 0 and own.value < _BESIDE * whole.value
+        after = index < len(self.stretches) - 1 and whole.value - own.value < _BESIDE * whole.value
+        (x, y), heading, unmet = self._on(index, own, at_least=before, at_most=after)
+        for k in [index - 1] * before + [index + 1] * after:
+            reached = ex.sub(way, self._lengths[k])
+            (u, v), _, more = self._on(k, reached, at_least=k > index, at_most=k < index)
+            joint = self.stretches[k].start if k > index else self.stretches[k].last
+            x, y = ex.add(x, ex.sub(u, joint[0])), ex.add(y, ex.sub(v, joint[1]))
+            unmet += more
+        return (x, y), heading, unmet
+
+    def _on(
+        self, index: int, own: Expression, *, at_least: bool = False, at_most: bool = False
+    ) -> tuple[Place, Expression, list[Expression]]:
+        """Returns the place at a length of a stretch, which is kept from running over its start or its end
+        where it could be met on the stretch beside it.
+        """
+        stretch = self.stretches[index]
+        whole = stretch.length
+        unmet = [
+            ex.apply("maximum", ex.ZERO, over)
+            for over, is_kept in ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
+            if not is_kept
+        ]
+        own = ex.apply("maximum", own, ex.ZERO) if at_least else own
+        own = ex.apply("minimum", own, whole) if at_most else own
+        if isinstance(stretch, Stretch):
+            return stretch.at(own), stretch.direction(own), unmet
+        t, rest = stretch.parameter(own)
+        return *stretch.at(t), [*unmet, rest]
 
     def at(self, way: Expression) -> tuple[Place, Expression]:
         """Returns the place at a length from the start, wherever the joints come to lie, and the direction of
         the stretch on which it lies at the first guesses. Beyond its ends the way runs on as they do.
         """
-        x, y = self.stretches[0].start
-        rest, heading = way, self.stretches[0].heading
-        for index, stretch in enumerate(self.stretches):
-            is_last = index == len(self.stretches) - 1
+        stretches = [s for s in self.stretches if isinstance(s, Stretch)]
+        x, y = stretches[0].start
+        rest, heading = way, stretches[0].heading
+        for index, stretch in enumerate(stretches):
+            is_last = index == len(stretches) - 1
             own = rest
             if index > 0:
                 own = ex.apply("maximum", own, ex.ZERO)
@@ -104,9 +172,11 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
     """
     if len(curves) == 1 and curves[0].type == "circle":
         return Way((_circle(curves[0], here),), is_closed=True)
-    if any(curve.type == "circle" for curve in curves):
+    if any(curve.type == "circle" or (curve.type == "ellipse" and len(curves) > 1) for curve in curves):
         return None
-    both = [(_stretch(c, here), _stretch(c, here, reverse=True)) for c in curves]
+    both = [pair for c in curves for pair in _stretches(c, here)]
+    if not both:
+        return None
     near = _MEETS * max(1.0, *(abs(v) for pair in both for v in (*_value(pair[0].start), *pair[0].end)))
     first, *rest = both
     walked = _walked(first[0], rest, near)
@@ -115,14 +185,28 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
         walked = [*(turned[s] for s in reversed(_walked(first[1], rest, near)[1:])), *walked]
     if rest:
         return None
-    is_closed = len(walked) > 1 and math.dist(walked[-1].end, _value(walked[0].start)) <= near
-    return Way(tuple(walked), is_closed)
+    meets = math.dist(walked[-1].end, _value(walked[0].start)) <= near
+    return Way(tuple(walked), meets and (len(walked) > 1 or isinstance(walked[0], Cubic)))
 
 
-_Pair = tuple["Stretch", "Stretch"]
+_Pair = tuple["Stretch | Cubic", "Stretch | Cubic"]
 
 
-def _walked(stretch: Stretch, rest: list[_Pair], near: float) -> list[Stretch]:
+def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
+    """Returns a curve in stretches, forwards and backwards; those without length are left out."""
+    if curve.type not in FREE_KINDS:
+        return [(_stretch(curve, here), _stretch(curve, here, reverse=True))]
+    if curve.type == "ellipse":
+        core = view(curve, here)
+        axes = (number(core[name]) for name in ("rx", "ry", "angle"))
+        cubics = of_ellipse(xy(core["center"]), *axes, clockwise=is_reflected(curve.owner, here))
+    else:
+        a, b, c, d = (xy(view(curve, here)[name]) for name in ("p0", "p1", "p2", "p3"))
+        cubics = [Cubic((a, b, c, d))]
+    return [(c, c.turned_round) for c in cubics if c.length.value > 0]
+
+
+def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[Stretch | Cubic]:
     """Returns a stretch and those that go on from it, which are taken out of the rest."""
     walked = [stretch]
     while (found := _next(rest, walked[-1].end, near)) is not None:
@@ -131,7 +215,9 @@ def _walked(stretch: Stretch, rest: list[_Pair], near: float) -> list[Stretch]:
     return walked
 
 
-def _next(rest: Sequence[_Pair], end: tuple[float, float], near: float) -> tuple[_Pair, Stretch] | None:
+def _next(
+    rest: Sequence[_Pair], end: tuple[float, float], near: float
+) -> tuple[_Pair, Stretch | Cubic] | None:
     for pair in rest:
         for stretch in pair:
             if math.dist(_value(stretch.start), end) <= near:

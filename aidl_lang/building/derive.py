@@ -208,6 +208,7 @@ class Copier:
 
     def finish(self) -> None:
         """Gives the copies the fillets and chamfers of their sources, when all of these are known."""
+        runs: dict[int, int] = {}
         for source in dict.fromkeys([*self.structures, *(g.owner for g in self.made)]):
             for finish in tuple(source.finishes):
                 of = tuple(self.made[g] for g in finish.of if g in self.made)
@@ -216,7 +217,10 @@ class Copier:
                     continue
                 at = self._point(finish.at, source) if finish.at is not None else None
                 sizes = tuple(self._number("", size, source) for size in finish.sizes)
-                owner.finishes.append(replace(finish, of=of, at=at, sizes=sizes))
+                if finish.run not in runs:
+                    self.it.runs += 1
+                    runs[finish.run] = self.it.runs
+                owner.finishes.append(replace(finish, of=of, at=at, sizes=sizes, run=runs[finish.run]))
         for g, copy in self.made.items():
             copy.finishes |= {name: self._number("", n, g.owner) for name, n in g.finishes.items()}
 

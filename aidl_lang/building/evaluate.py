@@ -85,9 +85,12 @@ def _listed(found: list[Value]) -> Value:
 
 def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
     def made(inner: Env) -> list[Value]:
-        if node.condition is None or truth(it, evaluate(it, node.condition, inner), node.condition):
-            return [evaluate(it, node.element, inner)]
-        return []
+        if node.condition is not None and not truth(it, evaluate(it, node.condition, inner), node.condition):
+            return []
+        element = evaluate(it, node.element, inner)
+        if node.innermost is node or isinstance(element, Nothing):
+            return [element]
+        return list(members(element) or ())
 
     return _of_turns(it, node, env, made)
 

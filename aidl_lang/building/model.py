@@ -202,8 +202,9 @@ class Finish:
 
     of     the geometry whose corner it is; empty for a bare point
     at     the corner, in the frame of the structure that lists it; None for all corners of `of`
-    sizes  radius, or one distance or two
+    sizes  radius, or one distance or two; none for the largest that fits
     text   the corner as it was written
+    run    the same for those that one run of a statement makes
     """
 
     kind: str
@@ -212,6 +213,7 @@ class Finish:
     sizes: tuple[Num, ...]
     text: str
     span: Span
+    run: int = 0
 
 
 @record()
@@ -494,6 +496,8 @@ class Assertion:
     """the condition, to be read again in parts (see building.wording)"""
     outline: Geometry | None = None
     """the outline whose box a constraint foresaw to be as this asks"""
+    is_followed: bool = False
+    """the members of a pattern are where they are on a curve that was solved to another form"""
 
 
 @record(eq=False)

@@ -48,9 +48,19 @@ CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "joins": ("round", "sharp"),
     "caps": ("round", "butt", "square"),
     "start": ("here", "center", "corner"),
+    "radius": ("max",),
+    "size": ("max",),
+    "distance": ("max",),
 }
 """The words that choose how an outline is made; the first is the default."""
-_SYNONYMS = {"miter": "sharp", "mitre": "sharp", "mitred": "sharp", "rounded": "round", "flat": "butt"}
+_SYNONYMS = {
+    "miter": "sharp",
+    "mitre": "sharp",
+    "mitred": "sharp",
+    "rounded": "round",
+    "flat": "butt",
+    "maximum": "max",
+}
 
 
 # --- Outlines made of others -------------------------------------------------------------------------
@@ -141,7 +151,8 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
     if meant is None:
         choices = ", ".join(ticked(allowed))
-        it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[f"it is one of {choices}"])
+        hint = f"it is one of {choices}" if len(allowed) > 1 else f"it is a length, or {choices}"
+        it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[hint])
     return meant
 
 
@@ -248,13 +259,16 @@ def _finish(kind: str) -> Function:
         found = [t for t in targets if t is not None]
         if not found or len(found) < len(targets) or _negative(it, a, node):
             return NOTHING
+        if None in [_word(it, n, v, node) for n, v in a.items() if isinstance(v, TextVal)]:
+            return NOTHING
         sizes = _sizes(it, kind, a, found[0])
+        it.runs += 1
         for target in found:
-            for g in target.of:
+            for g in target.of if sizes else ():
                 g.finishes[_named(target.key, kind)] = sizes[0]
             top = target.of if target.at is None else tuple(map(_outermost, target.of))
             span = it.place(node) or node.span
-            target.owner.finishes.append(Finish(kind, top, target.at, sizes, target.text, span))
+            target.owner.finishes.append(Finish(kind, top, target.at, sizes, target.text, span, it.runs))
         return True
 
     return function
@@ -265,7 +279,9 @@ def _named(key: str, kind: str) -> str:
 
 
 def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
-    """Returns the sizes by the table of exactness; a literal one is a parameter of the first corner."""
+    """Returns the sizes by the table of exactness; a literal one is a parameter of the first corner. The
+    largest that fits, `max`, is none of them.
+    """
     given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
     numbers = [replace(v, expression=spelled_out(v.expression)[0]) for v in given if isinstance(v, Num)]
     if target.of:
@@ -342,7 +358,7 @@ def _outermost(geometry: Geometry) -> Geometry:
     return geometry
 
 
-def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Num | None:
+def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
     """Returns the size of a finish, `plate.top_left.fillet`, by its corner or by the outline that it is part
     of.
     """
@@ -351,7 +367,15 @@ def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env:
         value, key = _base(it, node.value, env)  # type: ignore[assignment]
     while kind is not None and isinstance(value, Geometry):
         if (found := value.finishes.get(_named(key, kind))) is not None:
-            return found if may_read(it, value.owner, node, env) else as_written(found)  # type: ignore[return-value]
+            return found if may_read(it, value.owner, node, env) else as_written(found)
+        if any(f.kind == kind and not f.sizes and value in f.of for f in value.owner.finishes):
+            it.report(
+                "E0526",
+                f"`{node.span.one_line}` is the largest that fits, which only the drawing knows",
+                node,
+                hints=["give it a number to refer to it: of one that is too large the most is told"],
+            )
+            return NOTHING
         value, key = value.container, ""  # type: ignore[assignment]
     return None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from aidl_lang.building import expression as ex
@@ -70,6 +71,18 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     low, high, choices = _domain(it, domain, node)
     path = knob_path(binding.structure, node.name.text)
     value = _from_outside(it, path, written, choices)
+    counts = node in it.program.counts and _is_whole(written)
+    if counts and not _is_whole(value):
+        it.report(
+            "E0909",
+            f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something",
+            node.name,
+            label="a whole number",
+            hints=["give a whole number"],
+        )
+        value = written
+    if counts and low is not None and high is not None:
+        low, high = math.ceil(low), math.floor(high)
     where = "written" if value is written else "set from outside"
     fits = _is_allowed(value, low, high, choices)
     if not fits:
@@ -99,7 +112,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
             low,
             high,
             choices,
-            step.value if isinstance(step, Num) else None,
+            step.value if isinstance(step, Num) else 1.0 if counts and not choices else None,
             unit,
             node.doc,
             node.span,
@@ -108,6 +121,10 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     if isinstance(value, Num):
         return Num(value.expression, value.dimension, Exactness.PARAM)
     return TextVal(value.value, is_param=True) if isinstance(value, TextVal) else value
+
+
+def _is_whole(value: Value) -> bool:
+    return isinstance(value, Num) and value.dimension is None and value.value.is_integer()
 
 
 def _unit_of_range(node: ast.Param) -> Fix | None:

@@ -7,16 +7,16 @@ instantiated once; the other members are copies over the same unknowns.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import KINDS, Way, way_along
+from aidl_lang.building.along import FREE_KINDS, KINDS, Way, way_along
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.primitives import defining, xy
 from aidl_lang.building.state import Env, Interpreter
@@ -73,6 +73,21 @@ class _Call:
             message = f"this pattern has {members:.0f} members; at most {most} are allowed"
             self.it.report("E0805", message, self.node)
         return members > most
+
+    def check_followed(self, off: Sequence[Expression]) -> None:
+        """Has it looked at in the drawing that these are 0, as they are at the first guesses."""
+        parts = tuple(Comparison("==", e, ex.ZERO, LENGTH) for e in off)
+        self.it.assertions.append(
+            Assertion(
+                self.env.here,
+                Condition("and", parts),
+                None,
+                self.node.span.one_line,
+                self.it.place(self.node) or self.node.span,
+                ", ".join(self.env.scope.labels),
+                is_followed=True,
+            )
+        )
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""
@@ -287,11 +302,21 @@ def _along(call: _Call) -> Value:
     turns = call.a.get("turn") is not False
     about = call.centre()
 
+    off: list[Expression] = []
+
     def motion(i: int) -> Motion:
-        to, heading = way.at(ex.add(first, ex.mul(ex.constant(float(i)), step)))
+        place = ex.add(first, ex.mul(ex.constant(float(i)), step))
+        if way.is_free:
+            to, heading, unmet = way.followed(place)
+            off.extend(unmet)
+        else:
+            to, heading = way.at(place)
         return turned(heading, about, to) if turns else Motion(about, to)
 
-    return call.laid_out(((i,), motion(i)) for i in range(n))
+    made = call.laid_out(((i,), motion(i)) for i in range(n))
+    if off := [e for e in off if not e.is_constant]:
+        call.check_followed(off)
+    return made
 
 
 _MOST_ALONG = 20_000
@@ -303,10 +328,10 @@ def _way(call: _Call) -> Way | None:
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]
-    other = next((c.type for c in curves if c.type not in KINDS), None)
+    other = next((c.type for c in curves if c.type not in KINDS | FREE_KINDS), None)
     if other is not None or any(g.recipe is not None for g in given):
         call.wrong(
-            f"`along` follows lines, arcs and circles, and this is {with_article(other or given[0].type)}",
+            f"`along` follows curves, and this is {with_article(given[0].type)}",
             "follow a `path` or `polyline` near it, or what the outline is made of",
         )
         return None

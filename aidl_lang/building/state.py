@@ -147,6 +147,8 @@ class Interpreter:
     errors: int = 0
     entities: int = 0
     turns: int = 0
+    runs: int = 0
+    """of statements that finish corners"""
 
     # --- Reporting -----------------------------------------------------------------------------
 

@@ -69,8 +69,11 @@ cut(of, by)
 clip(of, by)
 tiled(of, within, by: point, row: point?, angle: angle?, start: text?, whole: bool?, width: length?)
 fillet(of, radius: length)
+fillet(of, radius: text)
 chamfer(of, size: length, second: length?)
 chamfer(of, distance: length, second: length?)
+chamfer(of, size: text)
+chamfer(of, distance: text)
 mirror(x, about)
 copy(x, by: point?, angle: angle?, about: point?, scale: number?)
 copy(x, angle: angle?, scale: number?, center: point)
@@ -163,7 +166,7 @@ FINISHES = frozenset({"fillet", "chamfer"})
 WORDS = frozenset(
     (
         *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
-        *("sharp", "miter", "round", "butt", "square", "here", "corner"),
+        *("sharp", "miter", "round", "butt", "square", "here", "corner", "max"),
         *("close", "medium", "loose", "tabs", "notches"),
     )
 )

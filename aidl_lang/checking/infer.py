@@ -168,7 +168,8 @@ class Inference:
         if node.condition is not None:
             self.test(node.condition)
         element = self.fact(node.element)
-        return replace(element.listed(), reads=element.reads | reads)
+        listed = element.listed() if node.innermost is node else element
+        return replace(listed, reads=element.reads | reads)
 
     def _for_arguments(self, node: ast.ForArguments) -> Fact:
         reads = self.iterable(node.iterable, len(node.variables)).reads
@@ -276,6 +277,10 @@ class Inference:
         for side in (left, right):
             self.serves(side, common, node)
         return common
+
+    def is_measured(self, symbol: Symbol) -> bool:
+        """Tells whether the number that a name stands for is used as a length or an angle."""
+        return symbol in self._served
 
     def serves(self, fact: Fact, dimension: MaybeDimension, node: ast.Node) -> None:
         """Reports a number without a unit that is used both as a length and as an angle."""

@@ -99,8 +99,9 @@ class _Walker:
                 for branch in (then, otherwise):
                     if isinstance(branch, ast.Call):
                         self._made(branch, None, site)
-            case ast.Comprehension(element=ast.Call() as element):
-                self._made(element, None, site)
+            case ast.Comprehension():
+                if isinstance(element := value.innermost.element, ast.Call):
+                    self._made(element, None, site)
             case ast.List(items):
                 for item in items:
                     if isinstance(item, ast.Call):

@@ -184,21 +184,27 @@ class Violation:
         return move.statement(f"constrain {left} == {right}")
 
     def _moved(self, move: Relocation) -> str | None:
-        item = self.target.node
-        match item:
+        text = self._said_there(move)
+        if text is None:
+            return None
+        allowing = {a.span.text for n in (self.whole, self.target.node) for a in getattr(n, "allowing", ())}
+        return move.statement(" ".join([*sorted(allowing), text]))
+
+    def _said_there(self, move: Relocation) -> str | None:
+        """Returns the constraint with everything in it called as the ancestor knows it."""
+        match self.target.node:
             case ast.Prefer(value, weight):
                 text = move.expression(value)
-                if text is not None and weight is not None:
-                    heavy = move.expression(weight)
-                    text = None if heavy is None else f"{text} weight {heavy}"
-                return move.statement(f"prefer {text}") if text is not None else None
+                if text is None or weight is None:
+                    return text and f"prefer {text}"
+                heavy = move.expression(weight)
+                return heavy and f"prefer {text} weight {heavy}"
             case ast.Equation(left, right):
                 sides = move.expression(left), move.expression(right)
-                return move.statement(f"constrain {sides[0]} == {sides[1]}") if None not in sides else None
+                return f"constrain {sides[0]} == {sides[1]}" if None not in sides else None
             case ast.ExpressionStatement(value):
                 text = move.expression(value)
-                word = "constrain " if self._operation is None else ""
-                return move.statement(f"{word}{text}") if text is not None else None
+                return text and (f"constrain {text}" if self._operation is None else text)
             case _:
                 return None
 

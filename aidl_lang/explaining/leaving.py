@@ -41,17 +41,19 @@ class _Detail:
         return is_drawn and not self.constraints and self.moved <= _STILL
 
 
-def leaving_notes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
+def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
     """Yields a warning for each structure of which a part was taken away from the rest by constraints that a
-    structure around it holds.
+    structure around it holds, and for what else was left behind.
     """
     written = dict(zip(lowered.unknowns, map(float, lowered.problem.initial), strict=True))
     solved = dict(zip(lowered.unknowns, map(float, solution.values), strict=True))
-    naming: dict[Unknown, list[Constraint]] = {}
+    naming: dict[Unknown | Structure, list[Constraint]] = {}
     for stated in filter(None, lowered.stated):
         for comparison in stated.comparisons:
             for unknown in comparison.spoken_of:
                 naming.setdefault(unknown, []).append(stated)
+            for structure in comparison.boxes:
+                naming.setdefault(structure, []).append(stated)
     places: dict[Structure, dict[Geometry, list[Unknown]]] = {}
     for unknown in written:
         holder = unknown.holder
@@ -73,6 +75,9 @@ def leaving_notes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
         left = [detail for detail in left if detail.moved > _FAR * extent]
         if left and stayed:
             yield _left(structure, left, stayed)
+    from aidl_lang.explaining.staying import staying_notes
+
+    yield from staying_notes(root, lowered, solution, naming)
 
 
 def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> float:

@@ -38,6 +38,7 @@ _WORD = "assert"
 
 
 def solution_notes(
+    root: Structure,
     lowered: Lowered,
     solution: Solution,
     freedom: Freedom,
@@ -55,7 +56,7 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
-    found += leaving_notes(lowered, solution)
+    found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
         from aidl_lang.explaining.repetitions import repetition_notes
@@ -105,12 +106,16 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
     """
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
+    if assertion.is_followed:
+        return _lost_way(assertion)
     message = assertion.message or f"`{assertion.text}` does not hold"
     where = f" [{assertion.label}]" if assertion.label else ""
     false = list(_false_parts(assertion.condition, evaluate))
     wording = assertion.wording
     shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
     if assertion.outline is not None:
+        if _is_fitted(false, assertion.outline, evaluate):
+            return None
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
     return Diagnostic(
@@ -122,6 +127,28 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         (_hint(assertion, false, places),),
         _stated(assertion),
     )
+
+
+def _lost_way(assertion: Assertion) -> Diagnostic:
+    """Returns the diagnostic for a pattern along a curve that came out in another form."""
+    return Diagnostic(
+        "E0608",
+        f"the members of `{assertion.text}` are not at equal ways: the curve was solved to another form",
+        assertion.span,
+        "laid out along the curve as it was written",
+        hints=("write the points of the curve near to where the constraints bring them",),
+    )
+
+
+def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluator) -> bool:
+    """Tells whether the box of an outline is off by no more than its curves are: parallel curves of cubics
+    and ellipses are fitted, and true only towards the axes of the drawing, while a structure may be turned.
+    """
+    from aidl_lang.geometry.strips import FIT
+
+    assert isinstance(evaluate.measure, _Measure)
+    slack = FIT * evaluate.measure.extent(outline)
+    return all(abs(evaluate(c.left) - evaluate(c.right)) <= slack for c in false)
 
 
 def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
@@ -247,6 +274,10 @@ class _Measure:
             curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
         left, bottom, right, top = union_bounds([bounds(c) for c in curves])
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
+
+    def extent(self, outline: Geometry) -> float:
+        left, bottom, right, top = union_bounds([bounds(c) for c in self._curves(outline.path)])
+        return max(right - left, top - bottom)
 
     def is_drawn(self, outline: Geometry) -> bool:
         """Tells whether an outline did not come out empty, which is told by itself."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
@@ -394,9 +395,18 @@ def _neat(target: float, onward: float, slack: float) -> float:
 # --- Other edits -----------------------------------------------------------------------------------
 
 
+_ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(constrain\s*)?\Z", re.IGNORECASE)
+"""`@allow(…)` right before what a constraint states, and all between them."""
+
+
 def left_out(constraint: Constraint) -> Fix | None:
-    """Removes a statement that has a line for itself, or stands between semicolons."""
+    """Removes a statement that has a line for itself, or stands between semicolons, with the `@allow(…)` that
+    is said of it.
+    """
     span, text = constraint.span, constraint.span.source.text
+    allowing = _ALLOWING.search(text, 0, span.start)
+    if allowing is not None:
+        span = replace(span, start=allowing.start())
     line = text.rfind("\n", 0, span.start) + 1
     end = text.find("\n", span.end) + 1 or len(text)
     before, after = text[line : span.start], text[span.end : end]

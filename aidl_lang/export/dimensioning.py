@@ -18,6 +18,7 @@ from aidl_lang.export.dimension_sheet import Sheet, broken
 from aidl_lang.export.marks import Group, Text
 from aidl_lang.geometry.curves import Arc, Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions
+from aidl_lang.geometry.dimensions.clipped import is_clipped
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, bounds, point
@@ -43,7 +44,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
     be read when the whole is seen.
     """
-    wanted = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    wanted = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
     size = max(box[2] - box[0], box[3] - box[1])
     if not wanted or not size > 0:
         return box, ()
@@ -89,8 +90,13 @@ def dimensioned_to_scale(
     return whole, (*groups, *more), left
 
 
-def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
-    """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts."""
+def visible(
+    wanted: Sequence[tuple[Dimension, ...]], model: SolvedModel, sheet: Sheet
+) -> list[tuple[Dimension, ...]]:
+    """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts, and a
+    constraint mention what is clipped away.
+    """
+    stay = ("hand", "overall") if is_clipped(model.root) else ("hand", "overall", "constraint")
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
     def ends_at_something(points: tuple[Vec, ...]) -> bool:
@@ -100,7 +106,7 @@ def visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple
         group
         for group in wanted
         if not isinstance(group[0], Length)
-        or group[0].origin in ("hand", "constraint", "overall")
+        or group[0].origin in stay
         or (ends_at_something(group[0].start) and ends_at_something(group[0].end))
     ]
 

@@ -2,56 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.prose import listed, ticked
-from aidl_lang.common.records import record
 from aidl_lang.export import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_unlined
 
-
-@record()
-class _Limit:
-    """Attributes that a file has no place for, by name or as written, and why."""
-
-    names: Sequence[str]
-    why: str
-
-
 _UNLINED = "stroke(none)"
-_OF_LINES = ("stroke", "dash", "shade", "edges", "halo")
-_OF_CUTTERS = _Limit(
-    ("stroke", "dash", "opacity", "shade", "edges", "halo"),
-    "a cutter follows whole lines of one width, and fills nothing",
-)
-_OF_FORMATS = {
-    ".step": _Limit(_OF_LINES, "STEP holds shapes with their colours, and its lines have no width"),
-    ".stl": _Limit(("stroke", "dash", "opacity", "shade", "edges", "halo"), "STL holds bare shapes"),
-    ".3mf": _Limit(_OF_LINES, "3MF holds solids with their colours, and draws no lines"),
-    ".dxf": _Limit(
-        ("opacity", "shade", _UNLINED, "edges", "halo"), "DXF holds outlines, and nothing is filled"
-    ),
+_WITHOUT: Mapping[str, str] = {
+    "stroke": "cutter .step .stl .3mf",
+    "dash": "cutter .step .stl .3mf",
+    "opacity": "cutter .stl .dxf",
+    "shade": "cutter .step .stl .3mf .dxf",
+    _UNLINED: ".dxf",
+    "edges": "cutter .step .stl .3mf .dxf",
+    "halo": "cutter .step .stl .3mf .dxf",
 }
-_OF_FORMATS[".stp"] = _OF_FORMATS[".step"]
+"""By attribute, or one as written, the files that have no place for it; all others are drawn so."""
+_WHY: Mapping[str, str] = {
+    "cutter": "a cutter follows whole lines of one width, and fills nothing",
+    ".step": "STEP holds shapes with their colours, and its lines have no width",
+    ".stl": "STL holds bare shapes",
+    ".3mf": "3MF holds solids with their colours, and draws no lines",
+    ".dxf": "DXF holds outlines, and nothing is filled",
+}
 
 
 def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
     """Returns a note if the program states looks that such a file is without. `cuts`: a cutter may
     read the format.
     """
-    limit = _OF_CUTTERS if cuts and job.options.for_cutter else _OF_FORMATS.get(suffix)
-    stated = list(_stated(job.model.root, limit.names)) if limit is not None else []
-    if limit is None or not stated:
+    file = "cutter" if cuts and job.options.for_cutter else suffix.replace(".stp", ".step")
+    lost = [name for name, files in _WITHOUT.items() if file in files.split()]
+    stated = list(_stated(job.model.root, lost))
+    if not stated:
         return []
-    names = [name for name in limit.names if any(_states(holder, name) for holder in stated)]
+    names = [name for name in lost if any(_states(holder, name) for holder in stated)]
     counts = "counts" if len(names) == 1 else "count"
     return [
         Diagnostic(
             "N0741",
-            f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {limit.why}",
+            f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}",
             stated[0].span,
             "stated here" if len(stated) == 1 else f"stated here first, {len(stated)} times in all",
             hints=("pictures (.svg, .png, .pdf) are drawn so",),

@@ -14,6 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
@@ -33,13 +34,6 @@ class Measures:
     centroid: Vec
     box: Bounds
     loops: int
-
-
-@cache
-def gauss(count: int) -> tuple[tuple[float, float], ...]:
-    """Returns nodes and weights of Gauss-Legendre quadrature over 0..1."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))
 
 
 def measure(region: Region) -> Measures:

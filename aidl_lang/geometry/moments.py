@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import math
 
+from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, point, round_range
-from aidl_lang.geometry.measures import gauss, moments_about_start
+from aidl_lang.geometry.measures import moments_about_start
 from aidl_lang.geometry.region import Loop, Region
 
 _ISOTROPIC = 1e-9

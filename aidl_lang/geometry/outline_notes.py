@@ -133,6 +133,19 @@ def all_wall(g: SolvedGeometry, recipe: Recipe, depth: float) -> Diagnostic:
 # --- Corners -------------------------------------------------------------------------------------
 
 
+def no_room(f: Finish, corner: Corner, told: SolvedStructure) -> Diagnostic:
+    """Returns the diagnostic on a finish that is to be as large as fits where nothing does."""
+    why = "its curves meet there without an angle" if corner.is_cusp else "other corners take its edges up"
+    return Diagnostic(
+        "E0527",
+        f"there is no room for the {f.kind} of `{f.text}` at {at(corner.at)} in `{told.path}`: {why}",
+        f.span,
+        "nothing fits",
+        hints=("leave it out, or make the other ones smaller",),
+        points=(corner.at,),
+    )
+
+
 def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
     """Returns the diagnostic on a place where no two curves end, or where they run on smoothly."""
     if f.at is None:

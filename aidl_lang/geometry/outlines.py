@@ -73,6 +73,7 @@ class _Outliner:
     made         by path, what was worked out already: outlines as they are drawn, before finishing
     derived      the paths of those that had no curves before
     carried_out  the finishes of the structure at hand, with their corners
+    sizes        those of finishes that were carried out
     """
 
     finishes: tuple[Finish, ...]
@@ -81,6 +82,7 @@ class _Outliner:
     made: dict[str, SolvedGeometry] = field(default_factory=dict)
     derived: set[str] = field(default_factory=set)
     carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
+    sizes: dict[Finish, tuple[float, ...]] = field(default_factory=dict)
     misfits: list[Misfit] = field(default_factory=list)
 
     def structure(self, s: SolvedStructure, around: Region | None = None) -> SolvedStructure:
@@ -121,9 +123,9 @@ class _Outliner:
         """
         left = dict(self.carried_out)
         for f in own:
-            yield replace(f, corners=tuple(left.pop(f, ())))
+            yield replace(f, corners=tuple(left.pop(f, ())), sizes=self.sizes.get(f, f.sizes))
         for f, at in left.items():
-            yield replace(f, corners=tuple(at))
+            yield replace(f, corners=tuple(at), sizes=self.sizes.get(f, f.sizes))
 
     # --- Outlines made of others -------------------------------------------------------------------
 
@@ -280,10 +282,11 @@ class _Outliner:
                 (k for k, w in enumerate(works) if math.dist(w.corner.at, corner.at) <= near), None
             )
             if earlier is None:
-                works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1])))
+                works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1]) if f.sizes else (0.0, 0.0)))
                 reasons.append(f)
             elif told is not None and f in finishes and f.span != reasons[earlier].span:
                 self.notes.append(notes.twice(f, reasons[earlier], corner, told))
+        works, reasons = self._fitted(leaves, works, reasons, told)
         result = finish([c for _, c in leaves], works)
         if told is not None:
             if result.failures:
@@ -291,7 +294,26 @@ class _Outliner:
             for made in result.finished:
                 reason = reasons[works.index(made.work)]
                 self.carried_out.setdefault(reason, []).append(made.work.corner.at)
+                self.sizes[reason] = reason.sizes or made.work.sizes[:1]
         return _rebuilt(geometry, leaves, result) if result.finished else list(geometry)
+
+    def _fitted(
+        self, leaves: Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
+    ) -> tuple[list[Work], list[Finish]]:
+        """Returns the works with the sizes of those that are to be as large as fits, without those of which
+        nothing does.
+        """
+        if all(f.sizes for f in reasons):
+            return works, reasons
+        from aidl_lang.geometry.fitting import fitted
+
+        curves = [c for _, c in leaves]
+        works = fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
+        fit = [(w, f) for w, f in zip(works, reasons, strict=True) if w.sizes[0] > 0]
+        without = [(w, f) for w, f in zip(works, reasons, strict=True) if not w.sizes[0] > 0]
+        if told is not None and without:
+            self.notes.append(notes.no_room(without[0][1], without[0][0].corner, told))
+        return [w for w, _ in fit], [f for _, f in fit]
 
     def _own(
         self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
@@ -303,7 +325,7 @@ class _Outliner:
             corners = _corners(f, leaves, near)
             if not corners and told is not None:
                 self.notes.append(notes.no_corner(f, leaves, near))
-            if max(f.sizes) > 0:
+            if not f.sizes or max(f.sizes) > 0:
                 yield from ((f, corner) for corner in corners)
 
     def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:

@@ -84,6 +84,8 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
     """Returns the number in the call that is the size of a fillet or chamfer, if no constraint mentions
     it.
     """
+    if not finish.sizes:
+        return None
     size, *more = finish.sizes
     rows = (c for constraint in model.constraints for c in constraint.comparisons)
     if more or size.expression.payload in set(ex.unknowns(side for c in rows for side in (c.left, c.right))):
@@ -288,7 +290,9 @@ class _Reader:
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
         literal = partial(_literal, self.model, finish)
-        return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span, literal=literal)
+        return SolvedFinish(
+            finish.kind, of, at, sizes, finish.text, finish.span, run=finish.run, literal=literal
+        )
 
     def _text(self, g: Geometry) -> SolvedGeometry:
         """Returns a text with its characters as parts, and the curves of each as theirs."""

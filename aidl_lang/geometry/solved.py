@@ -65,7 +65,8 @@ class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
 
     `corners` are the places where it was carried out, `literal` tells the number that its size is written as,
-    where nothing else depends on it.
+    where nothing else depends on it. Without `sizes` it is as large as fits, the same at all corners of a
+    `run` of a statement.
     """
 
     kind: str
@@ -75,6 +76,7 @@ class Finish:
     text: str
     span: Span
     corners: tuple[Vec, ...] = ()
+    run: int = 0
     literal: Callable[[], ast.Number | None] = field(default=_unknown, compare=False, repr=False)
 
     def __getstate__(self) -> dict[str, object]:

@@ -11,9 +11,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, ends, part, point, reverse, second_derivative
+from aidl_lang.geometry.evaluate import (
+    bounds,
+    derivative,
+    ends,
+    extreme_parameters,
+    part,
+    point,
+    reverse,
+    second_derivative,
+)
 from aidl_lang.geometry.finishing import direction
 
 Outline = tuple[Piece, ...]
@@ -23,6 +33,8 @@ Strip = tuple[Outline, ...]
 FIT = 1e-5
 """Largest error of a fitted parallel curve, relative to its distance plus the extent of the curve."""
 _DEEPEST = 6
+_SHORTEST = 1e-6
+"""Shares of a curve that are no part of their own."""
 _BEND = 0.3
 """Radians that a part may turn under a straight top."""
 _SHARPEST = math.radians(168.5)
@@ -76,12 +88,14 @@ def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
 
 def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
     """Yields strips in parts short enough to fit; their far side is straight where the curve bends closer
-    than the distance.
+    than the distance. A part ends where the curve is level or upright, and there the fit is exact: the box of
+    the parallel curve is that of the curve moved out.
     """
-    middle = point(curve, 0.5)
-    scale = abs(left) + sum(math.dist(p, middle) for p in ends(curve))
-    count = 1 if isinstance(curve, Bezier) else 4
-    stack = [(k / count, (k + 1) / count, 0) for k in reversed(range(count))]
+    x0, y0, x1, y1 = bounds(curve)
+    scale = abs(left) + max(x1 - x0, y1 - y0)
+    inner = sorted(t for t in extreme_parameters(curve) if _SHORTEST < t < 1 - _SHORTEST)
+    cuts = [t for t, after in pairwise([*inner, 1.0]) if after - t > _SHORTEST]
+    stack = [(t0, t1, 0) for t0, t1 in pairwise([0.0, *cuts, 1.0])][::-1]
     while stack:
         t0, t1, depth = stack.pop()
         bent = [_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)]

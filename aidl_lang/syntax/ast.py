@@ -109,12 +109,23 @@ class List(Node):
 
 @record(eq=False, repr=False)
 class Comprehension(Node):
-    """`[element for variable in iterable if condition]`"""
+    """`[element for variable in iterable if condition]`. A further `for` in the brackets is the element of
+    the one before it, and `is_joined`: its members are members of the whole.
+    """
 
     element: Expression
     variables: tuple[Identifier, ...]
     iterable: Expression
     condition: Expression | None
+    is_joined: bool = False
+
+    @property
+    def innermost(self) -> Comprehension:
+        """The last `for` in the brackets, whose element is that of the whole."""
+        inner = self
+        while isinstance(inner.element, Comprehension) and inner.element.is_joined:
+            inner = inner.element
+        return inner
 
 
 @record(eq=False, repr=False)

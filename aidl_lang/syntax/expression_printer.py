@@ -139,6 +139,11 @@ class ExpressionPrinter:
         """Returns the expression behind `in`: a range without parentheses, or a sum."""
         return self.expression(node, CONDITION if isinstance(node, ast.Range) else SUM)
 
+    def _generator_clause(self, node: ast.Comprehension) -> PrintDocument:
+        variables = ", ".join(map(self.name, node.variables))
+        test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
+        return doc(f" for {variables} in ", self.iterable(node.iterable), test)
+
     def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> PrintDocument:
         items = tuple(
             doc(f"{self.name(a.name)}: ", self.expression(a.value)) if a.name else self.expression(a.value)
@@ -186,10 +191,12 @@ class ExpressionPrinter:
             case ast.List():
                 return ATOM, doc(BracketGroup("[", tuple(map(self.expression, node.items)), "]"))
             case ast.Comprehension():
-                variables = ", ".join(map(self.name, node.variables))
-                test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
-                element, iterable = self.expression(node.element), self.iterable(node.iterable)
-                return ATOM, doc("[", element, f" for {variables} in ", iterable, test, "]")
+                inner, loops = node.innermost, [self._generator_clause(node)]
+                while node is not inner:
+                    assert isinstance(node.element, ast.Comprehension)
+                    node = node.element
+                    loops.append(self._generator_clause(node))
+                return ATOM, doc("[", self.expression(inner.element), *loops, "]")
             case ast.ForArguments():
                 variables = ", ".join(map(self.name, node.variables))
                 head = doc(f"for {variables} in ", self.iterable(node.iterable))

@@ -184,15 +184,24 @@ class ExpressionBuilder:
     def filter(self, start: int, end: int, test: ast.Expression) -> ast.Expression:
         return test
 
+    def generator_clause(self, start: int, end: int, *parts: Any) -> tuple[int, tuple[Any, ...]]:
+        return start, parts
+
     def generator(
-        self,
-        start: int,
-        end: int,
-        element: ast.Expression,
-        variables: tuple[ast.Identifier, ...],
-        iterable: ast.Expression,
-        condition: ast.Expression | None = None,
+        self, start: int, end: int, element: ast.Expression, *clauses: tuple[int, tuple[Any, ...]]
     ) -> _Generator:
+        """Builds `a for i in b for j in c` as the list for `i` of the members of the lists for `j`."""
+        loops = []
+        for at, (*both, last) in clauses:
+            condition = last if len(both) % 2 == 0 else None
+            names = both if condition is not None else [*both, last]
+            for k in range(0, len(names), 2):
+                is_last = k + 2 == len(names)
+                loops.append((at, names[k], names[k + 1], condition if is_last else None))
+        for at, variables, iterable, condition in reversed(loops[1:]):
+            span = self.span(at, end)
+            element = ast.Comprehension(element, variables, iterable, condition, True, span=span)
+        _, variables, iterable, condition = loops[0]
         return _Generator(element, variables, iterable, condition, self.span(start, end))
 
 

@@ -16,8 +16,10 @@ from aidl_lang.geometry.clipping import clipped
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
+from aidl_lang.geometry.fitting import fitted
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length, perimeter
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset, thick
 from aidl_lang.geometry.region import Face, Loop, Region
 from tests.amount import tries
@@ -207,6 +209,31 @@ def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
     assert area(ours) == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
 
 
+@tries(40)
+@given(stars())
+def test_the_largest_fillet_of_a_polygon(corners: list[Vec]) -> None:
+    """Two tangents share each edge: the least of edge / (cot half one angle + cot half the other)."""
+    lines = [Line(p, q) for p, q in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    works = [Work("fillet", c, (0.0, 0.0)) for c in corners_of(lines, 1e-6)]
+    assume(len(works) == len(lines))
+    shares = {c.corner.at: 1 / math.tan(abs(c.corner.turn) / 2) for c in works}
+    most = min(math.dist(p, q) / (shares[p] + shares[q]) for p, q in map(ends, lines))
+    made = fitted(lines, works, [1] * len(works), 100.0)
+    assert made[0].sizes[0] == pytest.approx(most, rel=1e-6)
+    assert not finish(lines, made).failures
+    larger = [sized(w, w.sizes[0] * (1 + 1e-6)) for w in made]
+    assert finish(lines, larger).failures
+
+
+def test_runs_that_grow_together() -> None:
+    """Two share the short side, then the third takes what is left of the others beside a fillet of 5."""
+    lines = [Line(p, q) for p, q in pairwise([(0, 0), (60, 0), (60, 40), (0, 40), (0, 0)])]
+    works = {c.at: Work("fillet", c, (5.0, 5.0)) for c in corners_of(lines, 1e-6)}
+    runs: dict[Vec, int] = {(0, 0): 1, (0, 40): 2, (60, 40): 3, (60, 0): 0}
+    made = fitted(lines, list(works.values()), [runs[p] for p in works], 60.0)
+    assert {w.corner.at: w.sizes[0] for w in made} == {(0, 0): 20, (0, 40): 20, (60, 40): 35, (60, 0): 5}
+
+
 # --- Strokes -------------------------------------------------------------------------------------------
 
 
@@ -235,6 +262,22 @@ def test_stroke_of_an_arc_wider_than_its_radius() -> None:
     assert area(thick(bow, 6, "butt")) == pytest.approx(math.pi * 25 / 2)
     theirs = shapely.LineString(points(bow[0], np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
     assert area(thick(bow, 6)) == pytest.approx(theirs.area, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        Ellipse((3, 1), 33, 20, 0.35),
+        Bezier((0, 0), (10, 40), (50, 30), (60, 3)),
+        Bezier((0, 0), (70, 50), (-30, 50), (40, 0)),
+    ],
+)
+def test_stroke_of_a_free_curve_has_its_box_moved_out(curve: Piece) -> None:
+    """Parallel curves are fitted, yet true where they are level or upright."""
+    fine = points(curve, np.linspace(0, 1, 400_001))
+    ours = thick([curve], 5).faces[0].outer.pieces
+    theirs = [*(fine.min(axis=0) - 2.5), *(fine.max(axis=0) + 2.5)]
+    assert union_bounds([bounds(p) for p in ours]) == pytest.approx(tuple(theirs), abs=1e-8)
 
 
 # --- Hulls and clips -----------------------------------------------------------------------------------

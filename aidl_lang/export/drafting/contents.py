@@ -109,7 +109,7 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
 
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
-    stated = visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    stated = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
     done = completed(drawing, stated)
     return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
 

@@ -13,6 +13,7 @@ from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.geometry.curves import Arc, Circle
+from aidl_lang.geometry.dimensions.clipped import left_of
 from aidl_lang.geometry.dimensions.constraints import by_hand, stated_lengths
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, length_along
 from aidl_lang.geometry.dimensions.fields import field_sizes
@@ -54,7 +55,7 @@ def dimensions(model: SolvedModel, drawing: Drawing) -> list[tuple[Dimension, ..
     once. The more important come first, that of the whole before all.
     """
     tolerance = 1e-6 * drawing.size
-    stated = _grouped([*overall(drawing), *model.sizes], tolerance)
+    stated = _grouped([*overall(drawing), *left_of(model.sizes, model.root)], tolerance)
     # A diameter tells width and height of what is round.
     rounds = [g[0].curve for g in stated if isinstance(g[0], Roundness) and isinstance(g[0].curve, Circle)]
     stated = [

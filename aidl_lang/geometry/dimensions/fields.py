@@ -229,7 +229,7 @@ def _fillets(
     """Yields the radii of rounded corners, at the arcs that were drawn for them."""
     arcs = [c for g in read.drawn for c in g.curves() if isinstance(c, Arc)] if read.finishes else []
     for built, done in zip(structure.finishes, read.finishes, strict=False):  # copies have more of them
-        origin = origin_of(built.sizes[0])
+        origin = origin_of(built.sizes[0]) if built.sizes else None
         if done.kind != "fillet" or origin is None:
             continue
         fitting = [a for a in arcs if _same(a.radius, done.sizes[0])]

@@ -109,7 +109,7 @@ class Reader:
             case ast.Comprehension(element, variables, iterable, condition):
                 inner = self.inside(variables)
                 test = inner.key(condition) if condition is not None else ()
-                return ("list", self.key(iterable), inner.key(element), test)
+                return ("members" if node.is_joined else "list", self.key(iterable), inner.key(element), test)
             case ast.ForArguments(variables, iterable, body):
                 return ("for", self.key(iterable), self.inside(variables).key(body))
         plain = [v for v in vars(node).values() if isinstance(v, str | bool | float)]
