@@ -121,6 +121,8 @@ def _calls(variant: Variant, *topics: str) -> str:
     return _joined(lines)
 
 
+_OPTIONAL = re.compile(r", \w+\?")
+
 _GATHERED: Mapping[str, tuple[str, ...]] = {
     "corner": ("bottom_left", "bottom_right", "top_right", "top_left"),
     "edge": ("bottom", "right", "top", "left"),
@@ -162,6 +164,7 @@ def _arguments(variant: Variant, entry: Entry) -> str:
     if all(overload.form.endswith("(of: list)") for overload in entry.overloads):
         forms = ["(a, b, …)"]  # as calls that gather their arguments are written
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
+    forms = [f for f in forms if not any(f == _OPTIONAL.sub("", o) for o in forms if o != f)]
     for name in ("rotatable", *_UNSAID.get(variant, ())):
         forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
     forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
