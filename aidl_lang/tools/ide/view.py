@@ -100,6 +100,11 @@ class View:
         return Span(self.source, start, end)
 
 
+def hasty(settings: Settings = SETTINGS) -> Settings:
+    """Returns the settings for what is shown for a moment: why it does not hold is not searched for."""
+    return replace(settings, solving=replace(settings.solving, explain=False))
+
+
 def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
     """Checks a program. Never raises for its contents."""
     source = SourceFile(path.name, text)

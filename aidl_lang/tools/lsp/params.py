@@ -60,8 +60,11 @@ class DraggedPoint:
 
 @frozen(kw_only=True)
 class Try(OfVersion):
+    """`rests` tells that nothing newer is on the way: what is wrong is then explained."""
+
     knobs: Values = field(factory=dict)
     drag: DraggedPoint | None = None
+    rests: bool = False
 
 
 @frozen(kw_only=True)

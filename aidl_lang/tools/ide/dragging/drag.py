@@ -275,7 +275,9 @@ def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> 
 
 
 def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
-    """Tells whether the edited text solves, without new errors, with the point where it was shown."""
+    """Tells whether the edited text solves with the point where it was shown, without errors other than those
+    shown meanwhile.
+    """
     again = edited(view, edits)
     assert again.outcome is not None
     assert view.outcome is not None
@@ -283,11 +285,12 @@ def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: 
     if grip is None or again.outcome.evaluate is None:
         return False
     errors = {d.code for d in again.outcome.diagnostics if d.is_error}
-    if not errors <= {d.code for d in view.outcome.diagnostics}:
+    shown = dragged.view.outcome
+    known = (*view.outcome.diagnostics, *(shown.diagnostics if shown is not None else ()))
+    if not errors <= {d.code for d in known}:
         return False
     if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
         return True
     # A drawing that the text does not place may move as a whole.
-    shown = dragged.view.outcome
     is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
     return is_same_shape and not _is_slide(view, grip.id)

@@ -85,7 +85,8 @@ class _Requests:
 
         def view() -> View:
             if given.drag is None:
-                return tried(asked.view, given.knobs, document.memory, self.server.limits)
+                limits = self.server.limits
+                return tried(asked.view, given.knobs, document.memory, limits, rests=given.rests)
             made = drag(asked.view, given.drag.id, given.drag.to)
             if isinstance(made, Refusal):
                 raise JsonRpcException(made.reason, FAILED)
