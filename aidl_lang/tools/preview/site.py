@@ -22,7 +22,8 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from aidl_lang.tools.preview.host import LONGEST, Host, Page
+from aidl_lang.tools.preview.host import LONGEST, Host
+from aidl_lang.tools.preview.page import Page
 from aidl_lang.tools.preview.watching import watch
 
 PANE = Path(__file__).parent / "pane"
