@@ -184,16 +184,15 @@ class _Tries:
             if not (likely or key in self._shown):
                 found = _places(self.view, values)
             elif (outcome := self.run(values).outcome) is not None and outcome.status == "solved":
-                assert outcome.built is not None and outcome.evaluate is not None
+                assert outcome.built is not None
+                assert outcome.evaluate is not None
                 found = {each.id: each.at(outcome.evaluate) for each in grips(outcome.built)}
             else:
                 found = {}
             self._places = {**dict(list(self._places.items())[1 - _KEPT :]), key: found}
         return self._places[key].get(grip)
 
-    def nearest(
-        self, grip: str, path: str, values: Mapping[str, float], to: Vec
-    ) -> tuple[float, Vec] | None:
+    def nearest(self, grip: str, path: str, values: Mapping[str, float], to: Vec) -> tuple[float, Vec] | None:
         """Returns the value of a param, beside the given ones of others, that brought a point nearest to a
         place, and where that was.
         """
