@@ -3,7 +3,8 @@
  */
 
 /**
- * The innermost elements that are written on a line of the document: those whose place has the fewest lines.
+ * The innermost elements that are written on a line of the document: those whose place has the fewest lines. The whole
+ * program is only meant where its first line is.
  * @param {Preview} preview
  * @param {number} line
  * @returns {number[]}
@@ -12,8 +13,9 @@ export function elementsOn({ uri, elements }, line) {
   let least = Infinity;
   /** @type {number[]} */
   let found = [];
-  elements.forEach(({ range, uri: file }, k) => {
+  elements.forEach(({ range, path, uri: file }, k) => {
     if (!range || file !== uri || line < range.start.line || line > lastLine(range)) return;
+    if (!path.includes(".") && line !== range.start.line) return;
     const size = range.end.line - range.start.line;
     if (size < least) [least, found] = [size, []];
     if (size === least) found.push(k);
