@@ -135,7 +135,7 @@ def run(
     return replace(view, outcome=outcome, drawn=drawn, params=params)
 
 
-def edited(view: View, edits: Iterable[Edit]) -> View:
+def edited(view: View, edits: Iterable[Edit], settings: Settings = SETTINGS) -> View:
     """Returns the view of the text with edits made, run with the same values from outside."""
     changed = look(view.path, applied(view.source.text, edits), view.world)
-    return run(changed, params=view.params)
+    return run(changed, params=view.params, settings=settings)

@@ -66,7 +66,7 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
         if value is not None:
             values[best] = value
             at = tries.place(grip.id, values)
-        slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
+            slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
     shown = tries.run(values)
     at = _place_in(shown, grip.id)
     if at is None:
@@ -133,8 +133,8 @@ def _set(view: View, path: str, value: float) -> Iterator[Edit]:
 def _nudge(knob: Knob) -> float:
     value = float(knob.value)
     if knob.low is None or knob.high is None:
-        return _NUDGE * max(1.0, abs(value))
-    nudge = _NUDGE * (knob.high - knob.low) or _NUDGE
+        return knob.step or _NUDGE * max(1.0, abs(value))
+    nudge = knob.step or _NUDGE * (knob.high - knob.low) or _NUDGE
     return nudge if value + nudge <= knob.high else -nudge
 
 
@@ -241,7 +241,7 @@ def _value(
             best = value
             gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
             slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
-    return best
+    return None if best == float(knob.value) else best
 
 
 def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:

@@ -13,7 +13,7 @@ from aidl_lang.tools.agents import knobs
 from aidl_lang.tools.agents.workspace import refusal
 from aidl_lang.tools.ide.preview.places import Places
 from aidl_lang.tools.ide.preview.values import Slider
-from aidl_lang.tools.ide.view import View, edited
+from aidl_lang.tools.ide.view import View, edited, hasty
 
 Value: TypeAlias = float | str | bool
 
@@ -104,7 +104,7 @@ def _require_allowed(knob: Knob, value: Value) -> None:
 
 def _require_sense(view: View, edits: list[Edit]) -> None:
     """Raises RefusalError if the text could no longer be built, as with a length where a number was."""
-    again = edited(view, edits).outcome
+    again = edited(view, edits, hasty()).outcome
     before = view.outcome
     if again is None or before is None or again.model is not None or before.model is None:
         return
