@@ -70,7 +70,8 @@ export class Knobs {
 class Row {
   #isTrying = false;
   #byKey = false;
-  #isTyped = false;
+  /** Whether the host works out what was typed. */
+  isAsking = false;
 
   /**
    * @param {Knob} knob
@@ -140,7 +141,7 @@ class Row {
    * @param {Knob} knob
    */
   tried({ value }) {
-    if (!this.#isTyped) return;
+    if (!this.isAsking) return;
     this.value = value;
     this.control.show(value);
     this.#update();
@@ -155,10 +156,10 @@ class Row {
    * @param {string} text
    */
   async type(text) {
-    this.#isTyped = true;
+    this.isAsking = true;
     this.refuse("");
     const why = await this.listener.type(this.knob, text, !isWritable(this.knob));
-    this.#isTyped = false;
+    this.isAsking = false;
     this.refuse(why);
   }
 
@@ -221,9 +222,6 @@ class Row {
 }
 
 let count = 0;
-/** What the host need not work out. */
-const PLAIN = /^[-\u2212+]?(\d+[.,]?\d*|[.,]\d+)$/;
-
 /** @param {Knob} knob */
 function isWritable(knob) {
   return knob.editable && knob.range !== null;
@@ -314,11 +312,11 @@ function number(row, id) {
   field.addEventListener("input", () => row.refuse(""));
   field.addEventListener("change", () => {
     const text = field.value.trim();
-    const value = PLAIN.test(text) ? Number(text.replace(",", ".").replace("\u2212", "-")) : NaN;
-    if (text === "" || value === Number(row.value)) return show(row.value);
-    if (scale.typed(value) !== value) return void row.type(text); // a sum, of some unit, or out of bounds
-    show(value);
-    row.choose(value);
+    if (text === "" || text === plain(Number(row.value))) show(row.value);
+    else void row.type(text);
+  });
+  field.addEventListener("blur", () => {
+    if (!row.isAsking && !row.isRefused) show(row.value); // what was typed is the value, otherwise written
   });
   show(knob.value);
   const measure = el("span", { class: knob.unit ? "measure with-unit" : "measure" }, field, unit);
