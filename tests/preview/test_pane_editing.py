@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from tests.preview.conftest import Pane
-from tests.preview.messages import RIM, handle, knob, picture, where
+from tests.preview.messages import RIM, URI, handle, knob, picture, where
 
 
 def slider(pane: Pane) -> Locator:

@@ -60,7 +60,7 @@ export class TextPanel {
   }
 
   get isUnsaved() {
-    return this.#editor?.hasTyped === true || this.#state?.saved === false;
+    return this.#editor?.hasTyped === true || this.#telling !== null || this.#state?.saved === false;
   }
 
   /** Another host may be there. */
