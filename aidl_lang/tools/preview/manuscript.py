@@ -136,6 +136,16 @@ class Manuscript:
         """Makes the step again that was undone last. Raises CannotError."""
         self._past.append(self._go(self._future, "redo"))
 
+    def rescue(self) -> Path | None:
+        """Writes what is not saved into a file beside the program's, and returns that; None if all is saved.
+        Raises CannotError.
+        """
+        if self.text is None or self.is_saved:
+            return None
+        beside = self.path.with_name(f"{self.path.name}.unsaved")
+        files.write([(beside, self.text.encode())], self._write)
+        return beside
+
     @property
     def _current(self) -> str:
         if self.text is None:
