@@ -48,9 +48,7 @@ def quantity(text: str) -> Quantity | str:
     values = {unit: value for unit, value in found.items() if isinstance(value, float)}
     if not values:
         plain = _added("", expression)
-        return (
-            plain if isinstance(plain, str) else f"`{text}` is neither a length, an angle nor a plain number"
-        )
+        return plain if isinstance(plain, str) else "that is neither a length, an angle nor a plain number"
     units = set(_SUFFIX.findall(expression))
     unit, value = next(iter(values.items()))
     return Quantity(value, unit if len(values) == 1 else "", units.pop() if len(units) == 1 else None)
