@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import io
 import re
+import zipfile
 from pathlib import Path
 from typing import Any
 
+import ezdxf
+import ezdxf.bbox
 import pytest
 
 from aidl_lang import pipeline
@@ -148,6 +152,39 @@ def test_exports_are_the_files_of_the_command(file: Path, name: str, start: byte
         made = page.answer("aidl/export", format=name, show=["names", "dimensions"])
     assert made["name"] == f"part.{name}"
     assert base64.b64decode(made["data"]).startswith(start)
+
+
+def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
+    file.write_text(
+        "assembly two { @thickness(3mm) solid a { r = square(size: 50) }\n"
+        "@detached @thickness(5mm) solid b at (80, 0) { r = square(size: 50) } }\n",
+        "utf-8",
+    )
+    with serving(file) as client, talking(client, file) as page:
+        page.preview()
+        offered = page.answer("aidl/exports")
+        assert [f["name"] for f in offered["formats"]] == ["svg", "pdf", "png", "dxf", "step", "stl", "3mf"]
+        options = {o["name"]: o for o in offered["options"]}
+        assert options["sheet"]["formats"] == ["svg", "pdf", "png", "dxf"]
+        assert {"kerf", "spacing", "nest", "tile", "theme"} <= options.keys()
+        asked = {"format": "dxf", "options": {"sheet": "120x120", "kerf": "0.2mm", "spacing": ""}}
+        made = page.answer("aidl/export", **asked)
+        assert made["name"] == "part-dxf.zip"
+        with zipfile.ZipFile(io.BytesIO(base64.b64decode(made["data"]))) as archive:
+            assert archive.namelist() == ["part.dxf", "part-2.dxf"]  # one sheet for each thickness
+            sides = [
+                [box.size.x for box in [ezdxf.bbox.extents(ezdxf.read(io.StringIO(text)).modelspace())]]
+                for text in (archive.read(name).decode() for name in archive.namelist())
+            ]
+        assert sides == [[pytest.approx(50.2)], [pytest.approx(50.2)]]
+        for given, why in (
+            ({"sheet": "big"}, "expected a size such as 600x400"),
+            ({"nest": "hope"}, "packed by is one of boxes, outlines, not `hope`"),
+            ({"colour": "red"}, "there is no option `colour`"),
+            ({"nest": "outlines"}, "packs parts on sheets, and there is none"),
+        ):
+            refused = page.answer("aidl/export", format="dxf", options=given)
+            assert why in refused["error"]["message"]
 
 
 def test_what_cannot_be_exported_says_why(file: Path) -> None:
