@@ -173,6 +173,20 @@ def test_a_number_that_can_only_be_tried_is_worked_out_too(pane: Pane) -> None:
     expect(field(pane)).to_have_value("120")
 
 
+def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
+    x, y = pane.middle(".handle")
+    pane.page.get_by_role("button", name="Points").click()
+    pane.page.mouse.move(x, y)
+    pane.page.mouse.down()
+    pane.page.mouse.move(x + 40, y, steps=3)
+    pane.host.hears("aidl/try")
+    pane.shows(tried=True, knobs=[knob(value=117)])
+    expect(field(pane)).to_have_value("117")
+    pane.page.keyboard.press("Escape")
+    expect(field(pane)).to_have_value("100")
+    pane.page.mouse.up()
+
+
 def test_what_is_wrong_is_looked_into_when_the_slider_rests(pane: Pane) -> None:
     pane.page.mouse.move(*along(pane, 100))
     pane.page.mouse.down()

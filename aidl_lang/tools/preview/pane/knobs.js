@@ -137,11 +137,11 @@ class Row {
   }
 
   /**
-   * The value that is tried, where it was worked out from what was typed.
+   * The value that is tried, by what was typed or by a point that is dragged.
    * @param {Knob} knob
    */
   tried({ value }) {
-    if (!this.isAsking) return;
+    if (this.#isTrying || this.isRefused) return;
     this.value = value;
     this.control.show(value);
     this.#update();

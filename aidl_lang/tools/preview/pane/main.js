@@ -4,7 +4,7 @@
  */
 
 import { Attempts } from "./attempts.js";
-import { el, part, svg } from "./dom.js";
+import { el, part, quoted, svg } from "./dom.js";
 import { download } from "./download.js";
 import { Drawing } from "./drawing.js";
 import { elementsOn } from "./elements.js";
@@ -476,7 +476,7 @@ class Pane {
    */
   tell({ hint, path }, at, where) {
     this.pointing.hover(this.pointing.ownerOf(path));
-    const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, hint)];
+    const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, ...quoted(hint))];
     this.tooltip.show(words, where.right - 6, where.bottom - 6);
   }
 }
