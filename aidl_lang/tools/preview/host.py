@@ -92,8 +92,8 @@ class Host:
             self.text.read()
         except CannotError as reason:
             self._tell_trouble(str(reason))
-            return
-        self._tell_trouble("")
+        else:
+            self._tell_trouble("")
         self._renew()
 
     def look(self) -> None:
