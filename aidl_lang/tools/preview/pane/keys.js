@@ -10,15 +10,14 @@ const ZOOM = 1.25;
  * @typedef {object} Listener
  * @property {() => void} fit
  * @property {() => void} escape
- * @property {() => void} undo
- * @property {() => void} redo
- * @property {() => void} save
  */
+
+/** @typedef {{ undo?: () => void, redo?: () => void, save?: () => void }} TextKeys */
 
 /**
  * @param {HTMLElement} stage
  * @param {View} view
- * @param {Listener} listener
+ * @param {Listener & TextKeys} listener
  */
 export function listenToKeys(stage, view, listener) {
   const press = (/** @type {string} */ id) => () => {

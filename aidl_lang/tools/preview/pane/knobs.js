@@ -222,6 +222,7 @@ class Row {
 }
 
 let count = 0;
+
 /** @param {Knob} knob */
 function isWritable(knob) {
   return knob.editable && knob.range !== null;

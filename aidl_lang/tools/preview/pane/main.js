@@ -37,8 +37,6 @@ class Pane {
   preview = null;
   /** @type {Preview | null} the last that is of the text and not of values that are tried */
   settled = null;
-  /** @type {TextState | null} none in VS Code, where the text is in an editor of its own */
-  text = null;
   #isSourceWanted = false;
   #isFreedomWanted = false;
   #isOpen = false;
@@ -77,22 +75,21 @@ class Pane {
       tell: (handle, at, where) => this.tell(handle, at, where),
       hush: () => this.tooltip.hide(),
     });
-    this.source = new TextPanel(part("source-lines", HTMLElement), {
-      typed: () => this.textButtons.unsaved(true),
-      type: (version, changes) => this.ask("aidl/type", { uri: this.uri, version, changes }),
-      save: () => void this.change("aidl/save", { uri: this.uri, anyway: false }),
+    const text = {
       undo: () => void this.change("aidl/undo", { uri: this.uri }),
       redo: () => void this.change("aidl/redo", { uri: this.uri }),
+      save: (anyway = false) => void this.change("aidl/save", { uri: this.uri, anyway }),
+      takeFile: () => void this.change("aidl/takeFile", { uri: this.uri }),
+    };
+    this.source = new TextPanel(part("source-lines", HTMLElement), {
+      ...text,
+      typed: () => this.textButtons.unsaved(true),
+      type: (version, changes) => this.ask("aidl/type", { uri: this.uri, version, changes }),
       choose: (line) => this.pointing.choose(this.preview ? elementsOn(this.preview, line) : []),
       point: (line) => point(this.preview && line !== null ? elementsOn(this.preview, line) : []),
       failed: (message) => this.failed(message),
     });
-    this.textButtons = new TextButtons({
-      undo: () => void this.change("aidl/undo", { uri: this.uri }),
-      redo: () => void this.change("aidl/redo", { uri: this.uri }),
-      save: (anyway) => void this.change("aidl/save", { uri: this.uri, anyway }),
-      takeFile: () => void this.change("aidl/takeFile", { uri: this.uri }),
-    });
+    this.textButtons = new TextButtons(text);
     this.pointing = new Pointing(this.drawing, this.handles, this.source, (element) => this.hover(element));
     this.knobs = new Knobs(part("knobs-list", HTMLElement), {
       attempt: ({ path }, value) => this.attempts.attempt({ knobs: { [path]: value } }),
@@ -105,12 +102,15 @@ class Pane {
       fix: (problem, fix) => this.edit("aidl/fix", { uri: this.uri, version: this.settled?.version ?? 0, problem, fix }),
       point,
     });
-    this.watch();
+    this.watch(this.host.code === null ? text : {}); // in VS Code the editor has these keys
     this.menus();
   }
 
-  /** The pointer, the keys, and the size of the window. */
-  watch() {
+  /**
+   * The pointer, the keys, and the size of the window.
+   * @param {import("./keys.js").TextKeys} text
+   */
+  watch(text) {
     watch(this.stage, this.view, {
       click: (event) => this.click(event),
       doubleClick: () => this.fit(),
@@ -120,9 +120,7 @@ class Pane {
     listenToKeys(this.stage, this.view, {
       fit: () => this.fit(),
       escape: () => this.pointing.clear(),
-      undo: () => part("undo", HTMLButtonElement).click(),
-      redo: () => part("redo", HTMLButtonElement).click(),
-      save: () => part("save", HTMLButtonElement).click(),
+      ...text,
     });
     new ResizeObserver(() => {
       if (this.measure() && !this.view.isChosen) this.fit();
@@ -256,7 +254,6 @@ class Pane {
    * @param {Params<N>} params
    */
   async change(method, params) {
-    if (this.host.code !== null) return;
     this.attempts.forget();
     await this.source.flush();
     const done = /** @type {Applied | null} */ (await this.ask(method, params));
@@ -316,7 +313,6 @@ class Pane {
 
   /** @param {TextState} state */
   words(state) {
-    this.text = state;
     this.source.told(state);
     this.textButtons.show(state, this.source.isUnsaved);
     this.panels();
