@@ -9,7 +9,7 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -50,6 +50,9 @@ reference: $(READY) colours ## write all that is generated from the library: doc
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
 	$(BIN)/python -m aidl_lang.tools.highlighting .
+
+pane: ## bundle the editor of the preview's pane: aidl_lang/tools/preview/pane/editor.js
+	cd editors/codemirror && npm ci --silent --no-audit --no-fund && npm run --silent pane
 
 editors: vscode ## check all that is built with Node: the preview's pane, the CodeMirror package, the extension
 	cd editors/preview && npm ci --silent --no-audit --no-fund && npm run --silent check

@@ -70,6 +70,8 @@ class Compiled:
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)
     allowances: tuple[Allowance, ...] = ()
+    standing: tuple[Diagnostic, ...] = field(default=(), repr=False)
+    """Those of the diagnostics that do not depend on where exactly the parts are."""
 
     def __getstate__(self) -> dict[str, object]:
         """Returns all but what works on the problem behind the solution, which a pickle does without."""

@@ -234,9 +234,10 @@ def placed(
 
 def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
     """Returns an outcome with its parts placed by another solution of the same model, as while one is
-    dragged.
+    dragged. What there is to say of the drawing is said anew, with fixes that were not tried; what there was
+    of the text and its solution stays.
 
-    The diagnostics of the outcome stay. Raises TooLongError, and ValueError if nothing was built.
+    Raises TooLongError, and ValueError if nothing was built.
     """
     from aidl_lang.solver.analysis import analyse
 
@@ -246,10 +247,15 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     with working, within(outcome.limit, "drawing"):
         with watch("freedom"):
             freedom = analyse(lowered.problem, solution)
-        model, evaluator, drawing, _ = pictured(outcome.built, lowered, solution, freedom, watch)
+        model, evaluator, drawing, notes = pictured(outcome.built, lowered, solution, freedom, watch)
+        found = _asserted(outcome.built, solution, model, drawing, evaluator, watch)
+    told = [*found, *_beside(notes, found)]
+    if outcome.asked is not None:
+        told = adapted(told, outcome.asked.settings.variant)
     return replace(
         outcome,
         status=model.status,
+        diagnostics=ordered([*outcome.standing, *audible(told, outcome.allowances)]),
         timings=watch.seconds,
         model=model,
         drawing=drawing,
@@ -342,9 +348,12 @@ def _finish(
             model, evaluator, drawing, found, notes = _drawn(
                 built, lowered, solution, freedom, troubles, watch
             )
+            asserted = _asserted(built.model, solution, model, drawing, evaluator, watch)
     except TooLongError as reason:
         found = [*audible(diagnostics, built.allowances), reason.diagnostic]
         return Compiled("wrong", ordered(found), watch.seconds, known)
+    passing = {(d.code, d.span) for d in [*asserted, *notes]}
+    found = [*found, *asserted]
     if settings.strict and troubles.given:
         from aidl_lang.explaining.giving import as_error
 
@@ -376,6 +385,7 @@ def _finish(
         built.model,
         evaluator,
         settings.drawing,
+        standing=tuple(d for d in everything if (d.code, d.span) not in passing),
     )
 
 
@@ -407,7 +417,7 @@ def _drawn(
     """Returns the solved model, its evaluator and drawing, the diagnostics on the solution, and those on the
     drawing.
     """
-    from aidl_lang.explaining.outcome import assertion_notes, solution_notes
+    from aidl_lang.explaining.outcome import solution_notes
 
     model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
@@ -418,9 +428,23 @@ def _drawn(
         found = solution_notes(
             built.model.root, lowered, solution, freedom, model, troubles.given, troubles.failures
         )
-        is_solved = solution.status.value == "solved"
-        found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
     return model, evaluator, drawing, found, notes
+
+
+def _asserted(
+    built: Model,
+    solution: Solution,
+    model: SolvedModel,
+    drawing: Drawing,
+    evaluator: Evaluator,
+    watch: Stopwatch,
+) -> list[Diagnostic]:
+    """Returns the diagnostics on assertions that fail."""
+    from aidl_lang.explaining.outcome import assertion_notes
+
+    with watch("asserts"):
+        is_solved = solution.status.value == "solved"
+        return assertion_notes(built, model, drawing, evaluator, solved_fully=is_solved)
 
 
 __all__ = [

@@ -129,35 +129,28 @@ fn fingers(
     finger: length,
     kerf: length,
     kind: text
-) = [finger_corner(
-    start, way, length / finger_count(length, finger, kind), thickness, kerf, j, kind
-) for j in 0..<2 * finger_count(length, finger, kind) - 2]
-fn finger_corner(
-    start: point, way: point, pitch: length, thickness: length, kerf: length, j: integer, kind: text
-) = finger_point(
+) = finger_corners(
     start,
     way,
-    part: floor(j / 2),
-    is_tab: (floor(j / 2) % 2 == 0) == (kind == "tabs"),
-    is_next: j % 2,
-    pitch: pitch,
-    thickness: thickness,
-    kerf: kerf
+    deep: turned(way, 90deg) * (thickness / 1mm),
+    length: length,
+    count: finger_count(length, finger, kind),
+    shift: if kind == "tabs" then 0 else 2,
+    wider: [kerf / 2, kerf / 2, -kerf / 2, -kerf / 2]
 )
 
-// A corner at the end of a part, on its own level or (is_next: 1) on that of the next part.
-fn finger_point(
+// Of four corners in turn the first is an outer one, of a tab, and they repeat; notches begin with the third.
+fn finger_corners(
     start: point,
     way: point,
-    part: integer,
-    is_tab: bool,
-    is_next: integer,
-    pitch: length,
-    thickness: length,
-    kerf: length
-) = start + way * ((pitch * (part + 1) + kerf / 2 * (if is_tab then 1 else -1)) / 1mm) + turned(
-    way, 90deg
-) * (thickness * (if is_tab then is_next else 1 - is_next) / 1mm)
+    deep: point,
+    length: length,
+    count: integer,
+    shift: integer,
+    wider: list
+) = [start + way * ((length / count * (floor(j / 2) + 1) + wider[(j + shift) % 4]) / 1mm) + deep * [
+    0, 1, 1, 0
+][(j + shift) % 4] for j in 0..<2 * count - 2]
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///

@@ -7,6 +7,7 @@ another before that hole, so that nothing is cut in a piece that has come loose.
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
@@ -78,7 +79,7 @@ def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
     faces.sort(key=lambda pair: significant(loop_area(pair[0].outer)))
     for face, body in faces:
         for loop in face.holes:
-            hole = edges.owner(loop)
+            hole = edges.owner(loop, body.path)
             style = drawing.styles[hole or body.path].with_lines_of(body.style)
             yield Outline(
                 loop.pieces, True, body.path, style.layer or HOLE, style, hole, clockwise=loop.reversed
@@ -99,20 +100,30 @@ class _HoleEdges:
             for loop in drawing.regions[s.path].loops
             for piece in loop.pieces
         ]
-        self._same = {p: path for path, piece in self._edges for p in (piece, reverse(piece))}
+        self._same: dict[Piece, list[str]] = defaultdict(list)
+        for path, piece in self._edges:
+            for either in (piece, reverse(piece)):
+                self._same[either].append(path)
         boxes = np.array([bounds(piece) for _, piece in self._edges]).reshape(-1, 4)
         self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
 
-    def owner(self, loop: Loop) -> str | None:
-        """Returns the hole that shares an edge with the loop, the innermost of several."""
-        shared = (path for piece in loop.pieces if (path := self._same.get(piece)) is not None)
-        found = next(shared, None)
-        # A piece may have been drawn anew in the loop, and not in the hole.
-        return found or next((path for piece in loop.pieces if (path := self._beside(piece))), None)
+    def owner(self, loop: Loop, body: str) -> str | None:
+        """Returns the hole that shares an edge with a loop of a body: of several, as where a pin goes through
+        parts that lie on each other, the innermost in the body.
+        """
+        for found in (self._same_edge, self._beside):  # a piece may have been drawn anew in the loop
+            paths = [path for piece in loop.pieces for path in found(piece)]
+            if paths:
+                return max(paths, key=lambda path: path.startswith(f"{body}."))
+        return None
 
-    def _beside(self, piece: Piece) -> str | None:
-        """Returns the hole on whose edge the middle of a piece lies."""
+    def _same_edge(self, piece: Piece) -> Iterable[str]:
+        """Returns the holes with this very edge, inner ones first."""
+        return reversed(self._same.get(piece, []))
+
+    def _beside(self, piece: Piece) -> Iterable[str]:
+        """Returns the holes on whose edges the middle of a piece lies, inner ones first."""
         p = point(piece, 0.5)
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
-        return next((path for path, edge in found if locate(edge, p, self._tolerance) is not None), None)
+        return [path for path, edge in found if locate(edge, p, self._tolerance) is not None]

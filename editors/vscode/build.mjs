@@ -32,7 +32,7 @@ const pane = join(root, "aidl_lang", "tools", "preview", "pane");
 await rm(join(here, "media"), { recursive: true, force: true });
 await cp(pane, join(here, "media", "pane"), {
   recursive: true,
-  filter: (source) => !source.endsWith(".d.ts"),
+  filter: (source) => !/(\.d\.ts|[\\/](editor\..*|words\.js))$/.test(source), // the text is in VS Code's own editor
 });
 await copyFile(join(root, "LICENSE"), join(here, "LICENSE"));
 

@@ -260,8 +260,7 @@ def test_edit_param_tells_what_changed() -> None:
         (
             "width",
             "5cm + origin",
-            "error E0945: `5cm + origin` does not fit: `width` is a number, with a unit or without: "
-            "mm, cm, m, in, ft, deg, rad, turn",
+            "error E0945: `5cm + origin` does not fit `width`: `+` does not work on a length and a point",
         ),
     ],
 )

@@ -429,3 +429,10 @@ def test_thousands_of_circles():
     assert {named(e, "AIDL_HOLE") for e in document.modelspace().query("CIRCLE")} == {
         f"p.h[{k}]" for k in range(count)
     }
+
+
+def test_a_hole_is_on_the_layer_of_its_own_part() -> None:
+    bar = "{ r = rectangle(width: 30, height: 8)\n hole h { rim = circle(radius: 2) } }"
+    text = f'assembly a {{ @layer("low") solid low {bar} @layer("high") solid high {bar} }}\n'
+    document = ezdxf.read(io.StringIO(pipeline.compile(SourceFile("a", text)).export(".dxf").decode()))
+    assert sorted(e.dxf.layer for e in document.modelspace().query("CIRCLE")) == ["high", "low"]

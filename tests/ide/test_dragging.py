@@ -141,6 +141,54 @@ def test_a_drawing_that_may_slide_is_moved_as_a_whole_by_its_middle() -> None:
     assert dropped(view, dragged(view, "r.center", (7, 3))).source.text == text.replace("(0, 0)", "(7, 3)")
 
 
+@pytest.mark.parametrize("name", ["key", "gear_pair", "finger_box"])
+def test_a_point_that_nothing_holds_elsewhere_is_not_offered(name: str) -> None:
+    path = next(path for path in EXAMPLES if path.stem == name)
+    view = run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))
+    whole = [h for h in handles(view) if h.hint.endswith("to move the drawing")]
+    assert whole == []
+    assert len(handles(view)) > 5
+
+
+def test_a_count_turns_by_whole_steps() -> None:
+    text = (
+        "solid a { param n = 3 in 1..6 step 1\n param w = 50 in 20..90\n"
+        "base = rectangle(bottom_left: fixed((0, 0)), width: w * n, height: 5) }"
+    )
+    view = seen(text, solved=True)
+    found = dragged(view, "base.bottom_right", (203, 0))
+    assert "n = 4 in" in dropped(view, found).source.text
+
+
+# --- What is shown meanwhile -----------------------------------------------------------------
+
+
+def test_asserts_and_contacts_are_those_of_what_is_shown() -> None:
+    text = """assembly a {
+        solid s at fixed((0, 0)) { r = square(center: origin, size: 10) }
+        solid t at (30, 0) { r = square(center: origin, size: 10) }
+        assert t.left >= s.right + 5, "too near"
+    }"""
+    view = seen(text, solved=True)
+    assert view.outcome is not None
+    codes = lambda of: {d.code for d in of.outcome.diagnostics}  # noqa: E731
+    assert codes(view) == {"W0705"}
+    near = dragged(view, "t.r.center", (10, 0))
+    assert codes(near.view) == {"E0604"}  # they touch now
+    assert codes(dragged(view, "t.r.center", (12, 0)).view) == {"E0604", "W0705"}
+    far = dragged(view, "t.r.center", (40, 0))
+    assert codes(far.view) == {"W0705"}
+    assert codes(dropped(view, near)) == {"E0604"}  # what was seen is written
+
+
+def test_a_drag_by_a_param_fails_asserts_too() -> None:
+    text = SHELF.replace("    solid", '    assert width < 150, "too wide"\n    solid')
+    view = seen(text, solved=True)
+    wide = dragged(view, "board.body.bottom_right", (80, -4))
+    assert wide.view.outcome is not None
+    assert [d.code for d in wide.view.outcome.diagnostics if d.is_error] == ["E0604"]
+
+
 # --- Sizes ---------------------------------------------------------------------------------------
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
 
-from tests.preview.messages import picture
+from tests.preview.messages import picture, words
 from tests.preview.scripted import ScriptedHost
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -52,6 +52,15 @@ class Pane:
             self.host.tell("aidl/previewChanged", message)
         shown = "([uri, version]) => JSON.stringify([uri, version]) === document.body.dataset.shown"
         self.page.wait_for_function(shown, arg=[message["uri"], message["version"]])
+
+    def writes(self, **changes: Any) -> None:
+        """Tell of the text, and wait until the editor has it."""
+        told = words(**changes)
+        self.host.tell("aidl/text", told)
+        first = str(told["text"]).split("\n")[0]
+        self.page.wait_for_function(
+            "first => document.querySelector('.cm-line')?.textContent === first", arg=first
+        )
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         """Where on the page a point of the drawing is, as the browser has it."""
@@ -130,6 +139,7 @@ def pane(shared: tuple[BrowserContext, ScriptedHost]) -> Iterator[Pane]:
     host.forget()
     pane = opened(context, host)
     host.hears("aidl/preview")
+    pane.writes()
     pane.shows()
     yield pane
     pane.page.evaluate("() => localStorage.clear()")

@@ -107,7 +107,6 @@ def picture(**changes: Any) -> dict[str, Any]:
         "conflicts": [],
         "motions": [],
         "degrees": 2,
-        "source": {"text": TEXT, "tokens": [[0, 0, 7, "keyword"], [1, 18, 3, "number"]]},
         **changes,
     }
 
@@ -116,3 +115,24 @@ def where(number: int) -> dict[str, Any]:
     """Where an element of the plate is written."""
     found = picture()["elements"][number]
     return {"uri": found["uri"], "range": found["range"]}
+
+
+def words(text: str | None = TEXT, **changes: Any) -> dict[str, Any]:
+    """What a host tells of the text."""
+    state = {"version": 1, "saved": True, "contested": False, "undo": None, "redo": None}
+    return {**state, "text": text, **changes}
+
+
+EXPORTS = {
+    "formats": [{"name": "svg", "label": "SVG drawing"}, {"name": "dxf", "label": "DXF for cutters"}],
+    "options": [
+        {"name": "sheet", "label": "Sheet", "hint": "600x400", "choices": [], "formats": ["svg", "dxf"]},
+        {
+            "name": "nest",
+            "label": "Packed by",
+            "hint": "boxes",
+            "choices": ["boxes", "outlines"],
+            "formats": ["dxf"],
+        },
+    ],
+}

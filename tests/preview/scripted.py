@@ -20,18 +20,19 @@ from websockets.sync.server import Server, ServerConnection, serve
 from tests.preview.messages import URI
 
 PANE = Path(__file__).resolve().parents[2] / "aidl_lang" / "tools" / "preview" / "pane"
+NONCE = "n0nce"
 CSP = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    f"default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{NONCE}'; connect-src 'self'; "
     "img-src 'self' data:; font-src 'self'"
 )
 PATIENCE = 10.0
 """Seconds after which what a test waits for is not coming."""
 
 Message = dict[str, Any]
-_EDITS = {"aidl/setKnob", "aidl/drag", "aidl/fix"}
+_EDITS = {"aidl/setKnob", "aidl/drag", "aidl/fix", "aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"}
 
 
-def page(root: str = "", nonce: str = "", socket: str = "socket", csp: str = CSP, uri: str = URI) -> str:
+def page(root: str = "", nonce: str = NONCE, socket: str = "socket", csp: str = CSP, uri: str = URI) -> str:
     """`index.html` as a host completes it."""
     text = (PANE / "index.html").read_text("utf-8")
     for name, value in {"csp": csp, "root": root, "nonce": nonce, "socket": socket, "uri": uri}.items():

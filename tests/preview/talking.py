@@ -17,7 +17,7 @@ from aidl_lang.tools.preview.site import site
 
 TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
 TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
-CHANGED = "aidl/previewChanged"
+CHANGED, WORDS = "aidl/previewChanged", "aidl/text"
 
 _numbers = itertools.count(1)
 
@@ -57,7 +57,7 @@ class Talk:
 
     def preview(self, show: tuple[str, ...] = ()) -> dict[str, Any]:
         """The picture, as the pane asks for it."""
-        made: dict[str, Any] = self.answer("aidl/preview", show=show, source=True)
+        made: dict[str, Any] = self.answer("aidl/preview", show=show)
         return made
 
     def told(self, method: str, **wanted: Any) -> dict[str, Any]:
@@ -67,6 +67,12 @@ class Talk:
             params: dict[str, Any] = message.get("params", {})
             if message.get("method") == method and all(params.get(k) == v for k, v in wanted.items()):
                 return params
+
+    def text(self) -> dict[str, Any]:
+        """What is told next of the text, with its words."""
+        while (told := self.told(WORDS))["text"] is None:
+            pass
+        return told
 
     def _next(self) -> dict[str, Any]:
         message: dict[str, Any] = json.loads(self.socket.receive_text())

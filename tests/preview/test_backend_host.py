@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from aidl_lang.tools.preview.host import MOST_ORDERS, MOST_UNTAKEN, Host, Page
+from aidl_lang.tools.preview.host import MOST_ORDERS, Host
+from aidl_lang.tools.preview.page import MOST_UNTAKEN, Page
 
 _numbers = itertools.count(1)
 

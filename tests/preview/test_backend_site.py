@@ -15,7 +15,7 @@ import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from aidl_lang.tools.preview.host import MOST_ORDERS
+from aidl_lang.tools.preview.host import LONGEST, MOST_ORDERS
 from aidl_lang.tools.preview.site import MOST_PAGES, PANE
 from aidl_lang.tools.preview.watching import watch
 from tests.preview import talking as pages
@@ -148,7 +148,14 @@ def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: 
     with talking(client, origin=f"http://{ADDRESS}") as page:
         first = page.preview()
         assert first["uri"] == file.as_uri()
-        assert first["source"]["text"] == TEXT
+        assert page.text() == {
+            "version": 1,
+            "text": TEXT,
+            "saved": True,
+            "contested": False,
+            "undo": None,
+            "redo": None,
+        }
         attempt = page.answer("aidl/try", knobs={"width": 90})
         assert attempt["tried"]
         assert attempt["box"][2] == pytest.approx(45)
@@ -156,17 +163,9 @@ def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: 
         assert page.preview()["box"][2] == pytest.approx(30)
         assert page.answer("aidl/setKnob", path="width", value=80) == {"applied": True}
         assert file.read_text("utf-8") == TEXT.replace("60mm", "80mm")
+        assert page.text()["text"] == TEXT.replace("60mm", "80mm")
         after = page.told(CHANGED, version=2)
-        assert after["source"]["text"] == TEXT.replace("60mm", "80mm")
         assert after["handles"] or page.told(CHANGED, version=2)["handles"]
-
-
-def test_tokens_cover_the_text(client: TestClient, talking: Any) -> None:
-    with talking(client) as page:
-        source = page.preview()["source"]
-    lines = source["text"].split("\n")
-    words = {(lines[line][at : at + length], kind) for line, at, length, kind in source["tokens"]}
-    assert {("param", "keyword"), ("60mm", "number"), ("solid", "keyword"), ("rectangle", "type")} <= words
 
 
 def test_a_save_elsewhere_is_seen(client: TestClient, talking: Any, file: Path) -> None:
@@ -323,7 +322,7 @@ def test_bytes_and_much_end_a_connection(client: TestClient, talking: Any) -> No
             page.told("never")
     assert refused.value.reason == "This page sent what is no text."
     with talking(client) as page:
-        page.socket.send_text("x" * 70_000)
+        page.socket.send_text("x" * (LONGEST + 1))
         with pytest.raises(WebSocketDisconnect) as refused:
             page.told("never")
     assert refused.value.reason == "This page sent a message that is too long."

@@ -151,7 +151,7 @@ def test_a_dragged_point_changes_the_text(preview: Preview) -> None:
 
 
 def test_hovering_shows_where_something_is_written(preview: Preview) -> None:
-    marked = preview.find("#source-lines .line.marked")
+    marked = preview.find("#source-lines .cm-line.marked")
     preview.page.mouse.move(*preview.at(0, -30))
     expect(preview.find("#tooltip")).to_contain_text("160 × 80 mm")
     expect(marked).to_contain_text(["solid base {", "body = trapezoid(", "}"])
@@ -178,10 +178,84 @@ def test_a_broken_text_leaves_the_picture_marked_as_stale(preview: Preview) -> N
 
 def test_a_file_is_exported(preview: Preview) -> None:
     preview.find("#export-button").click()
+    preview.find("#export-format").select_option("dxf")
+    preview.find("#export-menu input[name=sheet]").fill("400x300")
     with preview.page.expect_download() as download:
-        preview.find(
-            "#export-menu button",
-        ).first.click()
+        preview.find("#export-menu button").click()
     path = download.value.path()
-    assert download.value.suggested_filename.startswith("telephone.")
-    assert path.stat().st_size > 500
+    assert download.value.suggested_filename == "telephone.dxf"
+    assert path.read_text("utf-8").lstrip().startswith("0\n")
+
+
+def test_what_is_typed_is_drawn_saved_and_undone(preview: Preview) -> None:
+    unsaved = preview.find("#save")
+    line = preview.page.locator(".cm-line", has_text="param width")
+    line.click()
+    preview.page.keyboard.press("Home")
+    preview.page.keyboard.press("Shift+End")
+    preview.page.keyboard.type("    param width = 200mm in 100..240")
+    preview.until_width(200)
+    expect(unsaved).to_be_visible()
+    assert preview.text == TELEPHONE
+    preview.page.keyboard.press("Control+s")
+    expect(unsaved).to_be_hidden()
+    wait(lambda: "200mm" in preview.text)
+    preview.page.keyboard.press("Control+z")
+    preview.until_width(160)
+    expect(unsaved).to_be_visible()
+    assert "200mm" in preview.text
+    preview.page.keyboard.press("Control+s")
+    wait(lambda: preview.text == TELEPHONE)
+
+
+def test_a_number_with_a_unit_is_written_and_undone(preview: Preview) -> None:
+    field = preview.page.get_by_role("textbox", name="width")
+    for text, written in (("22cm", "22cm"), ("100 + 2*20", "14cm"), ("9in - 1/2in", "8.5in")):
+        field.fill(text)
+        field.press("Enter")
+        wait(lambda: preview.text == TELEPHONE.replace("160mm", written))  # noqa: B023
+    preview.until_width(215.9)
+    for text, why in (
+        ("90deg", "`90deg` does not fit `width`: that is an angle, and it is a length"),
+        ("1m", "`width` cannot be `1000`: that is outside its range 100..240 mm"),
+        ("wide", "`wide` does not fit `width`: there is no `wide` here"),
+    ):
+        field.fill(text)
+        field.press("Enter")
+        expect(preview.find(".knob .refusal")).to_contain_text(why.replace("`", ""))
+    assert "8.5in" in preview.text
+    preview.find("#undo").click()
+    preview.until_width(140)
+    wait(lambda: preview.text == TELEPHONE.replace("160mm", "14cm"))
+
+
+def test_a_failed_assertion_changes_the_status_while_a_slider_moves(preview: Preview) -> None:
+    text = (
+        "solid a {\n    param w = 30 in 10..90\n    body = rectangle(width: w, height: 20)\n"
+        '    assert w < 60, "too wide"\n}\n'
+    )
+    preview.file.write_text(text, "utf-8")
+    expect(preview.find("#source-lines")).to_contain_text("too wide")
+    status = preview.find("#status")
+    expect(status).to_have_text("Solved")
+    box = preview.find("#knobs-list input[type=range]").bounding_box()
+    assert box is not None
+    middle = box["y"] + box["height"] / 2
+    preview.page.mouse.move(box["x"] + box["width"] * 0.25, middle)
+    preview.page.mouse.down()
+    preview.page.mouse.move(box["x"] + box["width"] * 0.9, middle, steps=4)
+    expect(status).to_have_text("Has errors (tried, not in the text)")
+    expect(status).to_have_class("status wrong")
+    expect(preview.find("#problems-list")).to_contain_text("too wide")
+    preview.page.mouse.move(box["x"] + box["width"] * 0.3, middle, steps=4)
+    expect(status).to_have_text("Solved (tried, not in the text)")
+    preview.page.keyboard.press("Escape")
+    preview.page.mouse.up()
+    expect(status).to_have_text("Solved")
+    preview.file.write_text(text.replace("w < 60", "w < 20"), "utf-8")
+    expect(status).to_have_text("Has errors")
+    preview.file.write_text(
+        text.replace("assert", "constrain body.left == 0 constrain body.right == 90 assert"), "utf-8"
+    )
+    expect(status).to_have_text(re.compile("Partly solved|Not solved"))
+    expect(status).not_to_have_class("status solved")

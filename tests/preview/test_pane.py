@@ -392,36 +392,14 @@ def test_free_directions(pane: Pane) -> None:
 
 
 def test_the_text_follows_the_pointer_and_back(pane: Pane) -> None:
-    expect(pane.find(".line code")).to_have_text(TEXT.split("\n"))
+    expect(pane.find(".cm-line")).to_have_text(TEXT.split("\n"))
     pane.move(20, 15)
-    expect(pane.find(".line.marked")).to_have_count(1)
-    expect(pane.find(".line.marked .gutter")).to_have_text("6")
-    pane.find(".line").nth(3).click()
+    expect(pane.find(".cm-line.marked")).to_have_text([TEXT.split("\n")[5]])
+    pane.find(".cm-line").nth(3).click()
     assert outlined(pane, "selected") == [drawn(pane, OUTLINE)]
-    pane.find(".line").nth(6).click()
+    pane.find(".cm-line").nth(6).click()
+    expect(pane.find(".mark.selected .line")).to_have_count(1)
     assert outlined(pane, "selected") == [drawn(pane, 3)]  # the innermost whose place has this line
     pane.page.get_by_role("button", name="Text").click()
     expect(pane.find("#source")).to_be_hidden()
     expect(pane.find("#stage")).to_be_visible()
-
-
-def test_tokens_count_in_utf_16(pane: Pane) -> None:
-    text = '\ufeff/* 🙂 */ width\r\n\t"🙂é" + 12\rlast\n'
-    tokens = [
-        [0, 1, 8, "comment"],
-        [0, 10, 5, "variable"],
-        [1, 1, 5, "string"],
-        [1, 9, 2, "number"],
-        [2, 0, 4, 'a b"<'],
-    ]
-    tokens += [[1, 10, 90, "number"], [70, 0, 1, "keyword"]]  # of some other text
-    pane.shows(source={"text": text, "tokens": tokens})
-    expect(pane.find(".token")).to_have_text(["/* 🙂 */", "width", '"🙂é"', "12", "last"])
-    expect(pane.find(".line")).to_have_count(4)
-    expect(pane.find(".line code").nth(1)).to_have_text('\t"🙂é" + 12')
-
-
-def test_there_is_no_text_where_the_host_sends_none(pane: Pane) -> None:
-    pane.shows(source=None)
-    expect(pane.find("#source")).to_be_hidden()
-    expect(pane.find("#source-toggle")).to_be_hidden()

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.preview.conftest import Pane
-from tests.preview.messages import URI, picture, problem
+from tests.preview.messages import EXPORTS, URI, picture, problem
 
 CODE = """
 window.sent = [];
@@ -79,7 +79,7 @@ def test_why_there_is_no_connection_is_told(open_pane) -> None:
 def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:
     pane.page.get_by_role("button", name="Layers").click()
     pane.page.get_by_label("Dimensions").check()
-    asks = {"uri": URI, "source": True}
+    asks = {"uri": URI}
     assert pane.host.hears("aidl/preview", 2) == {**asks, "show": ["dimensions"]}
     pane.page.get_by_label("Names").check()
     assert pane.host.hears("aidl/preview", 3) == {**asks, "show": ["names", "dimensions"]}
@@ -102,16 +102,32 @@ def test_what_is_no_message_is_passed_over(pane: Pane) -> None:
 
 
 def test_files_are_asked_for_and_saved(pane: Pane) -> None:
-    formats = ["svg", "pdf", "png", "dxf", "step", "stl", "3mf"]
-    for count, name in enumerate(formats, 1):
-        pane.page.get_by_role("button", name="Export").click()
-        pane.find("#export-menu").get_by_role("button").nth(count - 1).click()
-        assert pane.host.hears("aidl/export", count) == {"uri": URI, "format": name, "show": []}
+    pane.page.get_by_role("button", name="Export").click()
+    pane.host.answer("aidl/exports", EXPORTS)
+    menu = pane.find("#export-menu")
+    expect(menu.get_by_label("Packed by")).to_be_hidden()  # an SVG has none
+    menu.get_by_label("Format").select_option("dxf")
+    menu.get_by_label("Packed by").select_option("outlines")
+    menu.get_by_label("Sheet").fill("much")
+    menu.get_by_role("button", name="Save").click()
+    options = {"sheet": "much", "nest": "outlines"}
+    asked = {"uri": URI, "format": "dxf", "options": options, "show": []}
+    assert pane.host.hears("aidl/export") == asked
+    pane.host.answer("aidl/export", error="`much` is no size")
+    expect(menu.get_by_role("alert")).to_have_text("much is no size")
+    menu.get_by_label("Sheet").fill("600x400")
+    menu.get_by_label("Sheet").press("Enter")
+    assert pane.host.hears("aidl/export", 2)["options"] == {**options, "sheet": "600x400"}
     content = bytes(range(256)) * 3
+    data = base64.b64encode(content).decode()
     with pane.page.expect_download() as saved:
-        pane.host.answer("aidl/export", {"name": "plate.dxf", "data": base64.b64encode(content).decode()})
+        pane.host.answer("aidl/export", {"name": "plate.dxf", "data": data, "notes": ["it is `thin`"]})
     assert saved.value.suggested_filename == "plate.dxf"
     assert saved.value.path().read_bytes() == content
+    expect(menu).to_be_hidden()
+    expect(pane.find(".toast.warning")).to_contain_text("it is thin")
+    pane.page.get_by_role("button", name="Export").click()
+    expect(menu.get_by_label("Sheet")).to_have_value("600x400")
 
 
 # VS Code
@@ -122,7 +138,7 @@ def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
     pane.page.wait_for_function("() => window.sent.some(m => m.method === 'aidl/preview')")
     assert "/socket" not in pane.host.requests
     asked = pane.page.evaluate("() => window.sent")
-    assert [m["params"] for m in asked] == [{"uri": URI, "show": [], "source": False}]
+    assert [m["params"] for m in asked] == [{"uri": URI, "show": []}]
     answer = {"jsonrpc": "2.0", "id": asked[0]["id"], "result": picture()}
     pane.page.evaluate("message => window.postMessage(message)", answer)
     expect(pane.find("#status")).to_have_text("Solved")
@@ -210,16 +226,19 @@ def test_every_control_has_a_name(pane: Pane) -> None:
 def test_menus_work_by_keys(pane: Pane) -> None:
     pane.page.get_by_role("button", name="Export").focus()
     pane.page.keyboard.press("Enter")
-    expect(pane.find("#export-menu")).to_be_visible()
-    pane.page.keyboard.press("Tab")
+    pane.host.answer("aidl/exports", EXPORTS)
+    expect(pane.find("#export-format")).to_be_focused()
     pane.page.keyboard.press("ArrowDown")
+    pane.page.keyboard.press("Tab")
+    pane.page.keyboard.type("a3")
     pane.page.keyboard.press("Enter")
-    assert pane.host.hears("aidl/export")["format"] == "pdf"
+    assert pane.host.hears("aidl/export")["format"] == "dxf"
+    pane.host.answer("aidl/export", {"name": "plate.dxf", "data": "", "notes": []})
     expect(pane.find("#export-menu")).to_be_hidden()
-    expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
-    pane.page.keyboard.press("Enter")
+    pane.page.get_by_role("button", name="Export").click()
     pane.page.keyboard.press("Escape")
     expect(pane.find("#export-menu")).to_be_hidden()
+    expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
 
 
 def test_panels_fold_and_stay_folded(pane: Pane) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 
 from aidl_lang import parser
 from aidl_lang.building.model import Knob
@@ -15,12 +14,13 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.expression_printer import string_text
+from aidl_lang.tools.agents.quantities import Quantity, quantity
 from aidl_lang.tools.agents.workspace import RefusalError, refusal
 
 _OUTSIDE = "E0505"
 """Code for a `param` whose default lies outside its own range."""
 _LARGEST = 1e9
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)")
+_KINDS = {"mm": "a length", "deg": "an angle"}
 _NAMED = 12
 
 
@@ -70,7 +70,9 @@ def _declaration(knob: Knob, source: SourceFile) -> ast.Param:
 
 
 def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
-    """Returns the value as the program writes it: a number in the unit that stands there now."""
+    """Returns the value as the program writes it: a number in the unit that it was given in, or that stands
+    there now.
+    """
     if isinstance(knob.value, bool):
         if not isinstance(value, bool):
             raise _misfit(knob, value, "true or false")
@@ -81,21 +83,30 @@ def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
         return string_text(value)
     if isinstance(value, bool):
         raise _misfit(knob, value, "a number")
+    unit = now.unit if isinstance(now, ast.Number) else knob.unit or None
     if isinstance(value, str):
-        return _quantity(knob, value)
+        found = typed(knob, value)
+        value, unit = found.value, found.named or unit
     if not math.isfinite(value) or abs(value) > _LARGEST:
         raise _misfit(knob, value, "a number")
-    unit = now.unit if isinstance(now, ast.Number) else knob.unit or None
     factor = UNITS[unit][0] if unit else 1.0
     return f"{value / factor:.12g}{unit or ''}"
 
 
-def _quantity(knob: Knob, value: str) -> str:
-    """Parses a number given as text, as `20cm`."""
-    found = _QUANTITY.fullmatch(value.strip())
-    if found is None or (found[2] and found[2] not in UNITS) or not abs(float(found[1])) <= _LARGEST:
-        raise _misfit(knob, value, f"a number, with a unit or without: {', '.join(UNITS)}")
-    return found[1] + found[2]
+def typed(knob: Knob, text: str) -> Quantity:
+    """Returns the number that a text means for a knob, in mm or degrees. Raises RefusalError if it means
+    none, or one of another kind.
+    """
+    found = quantity(text)
+    if isinstance(found, str):
+        why = found
+    elif found.unit and knob.unit and found.unit != knob.unit:
+        why = f"that is {_KINDS[found.unit]}, and it is {_KINDS[knob.unit]}"
+    elif abs(found.value) > _LARGEST:
+        why = f"numbers go up to {_LARGEST:g}"
+    else:
+        return found
+    raise refusal("E0945", f"`{text.strip()[:100]}` does not fit `{knob.path}`: {why}")
 
 
 def _misfit(knob: Knob, value: object, wanted: str) -> RefusalError:

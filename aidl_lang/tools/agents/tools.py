@@ -211,7 +211,8 @@ class Tools:
         program: Program,
         name: Annotated[str, "The name or path of the param, as width or bolt.size."],
         value: Annotated[
-            float | str | bool, "The new default: a number in mm or degrees, or with a unit, as 20cm."
+            float | str | bool,
+            "The new default: a number in mm or degrees, or as a text: 20cm, 80 + 20, 1/2in.",
         ],
         files: Files = None,
     ) -> Edited:

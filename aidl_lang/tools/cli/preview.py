@@ -5,11 +5,15 @@ from __future__ import annotations
 import argparse
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files, listening
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import UseError, say
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.preview.serving import Served
 
 _NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
 
@@ -49,8 +53,24 @@ def run(arguments: argparse.Namespace) -> int:
     say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")
     if not arguments.no_open:
         _open(served.url)
-    served.run()
+    try:
+        served.run()
+    finally:
+        _rescue(served)
     return 0
+
+
+def _rescue(served: Served) -> None:
+    """Keeps what was typed and not saved, and tells where."""
+    from aidl_lang.tools.ide.refusing import CannotError
+
+    try:
+        kept = served.rescue()
+    except CannotError as reason:
+        say(f"what was typed in the preview is not saved: {reason}")
+        return
+    if kept is not None:
+        say(f"what was typed in the preview and not saved is in {kept}")
 
 
 def _open(url: str) -> None:

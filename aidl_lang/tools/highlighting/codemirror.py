@@ -1,4 +1,4 @@
-"""The lists of words for the CodeMirror package, as a module of TypeScript."""
+"""The lists of words for the CodeMirror package, as a module of TypeScript, or of plain JavaScript."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _LISTS = (
 )
 
 
-def words() -> str:
+def words(*, typed: bool = True) -> str:
     """Returns `words`: lists by class; `calls`: names by the class of their call; `about`: the names of the
-    library with their purpose; `snippets`.
+    library with their purpose; `snippets`. Without types it is plain JavaScript.
     """
     known = vocabulary()
     lists = {name: getattr(known, name) for name in _LISTS}
@@ -32,7 +32,8 @@ def words() -> str:
         "about: Record<string, string>": about,
         "snippets: readonly { prefix: string; title: string; body: string; place: string }[]": snippets,
     }
-    return _HEAD + "".join(f"\nexport const {name} = {_literal(value)};\n" for name, value in parts.items())
+    named = {name if typed else name.partition(":")[0]: _literal(value) for name, value in parts.items()}
+    return _HEAD + "".join(f"\nexport const {name} = {value};\n" for name, value in named.items())
 
 
 def _literal(value: object) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from aidl_lang.export import OFFERED
 from aidl_lang.tools.highlighting.classes import classify
 from aidl_lang.tools.highlighting.codemirror import words
 from aidl_lang.tools.highlighting.scopes import SCOPES
@@ -25,7 +24,7 @@ def texts(root: Path) -> dict[str, str]:
         "editors/vscode/syntaxes/markdown-aidl.tmLanguage.json": _json(markdown()),
         "editors/vscode/snippets/aidl.json": _json(_snippets()),
         "editors/codemirror/src/words.ts": words(),
-        "aidl_lang/tools/preview/pane/formats.js": _formats(),
+        "aidl_lang/tools/preview/pane/words.js": words(typed=False),
         **queries(),
         SAMPLES: _samples(root),
     }
@@ -42,13 +41,6 @@ def write(root: Path) -> None:
 
 def _json(data: object) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
-
-
-def _formats() -> str:
-    """Returns the export formats that menus offer."""
-    rows = "".join(f'  ["{name}", "{label}"],\n' for name, label in OFFERED.items())
-    says = "// Made by `make colours` from aidl_lang/export/__init__.py; do not edit.\n"
-    return f"{says}\nexport const FORMATS = /** @type {{const}} */ ([\n{rows}]);\n"
 
 
 def _snippets() -> dict[str, object]:

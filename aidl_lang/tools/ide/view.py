@@ -100,6 +100,11 @@ class View:
         return Span(self.source, start, end)
 
 
+def hasty(settings: Settings = SETTINGS) -> Settings:
+    """Returns the settings for what is shown for a moment: why it does not hold is not searched for."""
+    return replace(settings, solving=replace(settings.solving, explain=False))
+
+
 def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
     """Checks a program. Never raises for its contents."""
     source = SourceFile(path.name, text)
@@ -130,7 +135,7 @@ def run(
     return replace(view, outcome=outcome, drawn=drawn, params=params)
 
 
-def edited(view: View, edits: Iterable[Edit]) -> View:
+def edited(view: View, edits: Iterable[Edit], settings: Settings = SETTINGS) -> View:
     """Returns the view of the text with edits made, run with the same values from outside."""
     changed = look(view.path, applied(view.source.text, edits), view.world)
-    return run(changed, params=view.params)
+    return run(changed, params=view.params, settings=settings)

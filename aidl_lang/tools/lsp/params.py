@@ -14,6 +14,7 @@ from pygls.exceptions import JsonRpcInvalidParams
 Value: TypeAlias = float | str | bool
 Texts: TypeAlias = tuple[str, ...]
 Values: TypeAlias = dict[str, Value]
+Words: TypeAlias = dict[str, str]
 Point: TypeAlias = tuple[float, float]
 T = TypeVar("T")
 
@@ -35,14 +36,9 @@ class OfDocument:
 
 @frozen(kw_only=True)
 class Show(OfDocument):
-    """The picture to show.
-
-    show    the layers over the drawing
-    source  whether the text is wanted, too
-    """
+    """The picture to show: `show` are the layers over the drawing."""
 
     show: Texts = ()
-    source: bool = False
 
 
 @frozen(kw_only=True)
@@ -60,8 +56,11 @@ class DraggedPoint:
 
 @frozen(kw_only=True)
 class Try(OfVersion):
+    """`rests` tells that nothing newer is on the way: what is wrong is then explained."""
+
     knobs: Values = field(factory=dict)
     drag: DraggedPoint | None = None
+    rests: bool = False
 
 
 @frozen(kw_only=True)
@@ -89,8 +88,11 @@ class ApplyFix(OfDocument):
 
 @frozen(kw_only=True)
 class Export(OfDocument):
+    """`options` are those of a dialog, as they were typed (see `exports`)."""
+
     format: str
     show: Texts = ()
+    options: Words = field(factory=dict)
 
 
 @frozen(kw_only=True)
@@ -148,6 +150,12 @@ def _values(value: Any, _: object) -> Any:
     return {_plain(name, str): _value(each, Value) for name, each in value.items()}
 
 
+def _words(value: Any, _: object) -> Any:
+    if not isinstance(value, Mapping):
+        raise ValueError
+    return {_plain(name, str): _plain(each, str) for name, each in value.items()}
+
+
 def _tuple(value: Any, kind: Any) -> Any:
     first, *_ = kinds = get_args(kind)
     if not isinstance(value, list) or (... not in kinds and len(value) != len(kinds)):
@@ -160,4 +168,5 @@ for _kind in _IS:
     _converter.register_structure_hook(_kind, _plain)
 _converter.register_structure_hook_func(partial(eq, Value), _value)
 _converter.register_structure_hook_func(partial(eq, Values), _values)
+_converter.register_structure_hook_func(partial(eq, Words), _words)
 _converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)

@@ -10,7 +10,6 @@ from typing import Any, TypeAlias, TypeVar
 
 from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.tools.ide.view import View
@@ -22,10 +21,10 @@ _PAUSE = 0.25
 """Seconds without a change before handles are searched, which takes as long as a run."""
 
 Json: TypeAlias = dict[str, Any]
-Look: TypeAlias = tuple[frozenset[str], bool]
-"""The layers over a picture, and whether the text is wanted with it."""
+Look: TypeAlias = frozenset[str]
+"""The layers over a picture."""
 T = TypeVar("T")
-_PLAIN: Look = (frozenset(), False)
+_PLAIN: Look = frozenset()
 
 
 @record(frozen=False, eq=False)
@@ -35,13 +34,11 @@ class _Shown:
     viewers  those who see a document, each with the wanted layers
     handles  the draggable points found last
     made     the pictures made last, each of a run
-    text     the source coloured last, as the pane reads it
     """
 
     viewers: dict[str, Look] = field(default_factory=dict)
     handles: tuple[Handle, ...] = ()
     made: dict[Look, tuple[VersionedView, Preview]] = field(default_factory=dict)
-    text: tuple[SourceFile, Json] | None = None
 
     def looks(self) -> dict[Look, list[str]]:
         """Returns the viewers grouped by the picture they see."""
@@ -62,7 +59,7 @@ class Pictures:
 
     def show(self, document: Document, wanted: Show) -> None:
         shown = self._shown.setdefault(document, _Shown())
-        shown.viewers[wanted.viewer] = frozenset(wanted.show), wanted.source
+        shown.viewers[wanted.viewer] = frozenset(wanted.show)
 
     def close(self, document: Document, viewer: str) -> None:
         """Stops telling a viewer of a document."""
@@ -76,9 +73,9 @@ class Pictures:
     def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
         """Returns the message for a view of another text. To be called in the solving thread."""
         shown = self._shown.get(document, _Shown())
-        layers, source = shown.viewers.get(viewer, _PLAIN)
+        layers = shown.viewers.get(viewer, _PLAIN)
         made = preview(view, layers, tried=True, known=shown.handles)
-        return self._written(asked, made, view, shown, source)
+        return _written(asked, made, view)
 
     async def picture(self, document: Document, viewer: str, key: Hashable) -> Json | None:
         """Returns the message for the newest run; None without one. Handles follow."""
@@ -87,9 +84,9 @@ class Pictures:
             return None
         asked = self.server.asked_now(document, known)
         shown = self._shown.get(document, _Shown())
-        look = layers, source = shown.viewers.get(viewer, _PLAIN)
+        look = shown.viewers.get(viewer, _PLAIN)
         made = await self._work(
-            ("picture", key), document, lambda: preview(known.view, layers, known=shown.handles)
+            ("picture", key), document, lambda: preview(known.view, look, known=shown.handles)
         )
         if made is None:
             return None
@@ -98,16 +95,7 @@ class Pictures:
                 look: (known, made)
             }
             self.server.in_background(self._complete(document, asked, made))
-        return self._written(asked, made, known.view, shown, source)
-
-    def _written(self, asked: Asked, made: Preview, view: View, shown: _Shown, source: bool) -> Json:
-        writer = Writer(view, asked.convert.uri_of)
-        text = None
-        if source:
-            if shown.text is None or shown.text[0] is not view.source:
-                shown.text = view.source, writer.source(view)
-            text = shown.text[1]
-        return writer.preview(made, asked.known.version, text)
+        return _written(asked, made, known.view)
 
     def _solved(self, document: Document) -> None:
         if document.ran is None:
@@ -142,7 +130,7 @@ class Pictures:
             known, before = shown.made.get(look, (None, made))
             if known is asked.known and before.handles != full.handles:
                 complete = replace(before, handles=full.handles)
-                self._tell(viewers, self._written(asked, complete, view, shown, look[1]))
+                self._tell(viewers, _written(asked, complete, view))
 
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
@@ -180,3 +168,7 @@ class Pictures:
                 },
             },
         )
+
+
+def _written(asked: Asked, made: Preview, view: View) -> Json:
+    return Writer(view, asked.convert.uri_of).preview(made, asked.known.version)

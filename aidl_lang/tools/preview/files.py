@@ -21,19 +21,32 @@ def text_of(path: Path) -> str:
     return _text(_read(path))
 
 
-def rewritten(file: Path, known: SourceFile, edits: Sequence[Edit]) -> bytes:
-    """Returns the content of a file after edits of its known text. Raises CannotError."""
+def replaced(file: Path, known: str, text: str) -> bytes:
+    """Returns the content of a file with another text in place of a known one. Raises CannotError."""
+    data = _read(file)
+    if _text(data) != known:
+        raise _changed(file)
+    return _mark(data) + text.encode()
+
+
+def rewritten(file: Path, known: SourceFile, edits: Sequence[Edit]) -> tuple[bytes, bytes]:
+    """Returns the content of a file before and after edits of its known text. Raises CannotError."""
     data = _read(file)
     text = _text(data)
-    mark = BOM_UTF8 if data.startswith(BOM_UTF8) else b""
     known_text = known.text.removeprefix("\ufeff")
     skipped = len(known.text) - len(known_text)
     # What is imported is read with its line ends made one.
     is_converted = text != known_text and text.replace("\r\n", "\n") == known_text
     if text != known_text and not is_converted:
-        raise CannotError(f"{file.name} has changed meanwhile; nothing was written")
+        raise _changed(file)
     after = applied(known.text, edits)[skipped:]
-    return mark + (after.replace("\n", "\r\n") if is_converted else after).encode()
+    return data, _mark(data) + (after.replace("\n", "\r\n") if is_converted else after).encode()
+
+
+def require(file: Path, data: bytes) -> None:
+    """Raises CannotError if a file has another content."""
+    if _read(file) != data:
+        raise _changed(file)
 
 
 def write(files: Sequence[tuple[Path, bytes]], put: Write) -> None:
@@ -54,6 +67,14 @@ def _read(path: Path) -> bytes:
     if len(data) > MAX_BYTES:
         raise CannotError(f"{path.name} is too large for a program")
     return data
+
+
+def _mark(data: bytes) -> bytes:
+    return BOM_UTF8 if data.startswith(BOM_UTF8) else b""
+
+
+def _changed(file: Path) -> CannotError:
+    return CannotError(f"{file.name} has changed meanwhile; nothing was written")
 
 
 def _text(data: bytes) -> str:

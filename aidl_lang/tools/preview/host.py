@@ -1,23 +1,20 @@
 """The host of the pages that show a program: a client of the language server whose text is a file.
 
 A page speaks the server's requests (`lsp/requests/preview.py`), and is answered by it. Here pages have turns:
-of each one order is under way, and one attempt; of attempts the newest waits. An edit that the server asks
-for is written into the file.
+of each one order is under way, and one attempt; of attempts the newest waits. What changes the text, by
+order of the server or of a page, goes through the `Manuscript`, of which all pages are told.
 """
 
 from __future__ import annotations
 
 import asyncio
 import json
-from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
 from itertools import count
 from pathlib import Path
-from typing import Any, TypeAlias
 
-from attrs import field, frozen
-from lsprotocol.types import ErrorCodes, LSPErrorCodes, MessageType
+from lsprotocol.types import ErrorCodes, LSPErrorCodes
 from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Edit
@@ -29,101 +26,43 @@ from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.params import read
 from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.preview import files
+from aidl_lang.tools.preview.manuscript import Manuscript
+from aidl_lang.tools.preview.page import TOO_MUCH, Json, Page, Request
+from aidl_lang.tools.preview.typed import typed
 
-Json: TypeAlias = dict[str, Any]
-
-LONGEST = 65_536
-"""Most bytes of a page's message."""
+LONGEST = 2_000_000
+"""Most bytes of a page's message: it may hold what somebody pastes."""
 MOST_ORDERS = 8
 """Most waiting orders of one page."""
-MOST_UNTAKEN = 16
-"""Messages waiting for a page above which it is not heard."""
 BUSY_AFTER = 0.15
 """Seconds of a run after which the pages are told."""
 
 _ATTEMPT = "aidl/try"
 _EDITS = frozenset({"aidl/setKnob", "aidl/drag", "aidl/fix"})
-_METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export"}
+_METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export", "aidl/exports"}
 """Requests that a page may send to the server."""
-_TOO_MUCH = "this page asks for more than can be done at once: what it asked for last was left out"
+_TYPING = "aidl/type"
+_OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
+"""Requests about the text, which are answered here."""
 _CLIENT: Json = {
     "general": {"positionEncodings": ["utf-16"]},
     "workspace": {"applyEdit": True, "workspaceEdit": {"documentChanges": True}},
 }
 
 
-@frozen(kw_only=True)
-class Request:
-    """A request of a page; `id` is its own."""
-
-    id: int
-    method: str
-    params: dict[str, Any] = field(factory=dict)
-
-
-class Page:
-    """One open page. Messages wait until it takes them; of pictures only the newest, of equals one."""
-
-    def __init__(self, name: str = "") -> None:
-        self.name = name
-        self.orders: deque[Request] = deque()
-        self.is_ordering = False
-        """whether an order is under way"""
-        self.attempt: Request | None = None
-        """what is tried next"""
-        self.is_trying = False
-        self._is_held_up = False
-        self._waiting: list[tuple[bool, str]] = []
-        self._news = asyncio.Event()
-
-    @property
-    def is_behind(self) -> bool:
-        """True if it asks for more than it takes."""
-        return len(self._waiting) >= MOST_UNTAKEN
-
-    def post(self, message: Json, *, is_picture: bool = False) -> None:
-        text = json.dumps({"jsonrpc": "2.0", **message})
-        if is_picture:
-            self._waiting = [each for each in self._waiting if not each[0]]
-        if (is_picture, text) not in self._waiting:
-            self._waiting.append((is_picture, text))
-        self._news.set()
-
-    def tell(self, message: str) -> None:
-        """Sends a message for people."""
-        params = {"type": MessageType.Error.value, "message": message}
-        self.post({"method": "window/showMessage", "params": params})
-
-    def refuse(self, request: Request, code: int, message: str) -> None:
-        self.post({"id": request.id, "error": {"code": code, "message": message}})
-
-    def hold_up(self) -> None:
-        """Tells it once that its requests are left out."""
-        if not self._is_held_up:
-            self._is_held_up = True
-            self.tell(_TOO_MUCH)
-
-    async def next(self) -> str:
-        """Returns the next message for it."""
-        while not self._waiting:
-            self._news.clear()
-            await self._news.wait()
-        self._is_held_up = False
-        return self._waiting.pop(0)[1]
-
-
 class Host:
     """All methods belong to the loop's thread. `start` is called once, in the loop that serves the pages."""
 
     def __init__(self, path: Path, write: files.Write) -> None:
-        self.path, self._write = path, write
+        self.path = path
+        self.text = Manuscript(path, write)
         self.uri = path.as_uri()
         self.pages: list[Page] = []
         self.server = make(SETTINGS)
         self._gone = Page()
         """carries out the edits of pages that left"""
-        self._text: str | None = None
         self._version = 0
+        """of the text that the server has"""
         self._trouble = ""
         self._numbers = count(1)
         self._asked: dict[int, Callable[[Json], None]] = {}
@@ -150,28 +89,47 @@ class Host:
         if others:
             self._say("workspace/didChangeWatchedFiles", {"changes": others})
         try:
-            text = files.text_of(self.path)
+            self.text.read()
         except CannotError as reason:
             self._tell_trouble(str(reason))
-            return
-        self._tell_trouble("")
-        if text != self._text:
-            self._renew(text)
+        else:
+            self._tell_trouble("")
+        self._renew()
 
     def look(self) -> None:
         """Reads the program's files again: any may have changed before anybody watched it."""
         self.changed(self._sources())
 
-    def _renew(self, text: str) -> None:
-        self._version += 1
-        named: Json = {"uri": self.uri, "version": self._version}
-        if self._text is None:
-            self._say("textDocument/didOpen", {"textDocument": {**named, "languageId": "aidl", "text": text}})
-        else:
-            self._say("textDocument/didChange", {"textDocument": named, "contentChanges": [{"text": text}]})
-        self._text = text
-        if self._busy is None:
-            self._busy = self._loop.call_later(BUSY_AFTER, self._tell_all, {"method": "aidl/busy"})
+    def _renew(self) -> None:
+        """Tells the server and the pages of what has become of the text."""
+        if self.text.version != self._version:
+            named: Json = {"uri": self.uri, "version": self.text.version}
+            if self._version == 0:
+                opened = {**named, "languageId": "aidl", "text": self.text.text}
+                self._say("textDocument/didOpen", {"textDocument": opened})
+            else:
+                changes = [{"text": self.text.text}]
+                self._say("textDocument/didChange", {"textDocument": named, "contentChanges": changes})
+            self._version = self.text.version
+            if self._busy is None:
+                self._busy = self._loop.call_later(BUSY_AFTER, self._tell_all, {"method": "aidl/busy"})
+        for page in self.pages:
+            self._tell_text(page)
+
+    def _tell_text(self, page: Page) -> None:
+        """Tells a page of the text, with its words if it has others."""
+        text = self.text
+        state = {
+            "version": text.version,
+            "saved": text.is_saved,
+            "contested": text.is_contested,
+            "undo": text.undoes,
+            "redo": text.redoes,
+        }
+        if text.text is not None and (page.version, page.state) != (text.version, state):
+            words = text.text if page.version != text.version else None
+            page.version, page.state = text.version, state
+            page.post({"method": "aidl/text", "params": {**state, "text": words}})
 
     def _rested(self) -> None:
         if self._busy is not None:
@@ -203,6 +161,7 @@ class Host:
     def join(self) -> Page:
         page = Page(str(next(self._numbers)))
         self.pages.append(page)
+        self._tell_text(page)
         return page
 
     def leave(self, page: Page) -> None:
@@ -225,7 +184,9 @@ class Host:
             request = read(json.loads(text), Request)
         except (ValueError, RecursionError, JsonRpcInvalidParams):
             return
-        if request.method not in _METHODS:
+        if request.method == _TYPING:
+            self._answer(page, request, partial(self._type, page))
+        elif request.method not in _METHODS | _OWN:
             page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
         elif request.method == _ATTEMPT:
             if page.attempt is not None:
@@ -233,7 +194,7 @@ class Host:
             page.attempt = request
             self._try(page)
         elif len(page.orders) == MOST_ORDERS:
-            page.refuse(request, LSPErrorCodes.RequestFailed, _TOO_MUCH)
+            page.refuse(request, LSPErrorCodes.RequestFailed, TOO_MUCH)
         else:
             page.orders.append(request)
             self._go_on(page)
@@ -257,7 +218,11 @@ class Host:
         self._go_on(page)
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
-        """Has the server answer a page."""
+        """Has a request of a page answered, most by the server."""
+        if request.method in _OWN:
+            self._answer(page, request, self._changes[request.method])
+            then()
+            return
 
         def answered(message: Json) -> None:
             if page in self.pages:
@@ -265,6 +230,37 @@ class Host:
             then()
 
         self._ask(request.method, {**request.params, "viewer": page.name}, answered)
+
+    # --- The text
+
+    @property
+    def _changes(self) -> dict[str, Callable[[Json], None]]:
+        """Returns what carries out each of `_OWN`, given its parameters. They raise CannotError."""
+        return {
+            "aidl/undo": lambda _: self.text.undo(),
+            "aidl/redo": lambda _: self.text.redo(),
+            "aidl/save": lambda given: self.text.save(anyway=given.get("anyway") is True),
+            "aidl/takeFile": lambda _: self.text.take_file(),
+        }
+
+    def _answer(self, page: Page, request: Request, change: Callable[[Json], None]) -> None:
+        """Changes the text for a page, and answers it."""
+        try:
+            change(request.params)
+        except CannotError as reason:
+            result = {"applied": False, "reason": str(reason)}
+        else:
+            result = {"applied": True, "version": self.text.version}
+        if page in self.pages:
+            page.post({"id": request.id, "result": result})
+        self.changed(self._sources() if result["applied"] and request.method != _TYPING else ())
+
+    def _type(self, page: Page, given: Json) -> None:
+        """Changes the text as a page types; one that does not have it yet is told of it first."""
+        if given.get("version") != self.text.version or self.text.text is None:
+            raise CannotError("the text has changed meanwhile")
+        self.text.type(typed(self.text.text, given.get("changes")), page.name, self._loop.time())
+        page.version = self.text.version
 
     # --- The server
 
@@ -302,28 +298,34 @@ class Host:
             self._tell_all(message)
 
     def _edited(self, params: Json) -> Json:
-        """Writes an edit into the files."""
+        """Makes an edit that the server asks for."""
         try:
-            self._edit(params["edit"]["documentChanges"])
+            self._edit(params.get("label") or "Change", params["edit"]["documentChanges"])
         except CannotError as reason:
             return {"applied": False, "failureReason": str(reason)}
         self.look()
         return {"applied": True}
 
-    def _edit(self, changes: list[Json]) -> None:
+    def _edit(self, label: str, changes: list[Json]) -> None:
         """Edits each file as a whole or not at all. Raises CannotError."""
         known = {
             self.server.documents.uri_of(path): (path, source) for path, source in self._sources().items()
         }
-        written = []
+        own: SourceFile | None = None
+        edits: list[Edit] = []
+        others = {}
         for change in changes:
             path, source = known.get(change["textDocument"]["uri"], (None, None))
             if path is None or source is None:
                 raise CannotError("this cannot be changed from here")
             if change["textDocument"]["version"] not in (None, self._version):
                 raise CannotError("the text has changed meanwhile")
-            written.append((path, files.rewritten(path, source, _edits(source, change["edits"]))))
-        files.write(written, self._write)
+            made = _edits(source, change["edits"])
+            if path == self.path:
+                own, edits = source, made
+            else:
+                others[path] = files.rewritten(path, source, made)
+        self.text.set(label, own, edits, others)
 
 
 def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:

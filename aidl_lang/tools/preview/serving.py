@@ -35,6 +35,10 @@ class Served:
     def url(self) -> str:
         return f"http://{self._name}:{self._port}/{self._token}/"
 
+    def rescue(self) -> Path | None:
+        """Returns where what was typed and not saved is kept, if there is any. Raises CannotError."""
+        return self._host.text.rescue()
+
     def run(self) -> None:
         """Serves until it is interrupted."""
         make_room()

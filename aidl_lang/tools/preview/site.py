@@ -22,20 +22,22 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from aidl_lang.tools.preview.host import LONGEST, Host, Page
+from aidl_lang.tools.preview.host import LONGEST, Host
+from aidl_lang.tools.preview.page import Page
 from aidl_lang.tools.preview.watching import watch
 
 PANE = Path(__file__).parent / "pane"
 MOST_PAGES = 16
 """Most pages that are served at once."""
 POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
-    "font-src 'self'"
+    "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; connect-src 'self'; "
+    "img-src 'self' data:; font-src 'self'"
 )
+"""What a page may load. The editor of the text makes a style sheet of its own: `nonce` is for that."""
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 _HEADERS = {
     "Cache-Control": "no-store",
-    "Content-Security-Policy": f"{POLICY}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",
@@ -106,10 +108,13 @@ class _Guard:
 
 async def _index(request: Request) -> Response:
     text = (PANE / "index.html").read_text("utf-8")
-    uri = request.app.state.host.uri
-    for name, value in {"csp": POLICY, "root": "pane/", "nonce": "", "socket": "socket", "uri": uri}.items():
+    uri, nonce = request.app.state.host.uri, secrets.token_urlsafe(16)
+    policy = POLICY.format(nonce=nonce)
+    values = {"csp": policy, "root": "pane/", "nonce": nonce, "socket": "socket", "uri": uri}
+    for name, value in values.items():
         text = text.replace(f"{{{{{name}}}}}", html.escape(value))
-    return Response(text, media_type="text/html", headers=_HEADERS)
+    strict = f"{policy}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+    return Response(text, media_type="text/html", headers={**_HEADERS, "Content-Security-Policy": strict})
 
 
 @cache

@@ -22,8 +22,8 @@ export function activate(context: vscode.ExtensionContext): void {
     "aidl.openPreview": (target) => withDocument(target, previews, (document) => previews.show(document)),
     "aidl.export": (target) =>
       withDocument(target, previews, async (document) => {
-        const format = await chooseFormat();
-        if (format !== undefined) await exportDrawing(language.ask, document, format, previewLayers());
+        const format = await chooseFormat(language.ask, document);
+        if (format !== undefined) await exportDrawing(language.ask, document, { format }, previewLayers());
       }),
     "aidl.newProgram": (target) => newProgram(language, target instanceof vscode.Uri ? target : undefined),
     "aidl.toggleSolvedValues": toggleSolvedValues,

@@ -106,7 +106,7 @@ test("layers are kept for what is asked and exported later", async () => {
   await desk.say("aidl/preview", { show: [] });
   const shown = [["dof", "plan"], ["dof", "plan"], []];
   assert.deepEqual(desk.requests("aidl/preview"), shown.map((show) => ({ uri: URI, show })));
-  assert.deepEqual(desk.exported, [["dxf", ["dof", "plan"]]]);
+  assert.deepEqual(desk.exported, [[{ format: "dxf" }, ["dof", "plan"]]]);
   assert.equal(answer?.result, null); // the editor has saved it
 });
 

@@ -52,6 +52,5 @@ export const preview = (changes: Partial<Preview> = {}): Preview => ({
   conflicts: [],
   motions: [],
   degrees: 2,
-  source: null,
   ...changes,
 });

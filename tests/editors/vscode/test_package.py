@@ -41,6 +41,8 @@ def test_it_holds_what_the_manifest_names(package):
 
 def test_the_pane_in_it_is_the_one_in_the_tree(package):
     own = {file.name: file.read_bytes() for file in PANE.iterdir() if not file.name.endswith(".d.ts")}
+    for name in ("editor.js", "editor.LICENSES.txt", "words.js"):  # the text is in VS Code's own editor
+        del own[name]
     prefix = "extension/media/pane/"
     packed = {name.removeprefix(prefix): data for name, data in package.items() if name.startswith(prefix)}
     assert packed == own

@@ -181,7 +181,7 @@ def test_export_saves_a_file(window):
     window.open("export.aidl", PLATE)
     pane = window.preview()
     pane.locator("#export-button").click()
-    pane.locator("#export-menu").get_by_text("SVG", exact=False).first.click()
+    pane.locator("#export-menu").get_by_role("button", name="Save").click()
     expect(window.field).to_have_value(re.compile(r"export\.svg$"), timeout=PATIENCE)
     target = window.folder / "saved.svg"
     window.field.fill(str(target))

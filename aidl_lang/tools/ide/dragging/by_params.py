@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import TypeAlias
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
@@ -18,7 +19,7 @@ from aidl_lang.tools.agents.knobs import edit_at
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.dragging.grips import Grip, grips, is_somewhere
 from aidl_lang.tools.ide.refusing import Refusal
-from aidl_lang.tools.ide.view import View, run
+from aidl_lang.tools.ide.view import View, hasty, run
 
 MOST_KNOBS = 12
 _SECONDS = 0.6
@@ -32,6 +33,11 @@ _LAZY = 0.1
 _ROUNDS = 3
 _BESIDE = 0.3
 """Sine of the least angle between the ways of two params that count as different."""
+
+_KEPT = 16
+"""Most values of params whose places are kept for the next step of a drag."""
+Values: TypeAlias = frozenset[tuple[str, float]]
+"""Values of params by their paths."""
 
 Slopes = Mapping[str, Vec]
 """Per param path, the velocity of a point per unit of the param."""
@@ -47,21 +53,21 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
     """Returns the program with one or two params changed so that a point comes near a place, the point, and
     the edits of their defaults.
     """
-    slopes = dict(_slopes(view).get(grip.id, {}))
+    slopes, tries = dict(_slopes(view).get(grip.id, {})), _tries(view)
     values: dict[str, float] = {}
-    at = _place(view, grip.id, values)
+    at = _place_in(view, grip.id)
     for _ in range(2):
         if at is None or not slopes or math.dist(at, to) <= step:
             break
         wanted = to[0] - at[0], to[1] - at[1]
         best = max(slopes, key=lambda path: _promise(view, path, wanted, slopes[path]))
         way = slopes.pop(best)
-        value = _value(view, grip.id, best, values, to, way, step)
+        value = _value(tries, grip.id, best, values, to, way, step)
         if value is not None:
             values[best] = value
-            at = _place(view, grip.id, values)
-        slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
-    shown = run(view, view, params={**(view.params or {}), **values})
+            at = tries.place(grip.id, values)
+            slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
+    shown = tries.run(values)
     at = _place_in(shown, grip.id)
     if at is None:
         return Refusal("the program does not solve with the param turned that far")
@@ -127,8 +133,8 @@ def _set(view: View, path: str, value: float) -> Iterator[Edit]:
 def _nudge(knob: Knob) -> float:
     value = float(knob.value)
     if knob.low is None or knob.high is None:
-        return _NUDGE * max(1.0, abs(value))
-    nudge = _NUDGE * (knob.high - knob.low) or _NUDGE
+        return knob.step or _NUDGE * max(1.0, abs(value))
+    nudge = knob.step or _NUDGE * (knob.high - knob.low) or _NUDGE
     return nudge if value + nudge <= knob.high else -nudge
 
 
@@ -141,10 +147,6 @@ def _places(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
     return {grip.id: grip.at(evaluate) for grip in grips(model)}
 
 
-def _place(view: View, grip: str, values: Mapping[str, float]) -> Vec | None:
-    return _places(view, values).get(grip) if values else _place_in(view, grip)
-
-
 def _place_in(view: View, grip: str) -> Vec | None:
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
@@ -155,17 +157,75 @@ def _place_in(view: View, grip: str) -> Vec | None:
 # --- How far to turn it --------------------------------------------------------------------------
 
 
+class _Tries:
+    """Runs of a view with other values of params. A drag tries much the same values at each of its steps, so
+    the last ones are kept: the next step begins at the nearest.
+    """
+
+    def __init__(self, view: View) -> None:
+        self.view = view
+        self._shown: dict[Values, View] = {}
+        self._places: dict[Values, Mapping[str, Vec]] = {}
+
+    def run(self, values: Mapping[str, float]) -> View:
+        """Returns the view with these values, drawn."""
+        key = frozenset(values.items())
+        if key not in self._shown:
+            shown = run(self.view, self.view, params={**(self.view.params or {}), **values}, settings=hasty())
+            self._shown = {key: shown}
+        return self._shown[key]
+
+    def place(self, grip: str, values: Mapping[str, float], *, likely: bool = False) -> Vec | None:
+        """Returns the place of a point with these values; None if they do not solve. `likely` ones are run at
+        once as they will be shown.
+        """
+        key = frozenset(values.items())
+        if key not in self._places:
+            if not (likely or key in self._shown):
+                found = _places(self.view, values)
+            elif (outcome := self.run(values).outcome) is not None and outcome.status == "solved":
+                assert outcome.built is not None
+                assert outcome.evaluate is not None
+                found = {each.id: each.at(outcome.evaluate) for each in grips(outcome.built)}
+            else:
+                found = {}
+            self._places = {**dict(list(self._places.items())[1 - _KEPT :]), key: found}
+        return self._places[key].get(grip)
+
+    def nearest(self, grip: str, path: str, values: Mapping[str, float], to: Vec) -> tuple[float, Vec] | None:
+        """Returns the value of a param, beside the given ones of others, that brought a point nearest to a
+        place, and where that was.
+        """
+        beside = frozenset((other, value) for other, value in values.items() if other != path)
+        known = [
+            (value, at)
+            for key, places in self._places.items()
+            if (at := places.get(grip)) is not None and beside <= key and len(key) == len(beside) + 1
+            for name, value in key - beside
+            if name == path
+        ]
+        return min(known, key=lambda each: math.dist(each[1], to), default=None)
+
+
+@lru_cache(maxsize=4)
+def _tries(view: View) -> _Tries:
+    return _Tries(view)
+
+
 def _value(
-    view: View, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
+    tries: _Tries, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
 ) -> float | None:
     """Returns the param value that brings a point nearest to a place along its way; None if only the present
     one solves.
     """
-    assert view.outcome is not None
-    knob = next(k for k in view.outcome.knobs if k.path == path)
+    assert tries.view.outcome is not None
+    knob = next(k for k in tries.view.outcome.knobs if k.path == path)
     slope = math.hypot(*way)
     value, best = float(knob.value), None
-    at = _place(view, grip, values)
+    at = tries.place(grip, values) if values else _place_in(tries.view, grip)
+    if (known := tries.nearest(grip, path, values, to)) is not None:
+        value, at = known
+        best = value
     for _ in range(_ROUNDS):
         if at is None:
             break
@@ -176,12 +236,12 @@ def _value(
         if aimed == value:
             break
         before, value = (value, at), aimed
-        at = _place(view, grip, {**values, path: value})
+        at = tries.place(grip, {**values, path: value}, likely=best is not None)
         if at is not None:
             best = value
             gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
             slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
-    return best
+    return None if best == float(knob.value) else best
 
 
 def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:

@@ -26,7 +26,7 @@ from aidl_lang.tools.ide.dragging.mobility import Ways, belongs, movable, ways
 from aidl_lang.tools.ide.dragging.pulling import Pull, pulled
 from aidl_lang.tools.ide.guesses import Guess, guesses
 from aidl_lang.tools.ide.refusing import Refusal
-from aidl_lang.tools.ide.view import View, edited
+from aidl_lang.tools.ide.view import View, edited, hasty
 
 STEP = 0.1
 """Step to which dragging rounds the numbers it writes, mm."""
@@ -36,6 +36,8 @@ _MOST_GRIPS = 400
 _FARTHEST = 1e6
 """Farthest place from the origin to which a point may be dragged, mm."""
 _FINE = 1e-6
+_PROBE = 3.0
+"""How far the drawing is moved to see whether it stays there, mm."""
 _NAMED = 2
 """Most params that a hint names."""
 
@@ -88,6 +90,7 @@ def handles(view: View, *, params: bool = True) -> list[Handle]:
             if grip.id in known and grip.id not in taken
         ]
         found = [h for h in found if h.id not in known or h.id in taken] + by_param
+        found = [h for h in found if not _is_slide(view, h.id) or h.moves == "param" or _slides(view, h.id)]
     return _outermost(view, found)
 
 
@@ -180,6 +183,27 @@ def _is_slide(view: View, handle: str) -> bool:
     """True for a point that moves only with everything else."""
     known = _ways(view)
     return handle in known.whole and handle not in known.own and handle not in known.sizes
+
+
+def _slides(view: View, handle: str) -> bool:
+    """Tells whether numbers of the text hold the whole drawing where a point is dragged: often there are
+    some, and the solver puts it back all the same.
+    """
+    return _can_slide(view, _ways(view).whole[handle].directions)
+
+
+@lru_cache(maxsize=16)
+def _can_slide(view: View, directions: tuple[Vec, ...]) -> bool:
+    """Tries it with one of the points that move along some directions: all of them move alike."""
+    known = _ways(view)
+    for grip, (x, y) in _places(view):
+        way = known.whole.get(grip.id)
+        if way is None or way.directions != directions or not _is_slide(view, grip.id):
+            continue
+        dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
+        dragged = _pulled(view, grip, (x + dx, y + dy), STEP)
+        return isinstance(dragged, Dragged) and not isinstance(dragged.edits, Refusal)
+    return False
 
 
 def _outermost(view: View, found: list[Handle]) -> list[Handle]:
@@ -275,19 +299,22 @@ def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> 
 
 
 def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
-    """Tells whether the edited text solves, without new errors, with the point where it was shown."""
-    again = edited(view, edits)
+    """Tells whether the edited text solves with the point where it was shown, without errors other than those
+    shown meanwhile.
+    """
+    again = edited(view, edits, hasty())
     assert again.outcome is not None
     assert view.outcome is not None
     grip = _grips_of(again).get(dragged._grip.id)
     if grip is None or again.outcome.evaluate is None:
         return False
     errors = {d.code for d in again.outcome.diagnostics if d.is_error}
-    if not errors <= {d.code for d in view.outcome.diagnostics}:
+    shown = dragged.view.outcome
+    known = (*view.outcome.diagnostics, *(shown.diagnostics if shown is not None else ()))
+    if not errors <= {d.code for d in known}:
         return False
     if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
         return True
     # A drawing that the text does not place may move as a whole.
-    shown = dragged.view.outcome
     is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
     return is_same_shape and not _is_slide(view, grip.id)

@@ -16,7 +16,7 @@ from aidl_lang.tools.ide.preview.problems import conflicts, problems
 from aidl_lang.tools.ide.preview.sliders import sliders
 from aidl_lang.tools.ide.preview.values import FREEDOM, LAYERS, Preview, Way
 from aidl_lang.tools.ide.preview.ways import ways
-from aidl_lang.tools.ide.view import SETTINGS, View, run
+from aidl_lang.tools.ide.view import SETTINGS, View, hasty, run
 
 _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 
@@ -45,7 +45,7 @@ def preview(
         elements=found.values,
         knobs=tuple(sliders(view)),
         handles=tuple(_moved(view, known)),
-        problems=tuple(problems(view, found, unpainted)),
+        problems=tuple(problems(view, found, unpainted, tried=tried)),
         conflicts=tuple(conflicts(view, found)),
         ways=tuple(_ways(view, found)) if FREEDOM in show else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
@@ -101,6 +101,11 @@ def tried(
     knobs: Mapping[str, float | str | bool],
     memory: Memory | None = None,
     settings: Settings = SETTINGS,
+    *,
+    rests: bool = False,
 ) -> View:
-    """Returns the view with other values of some params. Raises Cancelled as `run` does."""
-    return run(view, view, memory, {**(view.params or {}), **knobs}, settings)
+    """Returns the view with other values of some params; why they do not hold is explained if what changes
+    them `rests`. Raises Cancelled as `run` does.
+    """
+    how = settings if rests else hasty(settings)
+    return run(view, view, memory, {**(view.params or {}), **knobs}, how)

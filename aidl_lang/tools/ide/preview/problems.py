@@ -17,19 +17,23 @@ from aidl_lang.tools.ide.view import View
 _QUOTED = re.compile("`([^`]+)`")
 
 
-def problems(view: View, elements: Elements, painting: Sequence[Diagnostic] = ()) -> Iterator[Problem]:
-    """Yields the diagnostics of the text, and those of painting it, each with its elements and points."""
+def problems(
+    view: View, elements: Elements, painting: Sequence[Diagnostic] = (), *, tried: bool = False
+) -> Iterator[Problem]:
+    """Yields the diagnostics of the text, and those of painting it, each with its elements and points. Of
+    values that are only tried none has a fix: fixes are of the text.
+    """
     finder = _Finder(view, elements)
     for found in (*view.diagnostics, *painting):
         yield Problem(
             found.severity.value,
             found.code,
             found.message,
-            found.hints,
+            () if tried and found.fix is not None else found.hints,
             found.span,
             tuple(finder.about(found)),
             tuple(p for p in found.points if all(map(math.isfinite, p))),
-            (found.fix,) if found.fix is not None else (),
+            (found.fix,) if found.fix is not None and not tried else (),
         )
 
 

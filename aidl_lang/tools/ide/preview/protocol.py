@@ -10,7 +10,6 @@ from aidl_lang.common.numbers import rounded
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way
-from aidl_lang.tools.ide.semantic_tokens import semantic_tokens
 from aidl_lang.tools.ide.view import View
 
 Json: TypeAlias = dict[str, Any]
@@ -24,38 +23,31 @@ class Writer:
         self._positions: dict[SourceFile, Positions] = {}
         self._uris: dict[SourceFile, str | None] = {}
 
-    def preview(self, preview: Preview, version: int, source: Json | None = None) -> Json:
-        """Returns the preview; numbers without a value are null. `source` is that of `source`, or null."""
-        made = {
-            "uri": self._uri_of(self._view.path),
-            "version": version,
-            "status": preview.status,
-            "stale": preview.stale,
-            "tried": preview.tried,
-            "seconds": preview.seconds,
-            "svg": preview.svg,
-            "box": preview.box,
-            "elements": [self._element(element) for element in preview.elements],
-            "knobs": [self._knob(knob) for knob in preview.knobs],
-            "handles": [
-                {"id": h.id, "path": h.path, "at": h.at, "moves": h.moves, "hint": h.hint}
-                for h in preview.handles
-            ],
-            "problems": [self._problem(problem) for problem in preview.problems],
-            "conflicts": [self._conflict(conflict) for conflict in preview.conflicts],
-            "motions": [_motion(way) for way in preview.ways],
-            "degrees": preview.degrees,
-        }
-        return {**rounded(made), "source": source}
-
-    def source(self, view: View) -> Json:
-        """Returns the text with its colours, for viewers without an editor."""
-        positions = self.positions(view.source)
-        tokens = [
-            (*positions.position(c.span.start), positions.length(c.span.start, c.span.end), c.type)
-            for c in semantic_tokens(view)
-        ]
-        return {"text": view.source.text, "tokens": tokens}
+    def preview(self, preview: Preview, version: int) -> Json:
+        """Returns the preview; numbers without a value are null."""
+        made: Json = rounded(
+            {
+                "uri": self._uri_of(self._view.path),
+                "version": version,
+                "status": preview.status,
+                "stale": preview.stale,
+                "tried": preview.tried,
+                "seconds": preview.seconds,
+                "svg": preview.svg,
+                "box": preview.box,
+                "elements": [self._element(element) for element in preview.elements],
+                "knobs": [self._knob(knob) for knob in preview.knobs],
+                "handles": [
+                    {"id": h.id, "path": h.path, "at": h.at, "moves": h.moves, "hint": h.hint}
+                    for h in preview.handles
+                ],
+                "problems": [self._problem(problem) for problem in preview.problems],
+                "conflicts": [self._conflict(conflict) for conflict in preview.conflicts],
+                "motions": [_motion(way) for way in preview.ways],
+                "degrees": preview.degrees,
+            }
+        )
+        return made
 
     def place(self, span: Span | None) -> Json:
         """Returns `range` and `uri` of a place; both null for the library, or without a place."""

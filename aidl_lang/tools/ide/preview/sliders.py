@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import Edit
@@ -12,7 +13,9 @@ from aidl_lang.tools.agents import knobs
 from aidl_lang.tools.agents.workspace import refusal
 from aidl_lang.tools.ide.preview.places import Places
 from aidl_lang.tools.ide.preview.values import Slider
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.view import View, edited, hasty
+
+Value: TypeAlias = float | str | bool
 
 _LITERALS = (ast.Number, ast.String, ast.Boolean)
 _SLACK = 1e-9
@@ -46,18 +49,68 @@ def sliders(view: View) -> Iterator[Slider]:
         )
 
 
-def set_knob(view: View, path: str, value: float | str | bool) -> list[Edit]:
-    """Returns the edits that make a value the default of a param. Raises RefusalError for an invalid one."""
-    knob = knobs.find(view.outcome.knobs if view.outcome is not None else (), path)
+def set_knob(view: View, path: str, value: Value) -> list[Edit]:
+    """Returns the edits that make a value the default of a param; a text for a number is worked out. Raises
+    RefusalError for an invalid one.
+    """
+    knob = _knob(view, path)
     declared = _declaration(view, knob)
     if declared is None or knob.span is None:
         raise refusal("E0945", f"`{knob.path}` is declared in the library, and cannot be changed there")
     if not _is_literal(declared.value):
         written = declared.value.span.one_line
         raise refusal("E0945", f"`{knob.path}` is worked out, as `{written}`; change what it is made of")
-    if not _is_allowed(knob, value):
-        raise refusal("E0945", f"`{knob.path}` cannot be `{value}`: that is outside its range")
-    return [knobs.edit_at(knob, declared, value)]
+    _require_allowed(knob, _worked_out(knob, value))
+    edits = [knobs.edit_at(knob, declared, value)]
+    if _is_typed(knob, value):
+        _require_sense(view, edits)
+    return edits
+
+
+def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
+    """Returns values of params with texts for numbers worked out. Raises RefusalError for an invalid one."""
+    found: dict[str, Value] = {}
+    for path, value in values.items():
+        found[path] = value
+        if isinstance(value, str) and _is_typed(knob := _knob(view, path), value):
+            found[path] = _worked_out(knob, value)
+            _require_allowed(knob, found[path])
+    return found
+
+
+def _knob(view: View, path: str) -> Knob:
+    return knobs.find(view.outcome.knobs if view.outcome is not None else (), path)
+
+
+def _is_typed(knob: Knob, value: Value) -> bool:
+    """Tells whether a value is a text that means a number."""
+    return isinstance(value, str) and _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
+
+
+def _worked_out(knob: Knob, value: Value) -> Value:
+    return knobs.typed(knob, value).value if isinstance(value, str) and _is_typed(knob, value) else value
+
+
+def _require_allowed(knob: Knob, value: Value) -> None:
+    if _is_allowed(knob, value):
+        return
+    said = f"{value:.6g}" if isinstance(value, float) else str(value)
+    if knob.low is None or knob.high is None:
+        raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is none of its choices")
+    allowed = f"{knob.low:.6g}..{knob.high:.6g}"
+    unit = f" {knob.unit}" if knob.unit else ""
+    raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is outside its range {allowed}{unit}")
+
+
+def _require_sense(view: View, edits: list[Edit]) -> None:
+    """Raises RefusalError if the text could no longer be built, as with a length where a number was."""
+    again = edited(view, edits, hasty()).outcome
+    before = view.outcome
+    if again is None or before is None or again.model is not None or before.model is None:
+        return
+    wrong = next((found for found in again.diagnostics if found.is_error), None)
+    if wrong is not None:
+        raise refusal("E0945", f"the program cannot be built with this: {wrong.message}")
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
@@ -84,7 +137,7 @@ def _kind(knob: Knob) -> str:
     return "text" if isinstance(knob.value, str) else "number"
 
 
-def _is_allowed(knob: Knob, value: float | str | bool) -> bool:
+def _is_allowed(knob: Knob, value: Value) -> bool:
     if knob.choices:
         return value in knob.choices
     if not isinstance(value, float | int) or knob.low is None or knob.high is None:

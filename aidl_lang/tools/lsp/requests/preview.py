@@ -21,9 +21,10 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.export import FORMATS, ExportError, Options
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.dragging import drag
-from aidl_lang.tools.ide.preview import LAYERS, set_knob, tried
+from aidl_lang.tools.ide.preview import LAYERS, set_knob, tried, worked_out
 from aidl_lang.tools.ide.refusing import Refusal
 from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.lsp import exports
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
 from aidl_lang.tools.lsp.pictures import Json, Pictures
@@ -45,6 +46,7 @@ def register(server: Server) -> None:
     _answer(server, "aidl/drag", Drag, requests.drag)
     _answer(server, "aidl/fix", ApplyFix, requests.fix)
     _answer(server, "aidl/export", Export, requests.export)
+    _answer(server, "aidl/exports", OfDocument, requests.exports)
 
 
 def _answer(server: Server, method: str, kind: type[T], answer: Callable[[T], Awaitable[Any]]) -> None:
@@ -85,7 +87,12 @@ class _Requests:
 
         def view() -> View:
             if given.drag is None:
-                return tried(asked.view, given.knobs, document.memory, self.server.limits)
+                try:
+                    values = worked_out(asked.view, given.knobs)
+                except RefusalError as refusal:
+                    raise JsonRpcException(_worded(refusal.diagnostics[0]), FAILED) from None
+                limits = self.server.limits
+                return tried(asked.view, values, document.memory, limits, rests=given.rests)
             made = drag(asked.view, given.drag.id, given.drag.to)
             if isinstance(made, Refusal):
                 raise JsonRpcException(made.reason, FAILED)
@@ -131,12 +138,20 @@ class _Requests:
         outcome = document.ran.view.outcome if document.ran is not None else None
         if outcome is None or outcome.model is None or outcome.drawing is None:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
-        options = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
+        plain = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
         try:
-            data = await self.server.searches.ask(lambda: outcome.export(suffix, options))
+            options = exports.changed(plain, given.options)
+            made = await self.server.searches.ask(lambda: outcome.exported(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
-        return {"name": document.path.stem + suffix, "data": base64.b64encode(data).decode("ascii")}
+        except ValueError as reason:
+            raise JsonRpcException(str(reason), FAILED) from None
+        name, data = exports.packed(document.path.stem, suffix, made)
+        notes = [_worded(note) for note in made.notes]
+        return {"name": name, "data": base64.b64encode(data).decode("ascii"), "notes": notes}
+
+    async def exports(self, given: OfDocument) -> Json:
+        return exports.offered()
 
     def _document(self, given: OfDocument) -> Document:
         document = self.server.documents.get(given.uri)

@@ -4,6 +4,8 @@
 
 /** After so long an answer is not waited for. */
 const PATIENCE = 3000;
+/** Milliseconds without anything newer after which what is wrong is looked into. */
+const REST = 350;
 
 export class Attempts {
   /** @type {Attempt | null} */
@@ -16,8 +18,11 @@ export class Attempts {
   /** Whether what is shown may be of values that are not in the text. */
   active = false;
 
-  /** @param {(attempt: Attempt, isWanted: () => boolean) => Promise<void>} show asks for it and shows what comes, if that
-   *   is wanted still; does not reject */
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #resting = undefined;
+
+  /** @param {(attempt: Attempt & { rests?: boolean }, isWanted: () => boolean) => Promise<boolean>} show asks for it and
+   *   shows what comes, if that is wanted still; tells whether that is to be looked into; does not reject */
   constructor(show) {
     this.show = show;
   }
@@ -25,6 +30,7 @@ export class Attempts {
   /** @param {Attempt} attempt */
   attempt(attempt) {
     this.active = true;
+    clearTimeout(this.#resting);
     if (this.#isAsked) this.#next = attempt;
     else this.#ask(attempt);
   }
@@ -32,18 +38,25 @@ export class Attempts {
   /** What was tried is over: something is written, or forgotten. */
   forget() {
     clearTimeout(this.#timer);
+    clearTimeout(this.#resting);
     this.#asked += 1;
     this.#next = null;
     this.#isAsked = false;
     this.active = false;
   }
 
-  /** @param {Attempt} attempt */
+  /** @param {Attempt & { rests?: boolean }} attempt */
   #ask(attempt) {
     const asked = ++this.#asked;
     this.#isAsked = true;
     this.#timer = setTimeout(() => this.#answered(asked), PATIENCE);
-    void this.show(attempt, () => this.active && asked === this.#asked).then(() => this.#answered(asked));
+    void this.show(attempt, () => this.active && asked === this.#asked).then((isWrong) => {
+      const isLast = asked === this.#asked && this.#isAsked && this.#next === null;
+      this.#answered(asked);
+      if (isWrong && isLast && !attempt.rests) {
+        this.#resting = setTimeout(() => this.#ask({ ...attempt, rests: true }), REST);
+      }
+    });
   }
 
   /** @param {number} asked */

@@ -103,7 +103,7 @@ class Conversation {
 }
 
 const lost = () => new Refusal(-32800, "The connection is lost.");
-const TOLD = new Set(["aidl/previewChanged", "aidl/busy", "aidl/reveal", "window/showMessage"]);
+const TOLD = new Set(["aidl/previewChanged", "aidl/text", "aidl/busy", "aidl/reveal", "window/showMessage"]);
 
 /**
  * @param {VsCodeApi} code

@@ -12,10 +12,12 @@ const ZOOM = 1.25;
  * @property {() => void} escape
  */
 
+/** @typedef {{ undo?: () => void, redo?: () => void, save?: () => void }} TextKeys */
+
 /**
  * @param {HTMLElement} stage
  * @param {View} view
- * @param {Listener} listener
+ * @param {Listener & TextKeys} listener
  */
 export function listenToKeys(stage, view, listener) {
   const press = (/** @type {string} */ id) => () => {
@@ -42,10 +44,24 @@ export function listenToKeys(stage, view, listener) {
     ArrowUp: () => view.pan(0, STEP),
     ArrowDown: () => view.pan(0, -STEP),
   };
+  /** @param {KeyboardEvent} event */
+  function withControl({ key, shiftKey }) {
+    const letter = key.toLowerCase();
+    if (letter === "z") return shiftKey ? listener.redo : listener.undo;
+    return { y: listener.redo, s: listener.save }[letter];
+  }
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    if (event.altKey || event.defaultPrevented) return;
     const { target } = event;
+    const isField = target instanceof HTMLInputElement && !["range", "checkbox"].includes(target.type);
+    if (event.ctrlKey || event.metaKey) {
+      const action = isField && event.key.toLowerCase() !== "s" ? undefined : withControl(event);
+      if (!action) return; // a field has a history of its own
+      event.preventDefault();
+      return action();
+    }
     if (target instanceof HTMLInputElement || target instanceof HTMLSelectElement) return;
+    if (target instanceof HTMLElement && target.isContentEditable) return;
     const isOnStage = target === document.body || target === stage;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const action = anywhere[key] ?? (isOnStage ? onStage[key] : undefined);

@@ -10,6 +10,8 @@ import { Scale } from "./scales.js";
  * @typedef {object} Listener
  * @property {(knob: Knob, value: Value) => void} attempt show what it would look like
  * @property {(knob: Knob, value: Value) => void} write it into the text
+ * @property {(knob: Knob, text: string, isTried: boolean) => Promise<string>} type work out what was typed, and write it
+ *   into the text or try it; tells why that was refused, if it was
  * @property {() => void} cancel forget what was tried
  */
 
@@ -47,7 +49,8 @@ export class Knobs {
     for (const knob of knobs) {
       const before = this.#rows.get(knob.path);
       const row = before?.fits(knob) ? before : new Row(knob, this.listener);
-      if (!tried) row.settle(knob);
+      if (tried) row.tried(knob);
+      else row.settle(knob);
       rows.set(knob.path, row);
     }
     this.#rows = rows;
@@ -67,6 +70,8 @@ export class Knobs {
 class Row {
   #isTrying = false;
   #byKey = false;
+  /** Whether the host works out what was typed. */
+  isAsking = false;
 
   /**
    * @param {Knob} knob
@@ -88,12 +93,14 @@ class Row {
     this.element = el("div", { class: `knob ${knob.kind}`, title: knob.doc || null });
     this.element.append(el("div", { class: "head" }, name, this.reset), el("div", { class: "field" }, ...this.control.elements));
     if (knob.doc) this.element.append(el("p", { class: "doc" }, ...quoted(knob.doc)));
+    this.refusal = el("p", { class: "refusal", role: "alert", id: `${id}-refusal`, hidden: true });
+    this.element.append(this.refusal);
     if (!isWritable(knob)) {
       this.element.append(el("p", { class: "doc" }, "Can be tried here, but its value in the text cannot be changed."));
     }
     this.element.addEventListener("keydown", (event) => {
       this.#byKey = event.key !== "Escape";
-      if (this.#byKey || !this.#isTrying) return;
+      if (this.#byKey || !(this.#isTrying || this.isRefused)) return;
       event.stopPropagation();
       this.isIgnored = this.isSlid;
       this.cancel();
@@ -122,14 +129,50 @@ class Row {
    * @param {Knob} knob
    */
   settle(knob) {
+    const isSame = knob.value === this.written;
     this.knob = knob;
     this.written = knob.value;
-    if (!this.#isTrying) this.restore();
+    if (!this.#isTrying && !(this.isRefused && isSame)) this.restore();
     this.#update();
+  }
+
+  /**
+   * The value that is tried, by what was typed or by a point that is dragged.
+   * @param {Knob} knob
+   */
+  tried({ value }) {
+    if (this.#isTrying || this.isRefused) return;
+    this.value = value;
+    this.control.show(value);
+    this.#update();
+  }
+
+  get isRefused() {
+    return !this.refusal.hidden;
+  }
+
+  /**
+   * What was typed is worked out by the host, which may refuse it.
+   * @param {string} text
+   */
+  async type(text) {
+    this.isAsking = true;
+    this.refuse("");
+    const why = await this.listener.type(this.knob, text, !isWritable(this.knob));
+    this.isAsking = false;
+    this.refuse(why);
+  }
+
+  /** @param {string} why */
+  refuse(why) {
+    this.refusal.replaceChildren(...quoted(why));
+    this.refusal.hidden = !why;
+    this.element.classList.toggle("refused", Boolean(why));
   }
 
   restore() {
     this.#isTrying = this.isSlid = false;
+    this.refuse("");
     this.value = this.written;
     this.control.show(this.value);
     this.#update();
@@ -138,6 +181,7 @@ class Row {
   /** @param {Value} value */
   attempt(value) {
     if (value === this.value) return;
+    this.refuse("");
     this.value = value;
     this.#isTrying = true;
     this.#update();
@@ -219,10 +263,11 @@ function number(row, id) {
   const { knob } = row;
   let scale = new Scale(knob, Number(knob.value));
   const slider = el("input", { type: "range", step: "any", "aria-label": knob.name });
-  const field = el("input", { type: "text", inputmode: "decimal", id, size: "6", autocomplete: "off" });
+  const field = el("input", { type: "text", id, size: "6", autocomplete: "off", spellcheck: "false", "aria-describedby": `${id}-refusal` });
   const unit = el("span", { class: "unit" }, knob.unit === "deg" ? "°" : knob.unit);
   const bounds = [knob.low, knob.high].map((bound) => (bound === null ? "…" : shown(bound, 6)));
-  field.title = knob.low === null && knob.high === null ? "" : `${bounds.join(" to ")}`;
+  const range = knob.low === null && knob.high === null ? "" : `${bounds.join(" to ")}; `;
+  field.title = `${range}units and sums are worked out: 12cm, 80+20, 1/2in`;
 
   /** @param {number} value */
   function fill(value) {
@@ -265,12 +310,14 @@ function number(row, id) {
     slider.value = String(row.value);
     row.finish();
   });
+  field.addEventListener("input", () => row.refuse(""));
   field.addEventListener("change", () => {
-    const typed = Number(field.value.trim().replace(",", ".").replace("\u2212", "-"));
-    const isNumber = field.value.trim() !== "" && Number.isFinite(typed);
-    const value = isNumber ? scale.typed(typed) : Number(row.value);
-    show(value);
-    row.choose(value);
+    const text = field.value.trim();
+    if (text === "" || text === plain(Number(row.value))) show(row.value);
+    else void row.type(text);
+  });
+  field.addEventListener("blur", () => {
+    if (!row.isAsking && !row.isRefused) show(row.value); // what was typed is the value, otherwise written
   });
   show(knob.value);
   const measure = el("span", { class: knob.unit ? "measure with-unit" : "measure" }, field, unit);

@@ -1,12 +1,14 @@
 /** The preview: brings what the host says onto the page, and what is done there to the host.
  * @import { Box } from "./view.js"
- * @import { Applied, Attempt, Format, Handle, Name, Params, Place, Preview, Range, Requests, Told, Vec } from "./protocol.js"
+ * @import { Applied, Asked, Attempt, ExportWish, Handle, Params, Place, Preview, Range, TextState, Told, Vec } from "./protocol.js"
  */
 
 import { Attempts } from "./attempts.js";
-import { el, part, svg } from "./dom.js";
+import { el, part, quoted, svg } from "./dom.js";
 import { download } from "./download.js";
 import { Drawing } from "./drawing.js";
+import { elementsOn } from "./elements.js";
+import { exportMenu } from "./exporting.js";
 import { Freedom } from "./freedom.js";
 import { watch } from "./gestures.js";
 import { coordinates, Handles } from "./handles.js";
@@ -14,14 +16,14 @@ import { connect, Refusal } from "./host.js";
 import { listenToKeys } from "./keys.js";
 import { Knobs } from "./knobs.js";
 import { remember, remembering } from "./memory.js";
-import { exportMenu, foldingPanels, layersMenu, themeButton, toggle } from "./menus.js";
+import { foldingPanels, layersMenu, themeButton, toggle } from "./menus.js";
 import { fileName } from "./numbers.js";
 import { Paper } from "./paper.js";
 import { PointMarks } from "./points.js";
 import { Pointing } from "./pointing.js";
 import { Problems } from "./problems.js";
-import { elementsOn, SourceView } from "./source.js";
 import { StatusView } from "./status.js";
+import { TextButtons, TextPanel } from "./text.js";
 import { Tooltip } from "./tooltip.js";
 import { View } from "./view.js";
 
@@ -73,14 +75,26 @@ class Pane {
       tell: (handle, at, where) => this.tell(handle, at, where),
       hush: () => this.tooltip.hide(),
     });
-    this.source = new SourceView(part("source-lines", HTMLElement), {
+    const text = {
+      undo: () => void this.change("aidl/undo", { uri: this.uri }),
+      redo: () => void this.change("aidl/redo", { uri: this.uri }),
+      save: (anyway = false) => void this.change("aidl/save", { uri: this.uri, anyway }),
+      takeFile: () => void this.change("aidl/takeFile", { uri: this.uri }),
+    };
+    this.source = new TextPanel(part("source-lines", HTMLElement), {
+      ...text,
+      typed: () => this.textButtons.unsaved(true),
+      type: (version, changes) => this.ask("aidl/type", { uri: this.uri, version, changes }),
       choose: (line) => this.pointing.choose(this.preview ? elementsOn(this.preview, line) : []),
       point: (line) => point(this.preview && line !== null ? elementsOn(this.preview, line) : []),
+      failed: (message) => this.failed(message),
     });
+    this.textButtons = new TextButtons(text);
     this.pointing = new Pointing(this.drawing, this.handles, this.source, (element) => this.hover(element));
     this.knobs = new Knobs(part("knobs-list", HTMLElement), {
       attempt: ({ path }, value) => this.attempts.attempt({ knobs: { [path]: value } }),
       write: ({ path }, value) => this.edit("aidl/setKnob", { uri: this.uri, path, value }),
+      type: ({ path }, text, isTried) => this.typed(path, text, isTried),
       cancel: () => this.cancel(),
     });
     this.problems = new Problems(part("problems-list", HTMLElement), part("problems-count", HTMLElement), {
@@ -88,12 +102,15 @@ class Pane {
       fix: (problem, fix) => this.edit("aidl/fix", { uri: this.uri, version: this.settled?.version ?? 0, problem, fix }),
       point,
     });
-    this.watch();
+    this.watch(this.host.code === null ? text : {}); // in VS Code the editor has these keys
     this.menus();
   }
 
-  /** The pointer, the keys, and the size of the window. */
-  watch() {
+  /**
+   * The pointer, the keys, and the size of the window.
+   * @param {import("./keys.js").TextKeys} text
+   */
+  watch(text) {
     watch(this.stage, this.view, {
       click: (event) => this.click(event),
       doubleClick: () => this.fit(),
@@ -103,6 +120,7 @@ class Pane {
     listenToKeys(this.stage, this.view, {
       fit: () => this.fit(),
       escape: () => this.pointing.clear(),
+      ...text,
     });
     new ResizeObserver(() => {
       if (this.measure() && !this.view.isChosen) this.fit();
@@ -120,7 +138,7 @@ class Pane {
   menus() {
     foldingPanels();
     themeButton(this.host.code !== null);
-    exportMenu((format) => void this.export(format));
+    exportMenu(() => this.ask("aidl/exports", { uri: this.uri }), (wish) => this.export(wish));
     this.layers = layersMenu(
       () => void this.want(),
       (hasGrid) => {
@@ -148,18 +166,19 @@ class Pane {
 
   /**
    * Null where there is no answer; why is told, unless something newer came first.
-   * @template {Name} N
+   * @template {keyof Asked} N
    * @param {N} method
    * @param {Params<N>} params
-   * @returns {Promise<Requests[N]["result"] | null>}
+   * @param {(reason: string) => void} [refused] told in place of a toast
+   * @returns {Promise<Asked[N]["result"] | null>}
    */
-  async ask(method, params) {
+  async ask(method, params, refused = (reason) => this.failed(reason)) {
     const timer = setTimeout(() => this.status.busy(true), BUSY_AFTER);
     this.#asked += 1;
     try {
       return await this.host.ask(method, params);
     } catch (error) {
-      if (!(error instanceof Refusal && error.isOvertaken)) this.failed(error instanceof Error ? error.message : String(error));
+      if (!(error instanceof Refusal && error.isOvertaken)) refused(error instanceof Error ? error.message : String(error));
       return null;
     } finally {
       clearTimeout(timer);
@@ -171,23 +190,25 @@ class Pane {
   open() {
     this.#isOpen = true;
     this.status.connected();
+    this.source.open();
     void this.want();
   }
 
   /** Ask for the picture, with what is wanted beside the drawing: what can move takes a while to find out. */
   async want() {
-    const source = this.host.code === null;
-    const picture = await this.ask("aidl/preview", { uri: this.uri, show: this.#wanted(), source });
+    const picture = await this.ask("aidl/preview", { uri: this.uri, show: this.#wanted() });
     if (picture) this.picture(picture);
   }
 
   /**
-   * @param {Attempt} attempt
+   * Whether it is worth to be looked into, should nothing newer come.
+   * @param {Attempt & { rests?: boolean }} attempt
    * @param {() => boolean} isWanted
    */
   async attempt(attempt, isWanted) {
     const picture = await this.ask("aidl/try", { uri: this.uri, ...attempt });
     if (picture && isWanted()) this.picture(picture);
+    return picture !== null && picture.status !== "solved" && "knobs" in attempt;
   }
 
   /**
@@ -198,15 +219,60 @@ class Pane {
    */
   async edit(method, params) {
     this.attempts.forget();
+    await this.source.flush();
     const done = /** @type {Applied | null} */ (await this.ask(method, params));
     if (done === null) this.restore();
     else if (!done.applied) this.failed(done.reason ?? "This could not be written into the text.");
   }
 
-  /** @param {Format} format */
-  async export(format) {
-    const file = await this.ask("aidl/export", { uri: this.uri, format, show: this.#wanted() });
+  /**
+   * What was typed into the field of a param is worked out, and written or tried.
+   * @param {string} path
+   * @param {string} text
+   * @param {boolean} isTried
+   * @returns {Promise<string>} why it was refused; empty if it was not
+   */
+  async typed(path, text, isTried) {
+    let why = "";
+    const refused = (/** @type {string} */ reason) => void (why = reason);
+    this.attempts.forget();
+    await this.source.flush();
+    if (isTried) {
+      const picture = await this.ask("aidl/try", { uri: this.uri, knobs: { [path]: text }, rests: true }, refused);
+      if (picture) this.picture(picture);
+    } else {
+      const done = await this.ask("aidl/setKnob", { uri: this.uri, path, value: text }, refused);
+      if (done?.applied === false) refused(done.reason ?? "This could not be written into the text.");
+    }
+    return why;
+  }
+
+  /**
+   * Undoes, redoes or saves, what was typed last among it.
+   * @template {"aidl/undo" | "aidl/redo" | "aidl/save" | "aidl/takeFile"} N
+   * @param {N} method
+   * @param {Params<N>} params
+   */
+  async change(method, params) {
+    this.attempts.forget();
+    await this.source.flush();
+    const done = /** @type {Applied | null} */ (await this.ask(method, params));
+    if (done?.applied === false) this.failed(done.reason ?? "This could not be done.");
+  }
+
+  /**
+   * Why nothing was exported is told by the dialog.
+   * @param {ExportWish} wish
+   * @returns {Promise<string>} why there is no file; empty if there is one
+   */
+  async export(wish) {
+    let why = "";
+    await this.source.flush();
+    const asked = { uri: this.uri, ...wish, show: this.#wanted() };
+    const file = await this.ask("aidl/export", asked, (reason) => void (why = reason));
     if (file) download(file.name, file.data);
+    for (const note of file?.notes ?? []) this.status.toast(note, "warning");
+    return why;
   }
 
   /** @param {number | null} element */
@@ -234,6 +300,8 @@ class Pane {
     switch (told.method) {
       case "aidl/previewChanged":
         return this.changed(told.params);
+      case "aidl/text":
+        return this.words(told.params);
       case "aidl/busy":
         return this.status.busy(true);
       case "aidl/reveal":
@@ -241,6 +309,13 @@ class Pane {
       case "window/showMessage":
         return this.failed(told.params.message);
     }
+  }
+
+  /** @param {TextState} state */
+  words(state) {
+    this.source.told(state);
+    this.textButtons.show(state, this.source.isUnsaved);
+    this.panels();
   }
 
   /**
@@ -300,7 +375,7 @@ class Pane {
     this.points.show(preview.problems);
     this.handles.show(preview.stale ? [] : preview.handles);
     this.freedom.show(preview);
-    if (preview.source) this.source.show(preview.source, preview.problems.filter(({ uri }) => uri === preview.uri));
+    this.source.showProblems(preview);
     this.panels();
     this.pointing.show(preview);
     this.measure(); // panels that come and go while one types must not move the drawing
@@ -324,9 +399,10 @@ class Pane {
   /** Which panels there is something to show in. */
   panels() {
     const preview = this.preview;
-    const hasSource = Boolean(preview?.source);
-    part("source-toggle", HTMLElement).hidden = !hasSource;
+    const hasSource = this.source.isThere;
+    part("source-toggle", HTMLElement).hidden = part("history", HTMLElement).hidden = !hasSource;
     part("source", HTMLElement).hidden = !(hasSource && this.#isSourceWanted);
+    if (hasSource && this.#isSourceWanted) void this.source.show();
     part("problems", HTMLElement).hidden = !preview || !(preview.problems.length || preview.conflicts.length);
     const hasKnobs = Boolean(preview?.knobs.length);
     const hasFreedom = this.#isFreedomWanted && Boolean(preview?.motions.length);
@@ -386,7 +462,7 @@ class Pane {
    */
   goto(uri, range) {
     this.host.tell("aidl/goto", { uri, range });
-    if (uri === this.preview?.uri) this.source.mark([range], { scroll: true });
+    if (uri === this.preview?.uri) this.source.go(range);
   }
 
   /**
@@ -396,7 +472,7 @@ class Pane {
    */
   tell({ hint, path }, at, where) {
     this.pointing.hover(this.pointing.ownerOf(path));
-    const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, hint)];
+    const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, ...quoted(hint))];
     this.tooltip.show(words, where.right - 6, where.bottom - 6);
   }
 }

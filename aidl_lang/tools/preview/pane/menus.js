@@ -1,9 +1,8 @@
 /** The toolbar: buttons that stay pressed, menus that fold out, the theme, panels that fold.
- * @import { Format, Layer } from "./protocol.js"
+ * @import { Layer } from "./protocol.js"
  */
 
 import { el, part, set } from "./dom.js";
-import { FORMATS } from "./formats.js";
 import { recall, remember } from "./memory.js";
 
 const LAYERS = /** @type {[Layer, string][]} */ ([
@@ -43,7 +42,7 @@ export function toggle(id, changed, isOn = false) {
  * A menu below its button. It closes with Escape, and when the focus or a click goes elsewhere.
  * @param {string} name
  */
-function popup(name) {
+export function popup(name) {
   const button = part(`${name}-button`, HTMLButtonElement);
   const menu = part(`${name}-menu`, HTMLElement);
   /** @param {boolean} isOpen */
@@ -56,7 +55,7 @@ function popup(name) {
   menu.addEventListener("keydown", (event) => {
     const items = /** @type {HTMLElement[]} */ ([...menu.querySelectorAll("button, input")]);
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (step === undefined) return;
+    if (step === undefined || event.target instanceof HTMLSelectElement) return;
     event.preventDefault();
     event.stopPropagation();
     const at = items.findIndex((item) => item === document.activeElement);
@@ -106,20 +105,6 @@ export function layersMenu(changed, grid) {
   grid(box.checked);
   update();
   return layers;
-}
-
-/** @param {(format: Format) => void} chosen */
-export function exportMenu(chosen) {
-  const { menu, close, button } = popup("export");
-  for (const [format, words] of FORMATS) {
-    const item = el("button", { type: "button", class: "item" }, words, el("span", { class: "suffix" }, `.${format}`));
-    item.addEventListener("click", () => {
-      close();
-      button.focus();
-      chosen(format);
-    });
-    menu.append(item);
-  }
 }
 
 /**

@@ -3,7 +3,7 @@
  * @import { Element, Preview, Range } from "./protocol.js"
  * @import { Drawing } from "./drawing.js"
  * @import { Handles } from "./handles.js"
- * @import { SourceView } from "./source.js"
+ * @import { TextPanel } from "./text.js"
  */
 
 export class Pointing {
@@ -21,7 +21,7 @@ export class Pointing {
   /**
    * @param {Drawing} drawing
    * @param {Handles} handles
-   * @param {SourceView} source
+   * @param {TextPanel} source
    * @param {(element: number | null) => void} hovers told when another element comes under the pointer
    */
   constructor(drawing, handles, source, hovers) {

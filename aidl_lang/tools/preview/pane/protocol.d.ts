@@ -1,8 +1,6 @@
 /** The messages between the pane and its host. Points are [x, y] in mm in the frame of the root, y up; places in a
  * text are lines and UTF-16 characters from 0. */
 
-import type { FORMATS } from "./formats.js";
-
 export type Vec = [number, number];
 export interface Position { line: number; character: number }
 export interface Range { start: Position; end: Position }
@@ -64,10 +62,6 @@ export interface Conflict { headline: string; constraints: Party[] }
 export interface Turn { center: Vec; radius: number; sweep: number; start?: number }
 export interface Motion { words: string; elements: number[]; arrows: { from: Vec; to: Vec }[]; turns: Turn[] }
 
-/** A line, a character in it, a length in UTF-16 units, and the name of a semantic token type. */
-export type Token = [number, number, number, string];
-export interface Source { text: string; tokens: Token[] }
-
 export type Status = "solved" | "partial" | "failed" | "wrong";
 
 /** `stale`: the drawing is of an earlier text. `tried`: it is of values that are not in the text. */
@@ -87,39 +81,68 @@ export interface Preview {
   conflicts: Conflict[];
   motions: Motion[];
   degrees: number | null;
-  source: Source | null;
 }
 
+/** The text of the program, `null` where the pane has it: `saved` if it is in the file, `contested` if the file was
+ * changed meanwhile. `undo` and `redo` say what each would do. */
+export interface TextState {
+  version: number;
+  text: string | null;
+  saved: boolean;
+  contested: boolean;
+  undo: string | null;
+  redo: string | null;
+}
+
+/** Text in place of what stood from one place to another. */
+export interface Change extends Range { text: string }
+
 export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan" | "dimensions" | "freedom";
-export type Format = (typeof FORMATS)[number][0];
+
+/** What a dialog for exports offers: `formats` of an option are those that have it. */
+export interface ExportOption { name: string; label: string; hint: string; choices: string[]; formats: string[] }
+export interface Exports { formats: { name: string; label: string }[]; options: ExportOption[] }
 
 /** Values to solve with that are not in the text. */
 export type Attempt = { knobs: Record<string, Value> } | { drag: { id: string; to: Vec } };
 
 /** The answer to a request that edits the text. */
-export interface Applied { applied: boolean; reason?: string }
+export interface Applied { applied: boolean; reason?: string; version?: number }
 
 /** A file; `data` is base64. */
-export interface Exported { name: string; data: string }
+export interface Exported { name: string; data: string; notes: string[] }
 
 /** The requests that the language server answers beyond those of the protocol that all editors speak. `viewer` tells
  * apart those who see one document. Without `version` the text as it is is meant. */
 export interface Requests {
-  "aidl/preview": { params: { show: readonly string[]; source?: boolean }; result: Preview | null };
+  "aidl/preview": { params: { show: readonly string[] }; result: Preview | null };
   "aidl/previewClose": { params: object; result: null };
-  "aidl/try": { params: { version?: number } & Attempt; result: Preview };
+  "aidl/try": { params: { version?: number; rests?: boolean } & Attempt; result: Preview };
   "aidl/setKnob": { params: { version?: number; path: string; value: Value }; result: Applied };
   "aidl/drag": { params: { version?: number; id: string; to: Vec }; result: Applied };
   "aidl/fix": { params: { version: number; problem: number; fix: number }; result: Applied };
-  "aidl/export": { params: { format: string; show?: readonly string[] }; result: Exported | null };
+  "aidl/export": { params: ExportWish & { show?: readonly string[] }; result: Exported | null };
+  "aidl/exports": { params: object; result: Exports };
 }
+export interface ExportWish { format: string; options?: Record<string, string> }
+
+/** The requests about the text that `aidl preview` answers; in VS Code the text is the editor's. */
+export interface TextRequests {
+  "aidl/type": { params: { version: number; changes: Change[] }; result: Applied };
+  "aidl/save": { params: { anyway: boolean }; result: Applied };
+  "aidl/takeFile": { params: object; result: Applied };
+  "aidl/undo": { params: object; result: Applied };
+  "aidl/redo": { params: object; result: Applied };
+}
+export type Asked = Requests & TextRequests;
 export type Name = keyof Requests;
-export type Params<N extends Name> = { uri: string; viewer?: string } & Requests[N]["params"];
-export type Ask = <N extends Name>(method: N, params: Params<N>) => Promise<Requests[N]["result"]>;
+export type Params<N extends keyof Asked> = { uri: string; viewer?: string } & Asked[N]["params"];
+export type Ask = <N extends keyof Asked>(method: N, params: Params<N>) => Promise<Asked[N]["result"]>;
 
 /** What a host tells a pane unasked. */
 export type Told =
   | { method: "aidl/previewChanged"; params: Preview }
+  | { method: "aidl/text"; params: TextState }
   | { method: "aidl/busy"; params?: object }
   | { method: "aidl/reveal"; params: { elements: number[] } }
   | { method: "window/showMessage"; params: { type: number; message: string } };

@@ -31,16 +31,9 @@ export class Scale {
    * @param {number} value
    */
   onSlider(value) {
-    if (value <= this.start || value >= this.end) return this.typed(clamp(value, this.start, this.end));
-    return this.typed(tidy(this.origin + Math.round((value - this.origin) / this.step) * this.step));
-  }
-
-  /**
-   * The nearest number within the bounds.
-   * @param {number} value
-   */
-  typed(value) {
-    return clamp(value, this.low, this.high);
+    const isInside = this.start < value && value < this.end;
+    const step = isInside ? tidy(this.origin + Math.round((value - this.origin) / this.step) * this.step) : value;
+    return clamp(clamp(step, this.start, this.end), this.low, this.high);
   }
 }
 

@@ -68,12 +68,15 @@ export class StatusView {
     this.busy(false);
   }
 
-  /** @param {string} message */
-  toast(message) {
+  /**
+   * @param {string} message
+   * @param {"error" | "warning"} [kind]
+   */
+  toast(message, kind = "error") {
     const isThere = [...this.#toasts.children].some((toast) => toast.getAttribute("data-message") === message);
     if (isThere) return;
     const close = el("button", { type: "button", class: "tool small", "aria-label": "Close" }, icon("close"));
-    const toast = el("div", { class: "toast", "data-message": message }, icon("error"), el("p", {}, ...quoted(message)), close);
+    const toast = el("div", { class: `toast ${kind}`, "data-message": message }, icon(kind), el("p", {}, ...quoted(message)), close);
     close.addEventListener("click", () => toast.remove());
     setTimeout(() => toast.remove(), TOAST_SECONDS * 1000);
     this.#toasts.append(toast);

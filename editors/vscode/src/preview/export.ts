@@ -2,34 +2,36 @@
 
 import * as vscode from "vscode";
 
-import { FORMATS } from "../../../../aidl_lang/tools/preview/pane/formats.js";
-import type { Ask, Format } from "./protocol";
+import type { Ask, ExportWish } from "./protocol";
 
 /** Undefined: the reader thought better of it. */
-export async function chooseFormat(): Promise<Format | undefined> {
+export async function chooseFormat(ask: Ask, document: vscode.Uri): Promise<string | undefined> {
+  const { formats } = await ask("aidl/exports", { uri: document.toString() });
   const picked = await vscode.window.showQuickPick(
-    FORMATS.map(([format, description]) => ({ label: format.toUpperCase(), description, format })),
+    formats.map(({ name, label }) => ({ label: name.toUpperCase(), description: label, name })),
     { title: "Export the drawing as", matchOnDescription: true },
   );
-  return picked?.format;
+  return picked?.name;
 }
 
 /** Has the server draw the program and saves that where the reader says. Rejects with what went wrong. */
 export async function exportDrawing(
   ask: Ask,
   document: vscode.Uri,
-  format: string,
+  wish: ExportWish,
   layers: readonly string[],
 ): Promise<void> {
   const file = await vscode.window.withProgress(
-    { location: vscode.ProgressLocation.Window, title: `AIDL: draws ${format.toUpperCase()}` },
-    () => ask("aidl/export", { uri: document.toString(), format, show: [...layers] }),
+    { location: vscode.ProgressLocation.Window, title: `AIDL: draws ${wish.format.toUpperCase()}` },
+    () => ask("aidl/export", { uri: document.toString(), ...wish, show: [...layers] }),
   );
   if (file === null) throw new Error("The language server made no file.");
+  if (file.notes.length > 0) void vscode.window.showWarningMessage(`AIDL: ${file.notes.join("; ")}`);
+  const suffix = file.name.slice(file.name.lastIndexOf(".") + 1); // several files come as an archive
   const folder = document.scheme === "file" ? vscode.Uri.joinPath(document, "..") : firstFolder();
   const target = await vscode.window.showSaveDialog({
     ...(folder === undefined ? {} : { defaultUri: vscode.Uri.joinPath(folder, file.name) }),
-    filters: { [format.toUpperCase()]: [format] },
+    filters: { [suffix.toUpperCase()]: [suffix] },
     saveLabel: "Export",
   });
   if (target === undefined) return;

@@ -116,7 +116,7 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
         ask: this.server.ask,
         mark: (place) => this.marks.mark(place === null ? null : normalPlace(place)),
         goto: (file, range) => void goto(vscode.Uri.parse(file), range, panel.viewColumn),
-        export: (format, layers) => exportDrawing(this.server.ask, document, format, layers),
+        export: (wish, layers) => exportDrawing(this.server.ask, document, wish, layers),
       },
       previewLayers(),
     );

@@ -7,7 +7,7 @@ export type {
   Ask,
   Element,
   Exported,
-  Format,
+  ExportWish,
   Layer,
   Message,
   Name,

@@ -3,7 +3,7 @@
 
 import { messageOf } from "../errors";
 import { elementsAt } from "./elements";
-import type { Message, Name, Params, Place, Position, Preview, Range, Requests, Tells, Told } from "./protocol";
+import type { ExportWish, Message, Name, Params, Place, Position, Preview, Range, Requests, Tells, Told } from "./protocol";
 
 /** What the relay needs of the editor. */
 export interface Editor {
@@ -15,14 +15,14 @@ export interface Editor {
   /** Shows in the text where something is written; null: nothing. */
   mark(place: Place | null): void;
   goto(uri: string, range: Range): void;
-  export(format: string, layers: readonly string[]): Promise<void>;
+  export(wish: ExportWish, layers: readonly string[]): Promise<void>;
 }
 
 /** A run that takes longer than this, in ms, is announced. */
 export const BUSY_AFTER = 150;
 
 /** What a pane may ask of the server. */
-const ASKED = new Set<string>(["aidl/preview", "aidl/try", "aidl/setKnob", "aidl/drag", "aidl/fix"]);
+const ASKED = new Set<string>(["aidl/preview", "aidl/try", "aidl/setKnob", "aidl/drag", "aidl/fix", "aidl/exports"]);
 const METHOD_NOT_FOUND = -32601;
 const FAILED = -32803;
 
@@ -86,7 +86,8 @@ export class Relay {
 
   private async answer(method: string, params: unknown): Promise<unknown> {
     if (method === "aidl/export") {
-      await this.editor.export((params as Params<typeof method>).format, this.layers);
+      const { format, options } = params as Params<typeof method>;
+      await this.editor.export({ format, ...(options === undefined ? {} : { options }) }, this.layers);
       return null; // it is saved already
     }
     if (!ASKED.has(method)) throw Object.assign(new Error(`There is no ${method}.`), { code: METHOD_NOT_FOUND });

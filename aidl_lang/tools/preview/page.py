@@ -1,0 +1,81 @@
+"""One open page: what it has asked for, and what waits to be sent to it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from typing import Any, TypeAlias
+
+from attrs import field, frozen
+from lsprotocol.types import MessageType
+
+Json: TypeAlias = dict[str, Any]
+
+MOST_UNTAKEN = 16
+"""Messages waiting for a page above which it is not heard."""
+TOO_MUCH = "this page asks for more than can be done at once: what it asked for last was left out"
+
+
+@frozen(kw_only=True)
+class Request:
+    """A request of a page; `id` is its own."""
+
+    id: int
+    method: str
+    params: dict[str, Any] = field(factory=dict)
+
+
+class Page:
+    """One open page. Messages wait until it takes them; of pictures only the newest, of equals one."""
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self.version = 0
+        """of the text that it has"""
+        self.state: Json = {}
+        """what it was told of the text beside its words"""
+        self.orders: deque[Request] = deque()
+        self.is_ordering = False
+        """whether an order is under way"""
+        self.attempt: Request | None = None
+        """what is tried next"""
+        self.is_trying = False
+        self._is_held_up = False
+        self._waiting: list[tuple[bool, str]] = []
+        self._news = asyncio.Event()
+
+    @property
+    def is_behind(self) -> bool:
+        """True if it asks for more than it takes."""
+        return len(self._waiting) >= MOST_UNTAKEN
+
+    def post(self, message: Json, *, is_picture: bool = False) -> None:
+        text = json.dumps({"jsonrpc": "2.0", **message})
+        if is_picture:
+            self._waiting = [each for each in self._waiting if not each[0]]
+        if (is_picture, text) not in self._waiting:
+            self._waiting.append((is_picture, text))
+        self._news.set()
+
+    def tell(self, message: str) -> None:
+        """Sends a message for people."""
+        params = {"type": MessageType.Error.value, "message": message}
+        self.post({"method": "window/showMessage", "params": params})
+
+    def refuse(self, request: Request, code: int, message: str) -> None:
+        self.post({"id": request.id, "error": {"code": code, "message": message}})
+
+    def hold_up(self) -> None:
+        """Tells it once that its requests are left out."""
+        if not self._is_held_up:
+            self._is_held_up = True
+            self.tell(TOO_MUCH)
+
+    async def next(self) -> str:
+        """Returns the next message for it."""
+        while not self._waiting:
+            self._news.clear()
+            await self._news.wait()
+        self._is_held_up = False
+        return self._waiting.pop(0)[1]
