@@ -1,0 +1,408 @@
+"""SVG files as outlines: millimetres, y up, the lower left corner of the page at the origin.
+
+The tree is walked as a browser would draw it: groups, `use` with what it refers to, nested `svg` and `symbol`
+with their view boxes, transforms, and style as far as it decides what is there (`display`, `visibility`,
+`fill`, `fill-rule`). Fills are no outlines: what a shape encloses follows from its curves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.drawings import xml
+from aidl_lang.common.drawings.drawing import Collector, DrawingError, Remark
+from aidl_lang.common.drawings.strokes import (
+    STILL,
+    TURN,
+    Bow,
+    Matrix,
+    Stroke,
+    ellipse,
+    ends,
+    mapped,
+    product,
+)
+from aidl_lang.common.drawings.svg_values import (
+    MM_PER_PIXEL,
+    ValueMistake,
+    declarations,
+    numbers,
+    path,
+    pixels,
+    transform,
+)
+from aidl_lang.common.drawings.xml import Node
+from aidl_lang.common.prose import first_few, ticked
+from aidl_lang.common.records import record
+
+_MOST_USES = 20_000
+_DEEPEST_USE = 20
+_PAGE = (300.0, 150.0)
+"""Width and height, in pixels, of a page that states none."""
+
+_UNSEEN = frozenset(
+    (
+        *("defs", "symbol", "clipPath", "mask", "marker", "pattern", "linearGradient", "radialGradient"),
+        *("filter", "style", "script", "title", "desc", "metadata", "view", "font", "cursor"),
+    )
+)
+"""Elements that draw nothing where they stand."""
+_GROUPS = frozenset({"svg", "g", "a", "switch"})
+_OTHERS = {"text": "texts", "image": "images", "foreignObject": "foreign objects"}
+"""What can be seen and is no outline, in the plural."""
+_INHERITED = ("fill", "fill-rule", "visibility", "stroke")
+
+
+@record()
+class _Place:
+    """The circumstances of an element: how its coordinates go to the page's, what is inherited, and the names
+    of the groups around it.
+    """
+
+    matrix: Matrix
+    page: tuple[float, float]
+    style: Mapping[str, str]
+    names: tuple[str, ...] = ()
+    uses: tuple[Node, ...] = ()
+
+
+def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+    """Returns the elements of an SVG file and what there is to be told of it. Raises DrawingError."""
+    return _Walk(xml.read(data, name), name).run()
+
+
+class _Walk:
+    def __init__(self, root: Node, name: str) -> None:
+        self.root = root
+        self.name = name
+        self.found = Collector(name)
+        self.by_id: dict[str, Node] = {}
+        self.rules: list[tuple[str, dict[str, str]]] = []
+        self.broken: list[str] = []
+        self.circular: list[str] = []
+        self.uses = 0
+        for node in root.walk():
+            if "id" in node.attributes:
+                self.by_id.setdefault(node.attributes["id"], node)
+            if node.tag == "style":
+                self.rules += _rules(node.text)
+
+    def run(self) -> tuple[Collector, list[Remark]]:
+        width, height, matrix = self._page()
+        flip: Matrix = (MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
+        place = _Place(product(flip, matrix), (width, height), {})
+        style = self._style(self.root, {})
+        if style.get("display") != "none":
+            self._children(self.root, replace(place, style=style))
+        return self.found, list(self._remarks())
+
+    def _page(self) -> tuple[float, float, Matrix]:
+        """Returns width and height of the page in pixels, and the map of its coordinates to these."""
+        box = self._view_box(self.root)
+        full = (box[2], box[3]) if box else _PAGE
+        width = self._page_length("width", full[0], full[0])
+        height = self._page_length("height", full[1], full[1])
+        given = [name for name in ("width", "height") if _states(self.root, name)]
+        if box and len(given) == 1:  # the other follows
+            if given == ["width"]:
+                height = width * box[3] / box[2]
+            else:
+                width = height * box[2] / box[3]
+        return width, height, self._fitted(self.root, box, width, height)
+
+    def _page_length(self, name: str, default: float, whole: float) -> float:
+        if not _states(self.root, name):
+            return default
+        value = self._length(self.root, self.root.attributes[name], whole)
+        return value if value > 0.0 else default
+
+    # --- Elements ------------------------------------------------------------------------------
+
+    def _children(self, node: Node, place: _Place) -> None:
+        children = node.children
+        if node.tag == "switch":  # its first choice that can be drawn; conditions are not looked at
+            children = [c for c in children if c.tag in _GROUPS or c.tag in _SHAPES or c.tag == "use"][:1]
+        for child in children:
+            self._node(child, place)
+
+    def _node(self, node: Node, place: _Place) -> None:
+        checkpoint()
+        if node.tag in _UNSEEN or node.tag == "":
+            return
+        style = self._style(node, place.style)
+        if style.get("display") == "none":
+            return
+        if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
+            self.found.leave_out("clips and masks of shapes, which are taken whole,")
+        matrix = self._transform(node, style, place.matrix)
+        place = _Place(matrix, place.page, style, (*place.names, *_names(node)), place.uses)
+        if node.tag == "use":
+            self._use(node, place)
+        elif node.tag == "svg":
+            self._inner_page(node, place, node.attributes)
+        elif node.tag in _GROUPS:
+            self._children(node, place)
+        elif node.tag in _SHAPES:
+            self._shape(node, place)
+        elif node.tag in _OTHERS:
+            self.found.leave_out(_OTHERS[node.tag])
+        else:
+            self.found.leave_out(f"`{node.tag[:20]}` elements")
+
+    def _shape(self, node: Node, place: _Place) -> None:
+        if place.style.get("visibility", "visible") in ("hidden", "collapse"):
+            return
+        try:
+            strokes = list(self._strokes(node, place.page))
+        except ValueMistake:
+            self.broken.append(_called(node))
+            return
+        a, b, c, d, _, _ = place.matrix
+        if a * d == b * c:  # all on one line
+            return
+        is_filled = place.style.get("fill", "black") != "none"
+        is_winding = is_filled and place.style.get("fill-rule", "nonzero") != "evenodd"
+        if is_filled and place.style.get("stroke", "none") == "none":
+            strokes = list(_closed(strokes))
+        self.found.add(place.names, (mapped(s, place.matrix) for s in strokes), is_winding=is_winding)
+
+    def _use(self, node: Node, place: _Place) -> None:
+        target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
+        if target is None:
+            self.found.leave_out("`use` elements without what they refer to")
+            return
+        if target in place.uses or len(place.uses) > _DEEPEST_USE or target is self.root:
+            self.circular.append(_called(node))
+            return
+        self.uses += 1
+        if self.uses > _MOST_USES:
+            hint = "save it anew as plain SVG, or in several files"
+            raise DrawingError(
+                "E0363", f"`{self.name}` is refused: its `use` elements grow beyond {_MOST_USES:,}", hint
+            )
+        matrix = product(place.matrix, self._corner(node, place.page))
+        place = replace(place, matrix=matrix, uses=(*place.uses, target))
+        if target.tag in ("symbol", "svg"):
+            style = self._style(target, place.style)
+            if style.get("display") == "none":
+                return
+            names = (*place.names, *_names(target))
+            sizes = {**target.attributes, **_sizes(node)}
+            self._inner_page(target, replace(place, style=style, names=names), sizes)
+        else:
+            self._node(target, place)
+
+    def _inner_page(self, node: Node, place: _Place, sizes: Mapping[str, str]) -> None:
+        """Draws a `svg` in another, or a symbol, in a page of its own."""
+        width, height = (
+            self._length(node, sizes.get(name, "100%"), whole, whole)
+            for name, whole in zip(("width", "height"), place.page, strict=True)
+        )
+        if width <= 0.0 or height <= 0.0:
+            return
+        box = self._view_box(node)
+        corner = self._corner(node, place.page) if node.tag == "svg" else STILL
+        inner = product(corner, self._fitted(node, box, width, height))
+        page = (box[2], box[3]) if box else (width, height)
+        self._children(node, replace(place, matrix=product(place.matrix, inner), page=page))
+
+    # --- Shapes --------------------------------------------------------------------------------
+
+    def _strokes(self, node: Node, page: tuple[float, float]) -> Iterator[Stroke]:
+        def length(name: str, axis: int) -> float:
+            return pixels(node.attributes.get(name, "0"), page[axis])
+
+        match node.tag:
+            case "path":
+                strokes, is_whole = path(node.attributes.get("d", ""))
+                if not is_whole:
+                    self.broken.append(_called(node))
+                yield from strokes
+            case "line":
+                yield (length("x1", 0), length("y1", 1)), (length("x2", 0), length("y2", 1))
+            case "polyline" | "polygon":
+                given = numbers(node.attributes.get("points", ""))
+                points = list(zip(given[::2], given[1::2], strict=False))
+                if node.tag == "polygon":
+                    points += points[:1]
+                yield from pairwise(points)
+            case "circle":
+                r = pixels(node.attributes.get("r", "0"), (page[0] ** 2 + page[1] ** 2) ** 0.5 / 2**0.5)
+                if r > 0.0:
+                    yield ellipse((length("cx", 0), length("cy", 1)), (r, 0.0), (0.0, r))
+            case "ellipse":
+                a, b = _radii(node, page)
+                if a > 0.0 and b > 0.0:
+                    yield ellipse((length("cx", 0), length("cy", 1)), (a, 0.0), (0.0, b))
+            case _:
+                sides = length("x", 0), length("y", 1), length("width", 0), length("height", 1)
+                yield from _rectangle(*sides, *_radii(node, page))
+
+    # --- Attributes ----------------------------------------------------------------------------
+
+    def _style(self, node: Node, around: Mapping[str, str]) -> dict[str, str]:
+        """Returns the properties of an element that count here, inherited ones included."""
+        style = {name: around[name] for name in _INHERITED if name in around}
+        for name in (*_INHERITED, "display", "clip-path", "mask"):
+            if name in node.attributes:
+                style[name] = node.attributes[name].strip()
+        kinds = {"*", node.tag, f"#{node.attributes.get('id', '')}"}
+        classes = [f".{word}" for word in node.attributes.get("class", "").split()]
+        kinds |= {*classes, *(f"{node.tag}{word}" for word in classes)}
+        for selector, properties in self.rules:
+            if selector in kinds:
+                style |= properties
+        style |= dict(declarations(node.attributes.get("style", "")))
+        return {name: value for name, value in style.items() if value != "inherit"}
+
+    def _transform(self, node: Node, style: Mapping[str, str], matrix: Matrix) -> Matrix:
+        text = node.attributes.get("transform", "")
+        try:
+            return product(matrix, transform(text))
+        except (ValueMistake, ArithmeticError):
+            self.broken.append(_called(node))
+            return matrix
+
+    def _length(self, node: Node, text: str, whole: float, otherwise: float = 0.0) -> float:
+        try:
+            return pixels(text, whole)
+        except ValueMistake:
+            self.broken.append(_called(node))
+            return otherwise
+
+    def _corner(self, node: Node, page: tuple[float, float]) -> Matrix:
+        """Returns the shift by the `x` and `y` of an element."""
+        x, y = (
+            self._length(node, node.attributes.get(name, "0"), whole)
+            for name, whole in zip("xy", page, strict=True)
+        )
+        return 1.0, 0.0, 0.0, 1.0, x, y
+
+    def _view_box(self, node: Node) -> tuple[float, float, float, float] | None:
+        if "viewBox" not in node.attributes:
+            return None
+        try:
+            x, y, width, height = numbers(node.attributes["viewBox"])
+        except ValueError:
+            self.broken.append(_called(node))
+            return None
+        return (x, y, width, height) if width > 0.0 and height > 0.0 else None
+
+    def _fitted(
+        self, node: Node, box: tuple[float, float, float, float] | None, width: float, height: float
+    ) -> Matrix:
+        """Returns the map of a view box to its page (SVG 2, 8.2)."""
+        if box is None:
+            return STILL
+        x, y, w, h = box
+        across, up = width / w, height / h
+        align, *meet = node.attributes.get("preserveAspectRatio", "xMidYMid").split() or ["xMidYMid"]
+        if align != "none":
+            across = up = max(across, up) if meet == ["slice"] else min(across, up)
+        shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+        dx = (width - w * across) * shares.get(align[1:4], 0.0)
+        dy = (height - h * up) * shares.get(align[5:8], 0.0)
+        return across, 0.0, 0.0, up, dx - x * across, dy - y * up
+
+    # --- What is to be told --------------------------------------------------------------------
+
+    def _remarks(self) -> Iterator[Remark]:
+        if self.broken:
+            names = list(dict.fromkeys(self.broken))
+            yield Remark(
+                "W0752",
+                f"`{self.name}` has attributes that cannot be read, in {first_few(ticked(names), 5)}",
+                ("paths are taken as far as they are readable; save it anew in the program that drew it",),
+            )
+        if self.circular:
+            names = list(dict.fromkeys(self.circular))
+            yield Remark(
+                "W0752",
+                f"`{self.name}` refers to itself in {first_few(ticked(names), 5)}, where nothing is drawn",
+                ("a `use` element may not stand in what it refers to",),
+            )
+
+
+def _states(node: Node, name: str) -> bool:
+    text = node.attributes.get(name, "auto").strip()
+    return text not in ("", "auto") and not text.endswith("%")
+
+
+def _sizes(node: Node) -> dict[str, str]:
+    return {name: node.attributes[name] for name in ("width", "height") if name in node.attributes}
+
+
+def _names(node: Node) -> tuple[str, ...]:
+    """Returns what an element is called: the label that Inkscape shows of it, and its id."""
+    label, own = node.attributes.get("inkscape:label", ""), node.attributes.get("id", "")
+    return tuple(dict.fromkeys(name for name in (label, own) if name.strip()))
+
+
+def _called(node: Node) -> str:
+    return node.attributes.get("id", node.tag)[:40]
+
+
+_RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
+_COMMENT = re.compile(r"/\*.*?\*/|<!--|-->", re.S)
+
+
+def _rules(text: str) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yields the rules of a style sheet with simple selectors: a tag, a class, an id."""
+    for found in _RULE.finditer(_COMMENT.sub("", text)):
+        properties = dict(declarations(found[2]))
+        for selector in found[1].split(","):
+            yield selector.strip(), properties
+
+
+def _closed(strokes: Sequence[Stroke]) -> Iterator[Stroke]:
+    """Yields strokes with each contour closed, as what is only filled is."""
+    first = 0
+    for k, stroke in enumerate(strokes):
+        yield stroke
+        start, end = ends(strokes[first])[0], ends(stroke)[1]
+        if k + 1 == len(strokes) or ends(strokes[k + 1])[0] != end:
+            if start != end:
+                yield end, start
+            first = k + 1
+
+
+def _radii(node: Node, page: tuple[float, float]) -> tuple[float, float]:
+    """Returns `rx` and `ry`, of which one may stand for both. Raises ValueMistake."""
+    rx, ry = (node.attributes.get(name, "auto").strip() for name in ("rx", "ry"))
+    both = (ry if rx == "auto" else rx), (rx if ry == "auto" else ry)
+    a, b = (0.0 if text == "auto" else pixels(text, whole) for text, whole in zip(both, page, strict=True))
+    return a, b
+
+
+_QUARTER = TURN / 4
+
+
+def _rectangle(x: float, y: float, width: float, height: float, rx: float, ry: float) -> Iterator[Stroke]:
+    if width <= 0.0 or height <= 0.0:
+        return
+    right, bottom = x + width, y + height
+    rx, ry = min(rx, width / 2), min(ry, height / 2)
+    if rx <= 0.0 or ry <= 0.0:
+        corners = [(x, y), (right, y), (right, bottom), (x, bottom), (x, y)]
+        yield from pairwise(corners)
+        return
+    centers = [(right - rx, y + ry), (right - rx, bottom - ry), (x + rx, bottom - ry), (x + rx, y + ry)]
+    sides = [
+        ((right - rx, y), (right, y + ry)),
+        ((right, bottom - ry), (right - rx, bottom)),
+        ((x + rx, bottom), (x, bottom - ry)),
+        ((x, y + ry), (x + rx, y)),
+    ]
+    here = sides[-1][1]
+    for number, (center, (start, end)) in enumerate(zip(centers, sides, strict=True)):
+        if start != here:
+            yield here, start
+        yield Bow(center, (rx, 0.0), (0.0, ry), (number - 1) * _QUARTER, _QUARTER, start, end)
+        here = end
+
+
+_SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
