@@ -25,6 +25,7 @@ from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
+    from aidl_lang.common.drawings.drawing import Trace
 
 SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
@@ -96,6 +97,7 @@ class Geometry:
     known_as   the copy of a nameless geometry, by which it is known
     reach      the structure that holds both, if it is derived of geometry outside of its owner
     glyphs     for a text, its characters in units of its height
+    trace      for a drawing of another program, its outlines in millimetres of the file
     filled     a drawing fills what it encloses, as it does letters
     recipe     the way its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
@@ -112,6 +114,7 @@ class Geometry:
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
+    trace: Trace | None = None
     filled: bool = False
     name: str | None = None
     container: Geometry | Structure | None = None
@@ -127,8 +130,8 @@ class Geometry:
 
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
-        """The silhouette of a text, in units of its height (see `lettering.silhouette`)."""
-        return silhouette(self.glyphs)
+        """The silhouette of a text or a drawing in its own units (see `lettering.silhouette`)."""
+        return silhouette(self.glyphs) if self.trace is None else self.trace.silhouette
 
     @property
     def bound_to(self) -> Structure:

@@ -21,6 +21,7 @@ from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.geometry.trace import trace
+from aidl_lang.geometry.tracing import CONTOURS, enclosed
 
 
 @record()
@@ -65,7 +66,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
         closed = _is_closed(network, shape, uses)
         kept = _without_dangling(network, uses) if closed else []
         if kept:
-            section = union([_alternating(network, uses) for uses in _by_letter(network, shape, kept)])
+            section = _area(network, shape, kept)
             if is_nothing(section):  # flat, or twice the same outline
                 result.loose += shape.leaves
             else:
@@ -76,6 +77,18 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     if free:
         _chain_free(network, free, outlines, result)
     return result
+
+
+def _area(network: Network, shape: Shape, uses: list[Use]) -> Section:
+    """Returns what a closed shape encloses by these edges of it."""
+    files = {part.path: part for part in shape.geometry.walk() if part.type == CONTOURS}
+    if not files:
+        return union([_alternating(network, uses) for uses in _by_letter(network, shape, uses)])
+    numbers: dict[str, list[int]] = defaultdict(list)
+    for leaf, number in shape.leaves:
+        numbers[leaf.path.rpartition(".")[0]].append(number)
+    contours = ((part, numbers[path]) for path, part in files.items())
+    return enclosed(network, contours, set(uses), _alternating)
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:

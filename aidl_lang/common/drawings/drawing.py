@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 
+from aidl_lang.common.drawings import WHOLE
 from aidl_lang.common.drawings.strokes import Stroke, box, has_length, numbers
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.records import record
@@ -85,6 +86,10 @@ class OutlineFile:
     whole: Trace
     parts: Mapping[str, Trace]
     remarks: tuple[Remark, ...] = ()
+
+    def trace(self, name: str) -> Trace:
+        """Returns the outlines under a name."""
+        return self.whole if name == WHOLE else self.parts[name]
 
 
 @record(frozen=False)

@@ -7,14 +7,10 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import PurePosixPath
 
+from aidl_lang.common.drawings import WHOLE
 from aidl_lang.common.drawings.drawing import Collector, DrawingError, Element, OutlineFile, Remark, Trace
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import listed
-
-SUFFIXES = (".svg", ".dxf")
-
-WHOLE = "whole"
-"""The name of the whole drawing among its parts."""
 
 MOST_NAMES = 250
 _LONGEST_NAME = 60
@@ -29,11 +25,6 @@ _TAKEN = frozenset(
     ).split()
 )
 """Names that mean something else in or about a drawing, and words that begin statements."""
-
-
-def is_drawing(path: str) -> bool:
-    """Tells by its name whether a file is read as a drawing."""
-    return PurePosixPath(path).suffix.lower() in SUFFIXES
 
 
 @lru_cache(maxsize=8)
@@ -53,7 +44,7 @@ def outlines(path: str, data: bytes) -> OutlineFile:
         raise DrawingError("E0365", f"`{name}` has no outlines", *_left_out(found))
     elements = tuple(found.elements)
     parts, more = _parts(elements, "layer" if path.lower().endswith(".dxf") else "id")
-    return OutlineFile(Trace(WHOLE, elements), parts, tuple([*remarks, *_told(found, more)]))
+    return OutlineFile(Trace(WHOLE, elements), parts, (*remarks, *_told(found, more)))
 
 
 def _left_out(found: Collector) -> Iterator[str]:
@@ -98,7 +89,10 @@ def _parts(elements: Iterable[Element], kind: str) -> tuple[dict[str, Trace], in
     for written, of in members.items():
         if len(parts) == MOST_NAMES:
             return parts, len(members) - MOST_NAMES
-        name = _free(_sanitised(written, kind), taken)
+        name = _sanitised(written, kind)
+        if any(fold(name) == fold(known) and part.elements == tuple(of) for known, part in parts.items()):
+            continue  # the label of a group and its id
+        name = _free(name, taken)
         taken.add(fold(name))
         parts[name] = Trace(name, tuple(of))
     return parts, 0
