@@ -24,6 +24,7 @@ FOR_THE_LIBRARY = {
     "glyphs",
     "ink",
     "lettered",
+    "traced",
     "traced_part",
     "where",
     "shown",

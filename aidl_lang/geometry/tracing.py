@@ -1,8 +1,8 @@
 """Outlines of drawings of other programs, as exact curves, and what they enclose.
 
 A shape of a file is filled by its own rule, and shapes that cross are united. What lies in another without
-crossing it alternates, as the outlines of parts do: a circle in a plate is a hole, and one in that is material
-again.
+crossing it alternates, as the outlines of parts do: a circle in a plate is a hole, and one in that is
+material again.
 """
 
 from __future__ import annotations

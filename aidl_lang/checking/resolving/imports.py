@@ -15,6 +15,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking.resolving.cuts import with_placed_cuts
+from aidl_lang.common.beside import PROGRAM
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.drawings import is_drawing
 from aidl_lang.common.records import record
@@ -25,7 +26,7 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.checking.resolving.drawings import ImportedDrawing
 
-SUFFIX = ".aidl"
+SUFFIX = PROGRAM
 MAX_FILES = 200
 MAX_CHARACTERS = 2_000_000
 """Characters of all imported files together."""
