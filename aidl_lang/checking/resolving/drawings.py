@@ -7,6 +7,7 @@ not looked through for mistakes, and places in it are told as those of the call.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -28,6 +29,7 @@ class ImportedDrawing:
 
     outlines: OutlineFile
     module: ast.Module
+    digest: bytes
 
     def scope(self, library: SymbolScope) -> SymbolScope:
         """Returns the names that it defines."""
@@ -41,6 +43,11 @@ class ImportedDrawing:
         """Yields what there is to be told of the file, at the place where it is imported."""
         for remark in self.outlines.remarks:
             yield Diagnostic(remark.code, remark.message, at.span, hints=remark.hints)
+
+
+def digest(data: bytes) -> bytes:
+    """Returns what tells the contents of a file from all others."""
+    return hashlib.sha256(data).digest()
 
 
 def nameless(statement: ast.Import, name: str) -> Diagnostic:
@@ -68,7 +75,7 @@ def read(path: str, data: bytes) -> ImportedDrawing:
         replace(s, doc=_doc(path, found, s.name.text)) if isinstance(s, ast.ShapeDefinition) else s
         for s in parsed.module.statements
     )
-    return ImportedDrawing(found, replace(parsed.module, statements=tuple(statements)))
+    return ImportedDrawing(found, replace(parsed.module, statements=tuple(statements)), digest(data))
 
 
 def refused(error: DrawingError, node: ast.Node) -> Diagnostic:

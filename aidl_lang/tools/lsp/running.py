@@ -249,8 +249,8 @@ def is_library(path: Path) -> bool:
 
 
 def _stands_on(view: View, path: Path) -> bool:
-    """True if a program imports a file, directly or not, or names it as a font; or has a missing import, which
-    may be there now.
+    """True if a program imports a file, directly or not, or names it as a font; or has a missing import,
+    which may be there now.
     """
     modules = view.resolution.modules
     if is_data(path):

@@ -18,7 +18,7 @@ only now, and not all of them tell of every change.
 
 
 async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
-    """Calls back whenever a file, or what it may read beside it or below its folder, has changed, with the paths;
+    """Calls back whenever a file, or what it may read in its folder or below, has changed, with the paths;
     after a quiet while, without any; once when it has begun to see changes. Goes on until it is cancelled.
     """
     try:

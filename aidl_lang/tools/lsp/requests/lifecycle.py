@@ -59,9 +59,8 @@ async def _watch_files(server: Server) -> None:
     if watching is None or not watching.dynamic_registration:
         return
     suffixes = ",".join(suffix.removeprefix(".") for suffix in (PROGRAM, *DATA))
-    options = types.DidChangeWatchedFilesRegistrationOptions(
-        [types.FileSystemWatcher(f"**/*.{{{suffixes}}}")]
-    )
+    watcher = types.FileSystemWatcher(f"**/*.{{{suffixes}}}")
+    options = types.DidChangeWatchedFilesRegistrationOptions([watcher])
     method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
     registration = types.Registration("files", method, options)
     try:
