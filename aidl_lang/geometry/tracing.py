@@ -8,8 +8,9 @@ material again.
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 from aidl_lang.building.model import Geometry
 from aidl_lang.common.cancelling import checkpoint
@@ -23,6 +24,9 @@ from aidl_lang.geometry.solved import SolvedGeometry
 
 CONTOURS = "contours"
 """The type of a part that is one shape of a file."""
+
+Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
+"""A shape of a file, and the places where it crosses itself."""
 
 _ROUND = 1e-8
 """Difference of the radii of an ellipse, relative to them, below which it is a circle."""
@@ -119,11 +123,12 @@ def enclosed(
     shapes: Iterable[tuple[SolvedGeometry, Sequence[int]]],
     closed: set[Use],
     alternating: Callable[[Network, list[Use]], Section],
-) -> Section:
-    """Returns the area of shapes of a file, each given with the numbers of its curves; `closed` are the edges
-    that lead to no open end.
+) -> tuple[Section, list[Crossing]]:
+    """Returns the area of shapes of a file, each given with the numbers of its curves, and those that cross
+    themselves; `closed` are the edges that lead to no open end.
     """
     sections: list[Section] = []
+    crossed: list[Crossing] = []
     nodes: list[set[int]] = []
     for shape, numbers in shapes:
         checkpoint()
@@ -134,9 +139,23 @@ def enclosed(
             sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
         else:
             sections.append(alternating(network, uses))
-        nodes.append({node for e, _ in uses for node in (network.edges[e].start, network.edges[e].end)})
+        nodes.append(set(_ends(network, uses)))
+        if places := _crossings(network, uses):
+            crossed.append((shape, tuple(network.nodes[node] for node in places)))
     groups = [union([sections[k] for k in group]) for group in _crossing(sections, nodes)]
-    return fill([polygon for group in groups for polygon in group.to_polygons()], "EvenOdd")
+    return fill([polygon for group in groups for polygon in group.to_polygons()], "EvenOdd"), crossed
+
+
+def _ends(network: Network, uses: Iterable[Use]) -> Iterator[int]:
+    for number, _ in uses:
+        yield network.edges[number].start
+        yield network.edges[number].end
+
+
+def _crossings(network: Network, uses: Sequence[Use]) -> list[int]:
+    """Returns the nodes that one contour passes more than once."""
+    passed = (Counter(_ends(network, walk)) for walk in _walks(network, uses))
+    return list(dict.fromkeys(node for ends in passed for node, count in ends.items() if count > 2))
 
 
 def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
