@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
@@ -12,9 +13,14 @@ from aidl_lang.common.drawings.strokes import Stroke, box, has_length, numbers
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.records import record
 
-MOST_CURVES = 50_000
+MOST_CURVES = 30_000
+MOST_NUMBERS = 7 * MOST_CURVES
+"""Numbers in the outlines of a file: no curve takes more."""
 FURTHEST = 1e8
 """Millimetres from the origin beyond which nothing is read: a hundred kilometres."""
+
+
+_DIGITS = re.compile(r"\d+\.?\d*")
 
 
 class DrawingError(Exception):
@@ -103,6 +109,7 @@ class Collector:
     elements: list[Element] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)
     curves: int = 0
+    numbers: int = 0
 
     def add(self, names: Sequence[str], strokes: Iterable[Stroke], *, is_winding: bool = False) -> None:
         """Adds an element. Raises DrawingError for one that has no place on a plane, or one too many."""
@@ -120,8 +127,13 @@ class Collector:
         if kept:
             self.elements.append(Element(tuple(names), kept, is_winding))
 
+    def count_numbers(self, text: str) -> None:
+        """Counts the numbers of an attribute before it is read. Raises DrawingError."""
+        self.numbers += sum(1 for _ in _DIGITS.finditer(text))
+        self.check()
+
     def check(self) -> None:
-        if self.curves > MOST_CURVES:
+        if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
             raise DrawingError(
                 "E0363",
                 f"`{self.what}` has more than {MOST_CURVES:,} curves",

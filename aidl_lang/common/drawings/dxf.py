@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import logging
 import math
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
@@ -48,6 +47,20 @@ _NAMES = {
 }
 """How entities that are no outlines are called, in the plural."""
 
+_FAULTS = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    OSError,
+    RecursionError,
+    StopIteration,
+    TypeError,
+    ValueError,
+)
+"""What ezdxf raises for files that are not as they should be, beside its own errors."""
+
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 
@@ -57,7 +70,7 @@ def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
     walk = _Walk(document, name)
     try:
         walk.entities(document.modelspace(), (), "")
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as reason:
+    except _FAULTS as reason:
         raise _broken(name) from reason
     return walk.done()
 
@@ -75,20 +88,22 @@ def _loaded(data: bytes, name: str) -> Drawing:
     if data.startswith(b"AutoCAD Binary DXF"):
         hint = "export it as text: ASCII DXF"
         raise DrawingError("E0362", f"`{name}` is a binary DXF file, which is not read", hint)
-    if len(re.findall(rb"(?:^|\n)[ \t]*0[ \t]*\r?\n", data)) > MOST_ENTITIES:
+    codes = data.split(b"
+")[::2]  # every second line is a value
+    if sum(code.strip() == b"0" for code in codes) > MOST_ENTITIES:
         hint = "export fewer of its layers, or simplify it"
         message = f"`{name}` is refused: it has more than {MOST_ENTITIES:,} entities"
         raise DrawingError("E0363", message, hint)
-    faults = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, RecursionError, OSError)
+    faults = (*_FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
     try:
         encoding = dxf_stream_info(io.StringIO(data.decode("utf-8", "ignore"))).encoding
         text = data.decode(encoding, "surrogateescape").replace("\r\n", "\n")
         return ezdxf.read(io.StringIO(text))  # type: ignore[attr-defined]
-    except (*faults, ezdxf.DXFError):  # type: ignore[attr-defined]
+    except faults:
         checkpoint()
     try:
         document, _ = recover.read(io.BytesIO(data))
-    except (*faults, ezdxf.DXFError):  # type: ignore[attr-defined]
+    except faults:
         raise _broken(name) from None
     return document
 

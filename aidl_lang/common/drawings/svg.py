@@ -218,14 +218,18 @@ class _Walk:
 
         match node.tag:
             case "path":
-                strokes, is_whole = path(node.attributes.get("d", ""))
+                data = node.attributes.get("d", "")
+                self.found.count_numbers(data)
+                strokes, is_whole = path(data)
                 if not is_whole:
                     self.broken.append(_called(node))
                 yield from strokes
             case "line":
                 yield (length("x1", 0), length("y1", 1)), (length("x2", 0), length("y2", 1))
             case "polyline" | "polygon":
-                given = numbers(node.attributes.get("points", ""))
+                data = node.attributes.get("points", "")
+                self.found.count_numbers(data)
+                given = numbers(data)
                 points = list(zip(given[::2], given[1::2], strict=False))
                 if node.tag == "polygon":
                     points += points[:1]
