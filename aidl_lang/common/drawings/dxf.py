@@ -88,8 +88,7 @@ def _loaded(data: bytes, name: str) -> Drawing:
     if data.startswith(b"AutoCAD Binary DXF"):
         hint = "export it as text: ASCII DXF"
         raise DrawingError("E0362", f"`{name}` is a binary DXF file, which is not read", hint)
-    codes = data.split(b"
-")[::2]  # every second line is a value
+    codes = data.split(b"\n")[::2]  # every second line is a value
     if sum(code.strip() == b"0" for code in codes) > MOST_ENTITIES:
         hint = "export fewer of its layers, or simplify it"
         message = f"`{name}` is refused: it has more than {MOST_ENTITIES:,} entities"
