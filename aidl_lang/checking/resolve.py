@@ -347,7 +347,9 @@ class Resolver:
         if node.receiver is not None:
             self.expression(node.receiver, scope)
         found = where.called(callee.text)
-        if found is None:
+        if _is_of_missing(node, scope):
+            pass
+        elif found is None:
             complaints.unknown_callable(self, node, where)
         else:
             name, signatures = found[0], meant(found[1], node in self.hole_calls)
@@ -415,6 +417,12 @@ class Resolver:
     def has_said_enough(self) -> bool:
         """True if there are more errors than will be reported, so that no more need be looked for."""
         return self.resolution.errors > MOST_ERRORS
+
+
+def _is_of_missing(node: ast.Call, scope: SymbolScope) -> bool:
+    """Tells whether a call names a file that could not be imported, so that nothing is known of it."""
+    of = node.receiver
+    return isinstance(of, ast.Name) and scope.value(of.text) is None and scope.may_be_missing(of.text)
 
 
 def _note_missing(statement: ast.Import, scope: SymbolScope) -> None:

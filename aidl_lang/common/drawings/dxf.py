@@ -181,7 +181,7 @@ class _Walk:
             case "ELLIPSE":
                 yield _ellipse(entity)
             case "LWPOLYLINE":
-                points = [(x, y, bulge) for x, y, bulge in entity.get_points("xyb")]
+                points = [(float(x), float(y), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
                 height = entity.dxf.get("elevation", 0.0)
                 yield from _bulged(points, entity.closed, _plane(entity, height))
             case "POLYLINE" if entity.is_2d_polyline or entity.is_3d_polyline:
