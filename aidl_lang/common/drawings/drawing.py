@@ -113,10 +113,11 @@ class Collector:
 
     def add(self, names: Sequence[str], strokes: Iterable[Stroke], *, is_winding: bool = False) -> None:
         """Adds an element. Raises DrawingError for one that has no place on a plane, or one too many."""
-        kept = tuple(stroke for stroke in strokes if has_length(stroke))
+        found = tuple(strokes)
+        kept = tuple(stroke for stroke in found if has_length(stroke))
         self.curves += len(kept)
         self.check()
-        for number in (n for stroke in kept for n in numbers(stroke)):
+        for number in (n for stroke in found for n in numbers(stroke)):
             if not math.isfinite(number) or abs(number) > FURTHEST:
                 named = f" in `{names[-1]}`" if names else ""
                 raise DrawingError(

@@ -40,7 +40,7 @@ from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
 
 _MOST_USES = 20_000
-_DEEPEST_USE = 20
+_DEEPEST = 150
 _PAGE = (300.0, 150.0)
 """Width and height, in pixels, of a page that states none."""
 
@@ -59,15 +59,15 @@ _INHERITED = ("fill", "fill-rule", "visibility", "stroke")
 
 @record()
 class _Place:
-    """The circumstances of an element: how its coordinates go to the page's, what is inherited, and the names
-    of the groups around it.
+    """The circumstances of an element: how its coordinates go to the page's, what is inherited, the names
+    of the groups around it, and what it stands in, directly or by being used.
     """
 
     matrix: Matrix
     page: tuple[float, float]
     style: Mapping[str, str]
     names: tuple[str, ...] = ()
-    uses: tuple[Node, ...] = ()
+    around: tuple[Node, ...] = ()
 
 
 def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
@@ -139,7 +139,7 @@ class _Walk:
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clips and masks of shapes, which are taken whole,")
         matrix = self._transform(node, style, place.matrix)
-        place = _Place(matrix, place.page, style, (*place.names, *_names(node)), place.uses)
+        place = _Place(matrix, place.page, style, (*place.names, *_names(node)), (*place.around, node))
         if node.tag == "use":
             self._use(node, place)
         elif node.tag == "svg":
@@ -175,7 +175,7 @@ class _Walk:
         if target is None:
             self.found.leave_out("`use` elements without what they refer to")
             return
-        if target in place.uses or len(place.uses) > _DEEPEST_USE or target is self.root:
+        if target in place.around or len(place.around) > _DEEPEST or target is self.root:
             self.circular.append(_called(node))
             return
         self.uses += 1
@@ -185,14 +185,15 @@ class _Walk:
                 "E0363", f"`{self.name}` is refused: its `use` elements grow beyond {_MOST_USES:,}", hint
             )
         matrix = product(place.matrix, self._corner(node, place.page))
-        place = replace(place, matrix=matrix, uses=(*place.uses, target))
+        place = replace(place, matrix=matrix)
         if target.tag in ("symbol", "svg"):
             style = self._style(target, place.style)
             if style.get("display") == "none":
                 return
             names = (*place.names, *_names(target))
             sizes = {**target.attributes, **_sizes(node)}
-            self._inner_page(target, replace(place, style=style, names=names), sizes)
+            around = (*place.around, target)
+            self._inner_page(target, replace(place, style=style, names=names, around=around), sizes)
         else:
             self._node(target, place)
 
