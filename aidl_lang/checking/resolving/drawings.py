@@ -36,7 +36,7 @@ class ImportedDrawing:
         scope = SymbolScope(self.module, library, (self.module,))
         for node in self.module.statements:
             assert isinstance(node, ast.ShapeDefinition)
-            scope.callables.setdefault(node.name.text, []).append(signature(node, standard=True))
+            scope.callables.setdefault(node.name.text, []).append(signature(node))
         return scope
 
     def remarks(self, at: ast.Node) -> Iterator[Diagnostic]:

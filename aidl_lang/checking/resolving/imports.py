@@ -160,8 +160,9 @@ class _Loader:
         if PurePosixPath(path).suffix != SUFFIX:
             hints = (
                 f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`",
-                "drawings of other programs end in `.svg` or `.dxf`",
-                "the library needs no import",
+                "drawings of other programs end in `.svg` or `.dxf`"
+                if PurePosixPath(path).suffix
+                else "the library needs no import",
             )
             message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
             self._report("E0210", message, statement.path, *hints)

@@ -25,27 +25,27 @@ _MOST_INSERTS = 20_000
 _DEEPEST = 20
 
 _NAMES = {
-    "TEXT": "texts",
-    "MTEXT": "texts",
-    "ATTRIB": "texts",
-    "ATTDEF": "texts",
-    "DIMENSION": "dimensions",
-    "ARC_DIMENSION": "dimensions",
-    "LEADER": "leaders",
-    "MULTILEADER": "leaders",
-    "HATCH": "hatches",
-    "MPOLYGON": "hatches",
-    "POINT": "points",
-    "IMAGE": "images",
-    "VIEWPORT": "viewports",
-    "SOLID": "filled faces",
-    "TRACE": "filled faces",
-    "3DFACE": "filled faces",
-    "MESH": "meshes",
-    "RAY": "endless lines",
-    "XLINE": "endless lines",
+    "TEXT": "text",
+    "MTEXT": "text",
+    "ATTRIB": "text",
+    "ATTDEF": "text",
+    "DIMENSION": "dimension",
+    "ARC_DIMENSION": "dimension",
+    "LEADER": "leader",
+    "MULTILEADER": "leader",
+    "HATCH": "hatch",
+    "MPOLYGON": "hatch",
+    "POINT": "point",
+    "IMAGE": "image",
+    "VIEWPORT": "viewport",
+    "SOLID": "filled face",
+    "TRACE": "filled face",
+    "3DFACE": "filled face",
+    "MESH": "mesh",
+    "RAY": "endless line",
+    "XLINE": "endless line",
 }
-"""How entities that are no outlines are called, in the plural."""
+"""How entities that are no outlines are called."""
 
 _FAULTS = (
     ArithmeticError,
@@ -132,7 +132,7 @@ class _Walk:
             if layer == "0" and around:
                 layer = around
             if entity.dxf.get("invisible", 0) or layer.lower() in self.hidden:
-                self.found.leave_out("hidden entities")
+                self.found.leave_out("hidden entity")
             elif entity.dxftype() == "INSERT":
                 self._insert(entity, blocks, layer)
             else:
@@ -148,7 +148,7 @@ class _Walk:
             message = f"`{self.name}` is refused: its blocks stand in more than {_MOST_INSERTS:,} places"
             raise DrawingError("E0363", message, "export fewer of its layers, or simplify it")
         if entity.block() is None:
-            self.found.leave_out("references to blocks that are missing")
+            self.found.leave_out("dangling block reference")
             return
         if entity.mcount > 1:
             for one in entity.multi_insert():
@@ -161,7 +161,7 @@ class _Walk:
         strokes = list(self._strokes(kind, entity))
         if not strokes:
             if kind not in _READ or kind == "POLYLINE":
-                self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` entities"))
+                self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` object"))
             return
         unit = self.unit or 1.0
         strokes = [mapped(s, (unit, 0.0, 0.0, unit, 0.0, 0.0)) for s in strokes]

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from aidl_lang.common.drawings import WHOLE
 from aidl_lang.common.drawings.drawing import Collector, DrawingError, Element, OutlineFile, Remark, Trace
 from aidl_lang.common.names import fold
-from aidl_lang.common.prose import listed
+from aidl_lang.common.prose import counted, listed
 
 MOST_NAMES = 250
 _LONGEST_NAME = 60
@@ -47,17 +47,13 @@ def outlines(path: str, data: bytes) -> OutlineFile:
     return OutlineFile(Trace(WHOLE, elements), parts, (*remarks, *_told(found, more)))
 
 
+_PLURALS = {"hatch": "hatches", "mesh": "meshes", "hidden entity": "hidden entities"}
+
+
 def _left_out(found: Collector) -> Iterator[str]:
     if found.left_out:
-        counts = [f"{count:,} {_singular(kind, count)}" for kind, count in found.left_out.items()]
+        counts = [counted(count, kind, _PLURALS.get(kind, "")) for kind, count in found.left_out.items()]
         yield f"left out: {listed(counts)}"
-
-
-def _singular(kind: str, count: int) -> str:
-    words = kind.split(" ", 1)
-    if count == 1 and kind.startswith("`"):
-        return kind.removesuffix("s").replace("entitie", "entity") if "entities" in kind else kind[:-1]
-    return kind if count > 1 or len(words) > 1 else kind.removesuffix("es" if kind == "hatches" else "s")
 
 
 def _told(found: Collector, more: int) -> Iterator[Remark]:

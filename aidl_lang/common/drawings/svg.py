@@ -52,8 +52,8 @@ _UNSEEN = frozenset(
 )
 """Elements that draw nothing where they stand."""
 _GROUPS = frozenset({"svg", "g", "a", "switch"})
-_OTHERS = {"text": "texts", "image": "images", "foreignObject": "foreign objects"}
-"""What can be seen and is no outline, in the plural."""
+_OTHERS = {"text": "text", "image": "image", "foreignObject": "foreign object"}
+"""What can be seen and is no outline."""
 _INHERITED = ("fill", "fill-rule", "visibility", "stroke")
 
 
@@ -137,7 +137,7 @@ class _Walk:
         if style.get("display") == "none":
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
-            self.found.leave_out("clips and masks of shapes, which are taken whole,")
+            self.found.leave_out("clipped or masked shape")
         matrix = self._transform(node, style, place.matrix)
         place = _Place(matrix, place.page, style, (*place.names, *_names(node)), (*place.around, node))
         if node.tag == "use":
@@ -151,7 +151,7 @@ class _Walk:
         elif node.tag in _OTHERS:
             self.found.leave_out(_OTHERS[node.tag])
         else:
-            self.found.leave_out(f"`{node.tag[:20]}` elements")
+            self.found.leave_out(f"`{node.tag[:20]}` element")
 
     def _shape(self, node: Node, place: _Place) -> None:
         if place.style.get("visibility", "visible") in ("hidden", "collapse"):
@@ -173,7 +173,7 @@ class _Walk:
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
         if target is None:
-            self.found.leave_out("`use` elements without what they refer to")
+            self.found.leave_out("dangling `use` element")
             return
         if target in place.around or len(place.around) > _DEEPEST or target is self.root:
             self.circular.append(_called(node))
