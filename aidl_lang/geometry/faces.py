@@ -85,7 +85,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
 
 def _area(network: Network, shape: Shape, uses: list[Use]) -> tuple[Section, list[Crossing]]:
     """Returns what a closed shape encloses by these edges of it, and what of it crosses itself."""
-    files = {part.path: part for part in shape.geometry.walk() if part.type == CONTOURS}
+    files = {part.path: part for part in shape.geometry.walk() if part.type in CONTOURS}
     if not files:
         return union([_alternating(network, uses) for uses in _by_letter(network, shape, uses)]), []
     numbers: dict[str, list[int]] = defaultdict(list)

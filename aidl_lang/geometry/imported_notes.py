@@ -17,6 +17,7 @@ from aidl_lang.geometry.evaluate import ends
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.notes import at, finding_note
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.tracing import is_winding
 
 _AGAIN = "mend it in the program that drew it"
 _MOST_ENDS = 100
@@ -96,7 +97,7 @@ def _crossed(finding: CrossedOutline) -> Diagnostic:
     s, outline = finding.structure, finding.outline
     first, *more = sorted(finding.places)
     further = f" and in {counted(len(more), 'more place')}" if more else ""
-    rule = "a winding that is not 0" if outline.values.get("winding") else "every second area"
+    rule = "a winding that is not 0" if is_winding(outline) else "every second area"
     return Diagnostic(
         "W0753",
         f"`{_label(outline.path)}`, imported into {s.kind} `{s.path}`, crosses itself at "

@@ -22,8 +22,9 @@ from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
 
-CONTOURS = "contours"
-"""The type of a part that is one shape of a file."""
+_WINDING = "winding_contours"
+CONTOURS = ("contours", _WINDING)
+"""The types of a part that is one shape of a file: filled by alternation, or by the non-zero rule."""
 
 Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
 """A shape of a file, and the places where it crosses itself."""
@@ -105,14 +106,19 @@ def _contours(
     return SolvedGeometry(
         f"{label}[{number}]",
         path,
-        CONTOURS,
-        {"winding": element.is_winding},
+        CONTOURS[element.is_winding],
+        {},
         None,
         edges,
         g.construction,
         g.span,
         filled=g.filled,
     )
+
+
+def is_winding(shape: SolvedGeometry) -> bool:
+    """Tells whether a shape of a file is filled by the non-zero rule."""
+    return shape.type == _WINDING
 
 
 # --- What they enclose -----------------------------------------------------------------------------
@@ -135,7 +141,7 @@ def enclosed(
         uses = [use for number in numbers for use in network.uses[number] if use in closed]
         if not uses:
             continue
-        if shape.values.get("winding"):
+        if is_winding(shape):
             sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
         else:
             sections.append(alternating(network, uses))

@@ -10,28 +10,24 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings import xml
 from aidl_lang.common.drawings.drawing import Collector, DrawingError, Remark
 from aidl_lang.common.drawings.strokes import (
     STILL,
-    TURN,
-    Bow,
     Matrix,
     Stroke,
-    ellipse,
     ends,
     mapped,
     product,
 )
+from aidl_lang.common.drawings.svg_shapes import SHAPES, outline
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
     ValueMistake,
     declarations,
     numbers,
-    path,
     pixels,
     transform,
 )
@@ -125,7 +121,7 @@ class _Walk:
     def _children(self, node: Node, place: _Place) -> None:
         children = node.children
         if node.tag == "switch":  # its first choice that can be drawn; conditions are not looked at
-            children = [c for c in children if c.tag in _GROUPS or c.tag in _SHAPES or c.tag == "use"][:1]
+            children = [c for c in children if c.tag in _GROUPS or c.tag in SHAPES or c.tag == "use"][:1]
         for child in children:
             self._node(child, place)
 
@@ -146,7 +142,7 @@ class _Walk:
             self._inner_page(node, place, node.attributes)
         elif node.tag in _GROUPS:
             self._children(node, place)
-        elif node.tag in _SHAPES:
+        elif node.tag in SHAPES:
             self._shape(node, place)
         elif node.tag in _OTHERS:
             self.found.leave_out(_OTHERS[node.tag])
@@ -156,11 +152,13 @@ class _Walk:
     def _shape(self, node: Node, place: _Place) -> None:
         if place.style.get("visibility", "visible") in ("hidden", "collapse"):
             return
+        self.found.count_numbers(node.attributes.get("d", "") + node.attributes.get("points", ""))
         try:
-            strokes = list(self._strokes(node, place.page))
+            strokes, is_whole = outline(node, place.page)
         except ValueMistake:
+            strokes, is_whole = [], False
+        if not is_whole:
             self.broken.append(_called(node))
-            return
         a, b, c, d, _, _ = place.matrix
         if a * d == b * c:  # all on one line
             return
@@ -210,42 +208,6 @@ class _Walk:
         inner = product(corner, self._fitted(node, box, width, height))
         page = (box[2], box[3]) if box else (width, height)
         self._children(node, replace(place, matrix=product(place.matrix, inner), page=page))
-
-    # --- Shapes --------------------------------------------------------------------------------
-
-    def _strokes(self, node: Node, page: tuple[float, float]) -> Iterator[Stroke]:
-        def length(name: str, axis: int) -> float:
-            return pixels(node.attributes.get(name, "0"), page[axis])
-
-        match node.tag:
-            case "path":
-                data = node.attributes.get("d", "")
-                self.found.count_numbers(data)
-                strokes, is_whole = path(data)
-                if not is_whole:
-                    self.broken.append(_called(node))
-                yield from strokes
-            case "line":
-                yield (length("x1", 0), length("y1", 1)), (length("x2", 0), length("y2", 1))
-            case "polyline" | "polygon":
-                data = node.attributes.get("points", "")
-                self.found.count_numbers(data)
-                given = numbers(data)
-                points = list(zip(given[::2], given[1::2], strict=False))
-                if node.tag == "polygon":
-                    points += points[:1]
-                yield from pairwise(points)
-            case "circle":
-                r = pixels(node.attributes.get("r", "0"), (page[0] ** 2 + page[1] ** 2) ** 0.5 / 2**0.5)
-                if r > 0.0:
-                    yield ellipse((length("cx", 0), length("cy", 1)), (r, 0.0), (0.0, r))
-            case "ellipse":
-                a, b = _radii(node, page)
-                if a > 0.0 and b > 0.0:
-                    yield ellipse((length("cx", 0), length("cy", 1)), (a, 0.0), (0.0, b))
-            case _:
-                sides = length("x", 0), length("y", 1), length("width", 0), length("height", 1)
-                yield from _rectangle(*sides, *_radii(node, page))
 
     # --- Attributes ----------------------------------------------------------------------------
 
@@ -373,41 +335,3 @@ def _closed(strokes: Sequence[Stroke]) -> Iterator[Stroke]:
             if start != end:
                 yield end, start
             first = k + 1
-
-
-def _radii(node: Node, page: tuple[float, float]) -> tuple[float, float]:
-    """Returns `rx` and `ry`, of which one may stand for both. Raises ValueMistake."""
-    rx, ry = (node.attributes.get(name, "auto").strip() for name in ("rx", "ry"))
-    both = (ry if rx == "auto" else rx), (rx if ry == "auto" else ry)
-    a, b = (0.0 if text == "auto" else pixels(text, whole) for text, whole in zip(both, page, strict=True))
-    return a, b
-
-
-_QUARTER = TURN / 4
-
-
-def _rectangle(x: float, y: float, width: float, height: float, rx: float, ry: float) -> Iterator[Stroke]:
-    if width <= 0.0 or height <= 0.0:
-        return
-    right, bottom = x + width, y + height
-    rx, ry = min(rx, width / 2), min(ry, height / 2)
-    if rx <= 0.0 or ry <= 0.0:
-        corners = [(x, y), (right, y), (right, bottom), (x, bottom), (x, y)]
-        yield from pairwise(corners)
-        return
-    centers = [(right - rx, y + ry), (right - rx, bottom - ry), (x + rx, bottom - ry), (x + rx, y + ry)]
-    sides = [
-        ((right - rx, y), (right, y + ry)),
-        ((right, bottom - ry), (right - rx, bottom)),
-        ((x + rx, bottom), (x, bottom - ry)),
-        ((x, y + ry), (x + rx, y)),
-    ]
-    here = sides[-1][1]
-    for number, (center, (start, end)) in enumerate(zip(centers, sides, strict=True)):
-        if start != here:
-            yield here, start
-        yield Bow(center, (rx, 0.0), (0.0, ry), (number - 1) * _QUARTER, _QUARTER, start, end)
-        here = end
-
-
-_SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
