@@ -377,6 +377,12 @@ def _traced(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     part = a["part"]
     assert isinstance(part, TextVal)
     g.trace = trace_of(it, part.value)
+    unit = a["unit"]
+    assert isinstance(unit, Num)
+    if unit.value < 0:
+        message = f"the scale of this drawing is {unit.value:g}, and sizes are never negative"
+        hints = ["`angle: 180deg` turns it about, and `mirror(…)` makes a mirror image of it"]
+        it.report("E0515", message, it.place(it.call_sites[-1]), hints=hints)
     g.filled = a.get("filled") is True
     it.count_entity(None, len(g.trace.strokes))
     _plain(it, g, a, env)

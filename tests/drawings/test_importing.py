@@ -29,7 +29,8 @@ LOGO = (
     b'<g id="frame"><rect width="40" height="30" rx="4"/></g>'
     b'<g id="holes"><circle id="left_hole" cx="8" cy="8" r="3"/>'
     b'<ellipse id="slit" cx="30" cy="9" rx="4" ry="2"/></g>'
-    b'<path id="smile" d="M10 18 A 10 10 0 0 0 30 18 C 25 14 15 14 10 18 Z"/></svg>'
+    b'<path id="smile" d="M10 18 A 10 10 0 0 0 30 18 C 25 14 15 14 10 18 Z"/>'
+    b'<path id="brow" d="M14 12 A 7 3 20 0 1 26 12 Z"/></svg>'
 )
 
 
@@ -116,6 +117,30 @@ def test_it_turns_as_one_where_a_constraint_asks_for_it():
 def test_both_of_a_width_and_a_height_are_refused():
     found = compiled('import "logo.svg" as logo\nsolid s { a = logo(width: 3, height: 3) }')
     assert [d.code for d in found.diagnostics if d.is_error] == ["E0311"]
+
+
+def test_a_negative_scale_is_refused():
+    found = compiled('import "logo.svg" as logo\nsolid s { a = logo(scale: -1) }')
+    assert [(d.code, d.message) for d in found.diagnostics] == [
+        ("E0515", "the scale of this drawing is -1, and sizes are never negative")
+    ]
+
+
+@tries(16)
+@given(st.floats(-180, 180), st.floats(0.2, 5), st.sampled_from(["x_axis", "y_axis"]))
+def test_mirror_images_are_exact_too(angle: float, scale: float, axis: str):
+    """Also of arcs of ellipses: mirrored twice it lies where it was."""
+    found = compiled(
+        f'import "logo.svg" as logo\nassembly a {{ solid one {{ x = logo(scale: {scale!r}, angle: {angle!r}deg) }} '
+        f"solid two {{ x = mirror(one.x, about: {axis}) }} solid three {{ x = mirror(two.x, about: {axis}) }} }}"
+    )
+    assert found.drawing is not None, [d.message for d in found.diagnostics]
+    one, two, three = (found.drawing.measures[f"a.{name}"] for name in ("one", "two", "three"))
+    assert math.isclose(one.area, two.area, rel_tol=1e-9)
+    sense = (1, -1) if axis == "x_axis" else (-1, 1)
+    mirrored = one.centroid[0] * sense[0], one.centroid[1] * sense[1]
+    assert math.dist(mirrored, two.centroid) < 1e-6
+    assert math.dist(one.centroid, three.centroid) < 1e-6
 
 
 # --- Who reads what ------------------------------------------------------------------------------

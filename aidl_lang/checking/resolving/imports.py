@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 SUFFIX = PROGRAM
 MAX_FILES = 200
 MAX_CHARACTERS = 2_000_000
-"""Characters of all imported files together."""
+"""Characters of all imported programs together."""
+MAX_BYTES = 20_000_000
+"""Bytes of all imported drawings together."""
 
 
 @record(frozen=False)
@@ -62,7 +64,7 @@ class _Loader:
         self.order: list[ast.Module] = []
         self.known: dict[str, ast.Module] = {}
         self.open: list[str] = []
-        self.characters = 0
+        self.characters = self.bytes = 0
 
     def visit(self, module: ast.Module, path: str) -> None:
         """Loads the imports of a file, then counts the file itself."""
@@ -135,7 +137,15 @@ class _Loader:
             self._unread(statement)
             return None
         try:
-            found = drawings.read(path, self.world.read_bytes(path))
+            data = self.world.read_bytes(path)
+            self.bytes += len(data)
+            if self.bytes > MAX_BYTES:
+                limit = f"{MAX_BYTES // 1_000_000} MB"
+                self._report(
+                    "E0804", f"drawings that a program imports may have at most {limit}", statement.path
+                )
+                return None
+            found = drawings.read(path, data)
         except FileError as error:
             hint = "paths are relative to the file that imports"
             self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
