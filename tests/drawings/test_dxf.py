@@ -1,4 +1,4 @@
-"""DXF files: each kind of entity as an exact curve, units, layers and blocks, beside ezdxf's own flattening."""
+"""DXF files: each kind of entity as an exact curve, units, layers and blocks, beside what ezdxf flattens."""
 
 from __future__ import annotations
 

@@ -131,8 +131,9 @@ def test_a_negative_scale_is_refused():
 def test_mirror_images_are_exact_too(angle: float, scale: float, axis: str):
     """Also of arcs of ellipses: mirrored twice it lies where it was."""
     found = compiled(
-        f'import "logo.svg" as logo\nassembly a {{ solid one {{ x = logo(scale: {scale!r}, angle: {angle!r}deg) }} '
-        f"solid two {{ x = mirror(one.x, about: {axis}) }} solid three {{ x = mirror(two.x, about: {axis}) }} }}"
+        f'import "logo.svg" as logo\nassembly a {{ solid one {{ x = logo(scale: {scale!r}, '
+        f"angle: {angle!r}deg) }} solid two {{ x = mirror(one.x, about: {axis}) }} "
+        f"solid three {{ x = mirror(two.x, about: {axis}) }} }}"
     )
     assert found.drawing is not None, [d.message for d in found.diagnostics]
     one, two, three = (found.drawing.measures[f"a.{name}"] for name in ("one", "two", "three"))
@@ -169,7 +170,14 @@ def test_programs_of_models_read_drawings_below_their_folder_and_nothing_else(tm
 
 # --- Editors -------------------------------------------------------------------------------------
 
-PROGRAM = 'import "logo.svg" as logo\n\nsolid s {\n    a = logo.smile(width: 10)\n    b = logo()\n    constrain b.slit.left == 0\n}\n'
+PROGRAM = """import "logo.svg" as logo
+
+solid s {
+    a = logo.smile(width: 10)
+    b = logo()
+    constrain b.slit.left == 0
+}
+"""
 
 
 @pytest.fixture
