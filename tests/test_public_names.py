@@ -24,6 +24,8 @@ FOR_THE_LIBRARY = {
     "glyphs",
     "ink",
     "lettered",
+    "traced",
+    "traced_part",
     "where",
     "shown",
     "sizes",

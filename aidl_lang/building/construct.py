@@ -20,7 +20,8 @@ from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, Value, length, point
+from aidl_lang.building.tracing import trace_of
+from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.types import NumberType, PointType
@@ -372,12 +373,29 @@ def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     _plain(it, g, a, env)
 
 
+def _traced(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    """Takes the outlines from the drawing that the call stands in."""
+    part = a["part"]
+    assert isinstance(part, TextVal)
+    g.trace = trace_of(it, part.value)
+    unit = a["unit"]
+    assert isinstance(unit, Num)
+    if unit.value < 0:
+        message = f"the scale of this drawing is {unit.value:g}, and sizes are never negative"
+        hints = ["`angle: 180deg` turns it about, and `mirror(…)` makes a mirror image of it"]
+        it.report("E0515", message, it.place(it.call_sites[-1]), hints=hints)
+    g.filled = a.get("filled") is True
+    it.count_entity(None, len(g.trace.strokes))
+    _plain(it, g, a, env)
+
+
 _OWN: Mapping[str, Callable[[Interpreter, Geometry, Arguments, Env], None]] = {
     "point": _point,
     "line": _line,
     "circle": _circle,
     "arc": _arc,
     "glyphs": _glyphs,
+    "traced": _traced,
 }
 
 CONSTRUCTORS = {kind: _OWN.get(kind, _plain) for kind in PRIMITIVES}

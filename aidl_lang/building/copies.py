@@ -218,7 +218,8 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if motion is None:
         return NOTHING
     is_loose = any(g.name is None for g in _geometry_in(a["x"])) or isinstance(a["x"], Instantiation)
-    if motion.is_still and not is_loose and not env.scope.labels:
+    is_seen = any(_is_seen(g, env.here) for g in _geometry_in(a["x"])) or not list(_geometry_in(a["x"]))
+    if motion.is_still and is_seen and not is_loose and not env.scope.labels:
         it.report(
             "W0510",
             "this copy lies exactly on what it is a copy of",
@@ -226,6 +227,20 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
             hints=["say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`"],
         )
     return copied(it, a["x"], motion, node, env)
+
+
+def _is_seen(g: Geometry, here: Structure) -> bool:
+    """Tells whether a copy would lie on something that is drawn. A guide is not, and a part of an imported
+    drawing is taken to another structure to be what that one is.
+    """
+    if g.trace is not None and g.owner is not here:
+        return False
+    holder: Geometry | Structure | None = g
+    while isinstance(holder, Geometry):
+        if holder.construction:
+            return False
+        holder = holder.container
+    return True
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

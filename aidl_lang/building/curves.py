@@ -27,6 +27,7 @@ from aidl_lang.building.primitives import (
 )
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
 from aidl_lang.checking.units import ANGLE
+from aidl_lang.common.drawings.strokes import furthest
 from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record
 
@@ -254,6 +255,29 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
         yield from reaching
 
 
+# --- Drawings of other programs --------------------------------------------------------------------
+
+
+def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Yields how far a drawing reaches: a number times its unit if its turn is known, else that of each
+    point and curve of its silhouette.
+    """
+    angle, axis = number(view(g, here)["angle"]), side in ("top", "bottom")
+    if not angle.is_constant:
+        at = on_text(g, here)
+        yield from _reach_of((tuple(map(at, piece)) for piece in g.silhouette), side)
+        return
+    assert g.trace is not None
+    # The direction of the side as the drawing sees it: turned back, and over if it is mirrored.
+    c, s = ex.exact_turn(angle.value)
+    across, up = (s, c) if axis else (c, -s)
+    sense = 1.0 if side in ("right", "top") else -1.0
+    over = -1.0 if clockwise(g, here) else 1.0
+    reach = sense * furthest(g.trace.strokes, (sense * across, sense * over * up))
+    core = view(g, here)
+    yield ex.add(xy(core["start"])[axis], ex.mul(number(core["unit"]), ex.constant(reach)))
+
+
 FORMULAS: dict[str, Formulas] = {
     "point": Formulas(_point),
     "line": Formulas(_line, _straight),
@@ -262,5 +286,6 @@ FORMULAS: dict[str, Formulas] = {
     "ellipse": Formulas(reach=_ellipse_reach),
     "bezier": Formulas(pieces=_cubic),
     "glyphs": Formulas(_characters, reach=_text_reach),
+    "traced": Formulas(reach=_trace_reach),
 }
 """The formulas of each kind in the registry."""

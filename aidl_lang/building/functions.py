@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from aidl_lang.building import colors, copies, lists, patterns, shapes
+from aidl_lang.building import colors, copies, lists, patterns, shapes, tracing
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
@@ -353,6 +353,7 @@ FUNCTIONS: dict[str, Function] = {
     **colors.FUNCTIONS,
     "ink": ink,
     "lettered": lettered,
+    "traced_part": tracing.part,
     "fixed": _mark(Exactness.FIXED),
     "guess": _mark(Exactness.GUESS),
     "written": _written,

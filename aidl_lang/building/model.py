@@ -25,6 +25,7 @@ from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
+    from aidl_lang.common.drawings.drawing import Trace
 
 SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
@@ -96,6 +97,7 @@ class Geometry:
     known_as   the copy of a nameless geometry, by which it is known
     reach      the structure that holds both, if it is derived of geometry outside of its owner
     glyphs     for a text, its characters in units of its height
+    trace      for a drawing of another program, its outlines in millimetres of the file
     filled     a drawing fills what it encloses, as it does letters
     bridge     for a text to be cut, how wide the bridges to what its letters enclose are: a length, or as a
                plain number a share of its height
@@ -114,6 +116,7 @@ class Geometry:
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
+    trace: Trace | None = None
     filled: bool = False
     bridge: Num | None = None
     name: str | None = None
@@ -130,8 +133,8 @@ class Geometry:
 
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
-        """The silhouette of a text, in units of its height (see `lettering.silhouette`)."""
-        return silhouette(self.glyphs)
+        """The silhouette of a text or a drawing in its own units (see `lettering.silhouette`)."""
+        return silhouette(self.glyphs) if self.trace is None else self.trace.silhouette
 
     @property
     def bound_to(self) -> Structure:

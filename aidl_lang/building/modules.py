@@ -15,6 +15,7 @@ from aidl_lang.building.structures import build_structure, finish, own_names
 from aidl_lang.building.values import (
     Namespace,
 )
+from aidl_lang.common.drawings import WHOLE
 from aidl_lang.syntax import ast
 
 
@@ -71,13 +72,15 @@ def _file_scope(
         if isinstance(statement, ast.Import) and (other := it.program.imports.get(statement)) is not None:
             inner = _file_scope(it, other, library, loading)
             hoist_values(inner, other.statements, Structure("assembly", "", None, None))
-            _bring_in(scope, inner, statement)
+            _bring_in(scope, inner, statement, is_drawing=other.source in it.program.resolution.drawings)
     return scope
 
 
-def _bring_in(scope: Scope, inner: Scope, statement: ast.Import) -> None:
+def _bring_in(scope: Scope, inner: Scope, statement: ast.Import, *, is_drawing: bool) -> None:
     if statement.alias is not None:
         scope.values[statement.alias.text] = Namespace({**inner.values, "": inner})
+        if is_drawing:
+            scope.callables[statement.alias.text] = inner.callables[WHOLE]
         return
     wanted = {name.text for name in statement.names}
 

@@ -106,9 +106,10 @@ def polar(center: Value, radius: Expression, angle: Expression) -> PointVal:
 
 
 def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:
-    """Returns a function from units of the height of a text to the frame of `here`."""
+    """Returns a function from units of the height of a text, or of a drawing, to the frame of `here`."""
     core = view(geometry, here)
-    (x, y), height, angle = xy(core["start"]), number(core["height"]), number(core["angle"])
+    unit = "height" if geometry.trace is None else "unit"
+    (x, y), height, angle = xy(core["start"]), number(core[unit]), number(core["angle"])
     along = ex.mul(height, ex.cos(angle)), ex.mul(height, ex.sin(angle))
     up = -1.0 if clockwise(geometry, here) else 1.0
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn
 
 from aidl_lang.building import expression as ex
@@ -200,9 +201,9 @@ class Interpreter:
         """Returns the name as it is defined."""
         return self.program.resolution.canonical.get(node, node.text)
 
-    @property
+    @cached_property
     def library_sources(self) -> tuple[object, ...]:
-        return self.program.library.sources
+        return self.program.resolution.standard_sources
 
     def evaluate(self, node: ast.Expression, env: Env) -> Value:
         """Returns the value of an expression, for modules that `evaluate` imports."""

@@ -52,6 +52,7 @@ nearest(value, candidates: list)
 ink(text: text, align: text, line_spacing: number, bold: bool, font: text)
 lettered(text: text, curve, height: length, align: text, line_spacing: number, inside, \
 outline: bool, bold: bool, font: text, stencil)
+traced_part(of: geometry, part: text)
 where(value, positive, negative)
 shown(value)
 sizes(of)

@@ -103,6 +103,7 @@ RESULTS: Mapping[str, Type] = {
     "len": NumberType(None, whole=True),
     "record": RecordType(),
     "ink": RecordType(),
+    "traced_part": GeometryType("traced"),
     **dict.fromkeys(("str", "choice", "rgb"), TextType()),
     **dict.fromkeys(("range", "enumerate", "zip", "reversed"), ListType(ANY)),
     "channels": ListType(NumberType(None)),

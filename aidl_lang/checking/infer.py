@@ -52,7 +52,7 @@ class Inference:
         self.diagnostics: list[Diagnostic] = []
         self.fits: dict[ast.Call, list[Binding]] = {}
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
-        self._standard = frozenset(resolution.library.sources if standard is None else standard)
+        self._standard = frozenset(resolution.standard_sources if standard is None else standard)
         self.running: set[ast.Node] = set()
         self._depth = 0
         self._errors = 0

@@ -112,6 +112,11 @@ _RECORDS = (
         fields="start: point, height: size, angle: direction, glyph: glyphs[]",
         chief="start height angle",
     ),
+    Primitive(
+        "traced",
+        calls=("part: text, start: point, unit: length, angle: angle, filled: bool",),
+        fields="start: point, unit: size, angle: direction",
+    ),
 )
 
 PRIMITIVES: Mapping[str, Primitive] = {each.kind: each for each in _RECORDS}

@@ -31,6 +31,7 @@ from aidl_lang.checking.resolving.resolution import Resolution, library_scope
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label, ordered
+from aidl_lang.common.drawings import WHOLE
 from aidl_lang.common.names import nearest
 from aidl_lang.syntax import ast
 
@@ -54,8 +55,11 @@ def resolve(module: ast.Module, world: World | None, library: Library) -> Resolu
         diagnostics=[*misplaced, *loaded.diagnostics, *notes],
         library_scope=library_scope(library),
         world=world,
+        drawings={module.source: drawing for module, drawing in loaded.drawings.items()},
     )
     resolution.enter_library = Resolver(resolution, is_library=True).of_library
+    for drawing in loaded.drawings.values():
+        resolution.scopes[drawing.module] = drawing.scope(resolution.library_scope)
     for each in modules:
         Resolver(resolution).module(each, loaded)
     resolution.allowances, unknown = allowances(modules)
@@ -100,6 +104,8 @@ class Resolver:
                 symbol = self.enter(scope, statement.alias, SymbolKind.NAMESPACE, statement)
                 scope.values[name] = symbol
                 scope.spaces[name] = source
+                if target in loaded.drawings:
+                    scope.callables[name] = source.callables[WHOLE]
                 continue
             _bring(source, scope, self._wanted(statement, source, scope) if statement.names else None)
         return scope
@@ -337,18 +343,13 @@ class Resolver:
 
     def _call(self, node: ast.Call, scope: SymbolScope) -> None:
         callee = node.callee
-        where = scope
+        where = scope.space_of(node.receiver)
         if node.receiver is not None:
-            space = scope.value(node.receiver.text) if isinstance(node.receiver, ast.Name) else None
-            if space is not None and space.kind is SymbolKind.NAMESPACE:
-                assert isinstance(node.receiver, ast.Name)
-                assert space.scope is not None
-                self._name(node.receiver, scope)
-                where = space.scope.spaces[space.name]
-            else:
-                self.expression(node.receiver, scope)
+            self.expression(node.receiver, scope)
         found = where.called(callee.text)
-        if found is None:
+        if _is_of_missing(node, scope):
+            pass
+        elif found is None:
             complaints.unknown_callable(self, node, where)
         else:
             name, signatures = found[0], meant(found[1], node in self.hole_calls)
@@ -416,6 +417,12 @@ class Resolver:
     def has_said_enough(self) -> bool:
         """True if there are more errors than will be reported, so that no more need be looked for."""
         return self.resolution.errors > MOST_ERRORS
+
+
+def _is_of_missing(node: ast.Call, scope: SymbolScope) -> bool:
+    """Tells whether a call names a file that could not be imported, so that nothing is known of it."""
+    of = node.receiver
+    return isinstance(of, ast.Name) and scope.value(of.text) is None and scope.may_be_missing(of.text)
 
 
 def _note_missing(statement: ast.Import, scope: SymbolScope) -> None:

@@ -121,6 +121,22 @@ class DiskWorld:
             raise FileError(path, ReadFailure.UNREADABLE) from None
 
 
+class NotedWorld:
+    """The files of another world; `asked` has the paths of those that were asked for, there or not."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self.asked: set[str] = set()
+
+    def read(self, path: str) -> str:
+        self.asked.add(path)
+        return self._world.read(path)
+
+    def read_bytes(self, path: str) -> bytes:
+        self.asked.add(path)
+        return self._world.read_bytes(path)
+
+
 class KeptWorld:
     """The files of another world, each read once and kept as it was then, also in a pickle, which leaves the
     other world behind.

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -118,7 +118,17 @@ class CoveredHoles:
     covers: tuple[SolvedGeometry, ...]
 
 
-Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
+@record()
+class CrossedOutline:
+    """An imported outline that crosses itself."""
+
+    structure: SolvedStructure
+    outline: SolvedGeometry
+    places: tuple[Vec, ...]
+
+
+OwnFinding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
+Finding = OwnFinding | CrossedOutline
 
 
 @record(frozen=False)
@@ -165,6 +175,7 @@ class Bodies:
         if own.loose:
             numbers = tuple(number for shape in shapes for number in shape.numbers)
             self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
+        self.findings += [CrossedOutline(structure, outline, places) for outline, places in own.crossed]
         if not own.faces:
             return None
         self._find_inner_loops(structure, own.faces)

@@ -19,6 +19,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
+from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
@@ -30,7 +31,7 @@ from aidl_lang.geometry.legibility import (
 from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, stroked_note, unusable_note
+from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
@@ -144,7 +145,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     found = [
         f for f in walk.findings if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams)
     ]
-    notes += [note for f in found if (note := finding_note(f, network)) is not None]
+    notes += [note for f in found for note in finding_notes(f, network)]
     notes += detached_notes(model.root, [b.path for b in bodies], touching)
     notes += loose_piece_notes(model.root, walk, masses, solids, touching.near)
     seams = tuple(

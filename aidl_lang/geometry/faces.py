@@ -21,6 +21,7 @@ from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.geometry.trace import trace
+from aidl_lang.geometry.tracing import CONTOURS, Crossing, enclosed
 
 
 @record()
@@ -47,10 +48,13 @@ class OwnFace:
 
 @record(frozen=False)
 class OwnFaces:
-    """The faces of a structure and the primitives that bound none."""
+    """The faces of a structure, the primitives that bound none, and imported outlines that cross
+    themselves.
+    """
 
     faces: list[OwnFace] = field(default_factory=list)
     loose: list[tuple[SolvedGeometry, int]] = field(default_factory=list)
+    crossed: list[Crossing] = field(default_factory=list)
 
 
 def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
@@ -65,7 +69,8 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
         closed = _is_closed(network, shape, uses)
         kept = _without_dangling(network, uses) if closed else []
         if kept:
-            section = union([_alternating(network, uses) for uses in _by_letter(network, shape, kept)])
+            section, crossed = _area(network, shape, kept)
+            result.crossed += crossed
             if is_nothing(section):  # flat, or twice the same outline
                 result.loose += shape.leaves
             else:
@@ -76,6 +81,18 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     if free:
         _chain_free(network, free, outlines, result)
     return result
+
+
+def _area(network: Network, shape: Shape, uses: list[Use]) -> tuple[Section, list[Crossing]]:
+    """Returns what a closed shape encloses by these edges of it, and what of it crosses itself."""
+    files = {part.path: part for part in shape.geometry.walk() if part.type in CONTOURS}
+    if not files:
+        return union([_alternating(network, uses) for uses in _by_letter(network, shape, uses)]), []
+    numbers: dict[str, list[int]] = defaultdict(list)
+    for leaf, number in shape.leaves:
+        numbers[leaf.path.rpartition(".")[0]].append(number)
+    contours = ((part, numbers[path]) for path, part in files.items())
+    return enclosed(network, contours, set(uses), _alternating)
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:

@@ -12,7 +12,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.numbers import rough
 from aidl_lang.common.prose import named, ticked
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
+from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, IdleHole, InnerLoop, LooseCurves, OwnFinding
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Bezier, Piece, Vec
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
@@ -32,7 +32,7 @@ def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
     return geometry.path.removeprefix(structure.path + ".")
 
 
-def finding_note(finding: Finding, network: Network) -> Diagnostic | None:
+def finding_note(finding: OwnFinding, network: Network) -> Diagnostic | None:
     """Returns the warning about a finding; open curves are one only in solids and holes."""
     if isinstance(finding, InnerLoop):
         return _inner_loop(finding)
@@ -194,7 +194,9 @@ def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
 def _end(structure: SolvedStructure, end: End) -> str:
     geometry, _, name = end
     if geometry.piece_of:
-        return f"{geometry.piece_of.removeprefix(structure.path + '.')}.{name}"
+        # Of an imported drawing the shape that it belongs to is told as well, which stands between the two.
+        shape = geometry.path.removeprefix(geometry.piece_of).rpartition(".")[0].partition("[")[0]
+        return f"{geometry.piece_of.removeprefix(structure.path + '.')}{shape}.{name}"
     if isinstance(geometry.curve, Bezier):
         name = {"start": "p0", "end": "p3"}[name]
     return f"{local(structure, geometry)}.{name}"

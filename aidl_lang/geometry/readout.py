@@ -49,6 +49,7 @@ from aidl_lang.geometry.solved import (
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
+from aidl_lang.geometry.tracing import parts_of
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution
 from aidl_lang.syntax import ast
@@ -254,6 +255,8 @@ class _Reader:
     def geometry(self, g: Geometry) -> SolvedGeometry:
         if g.type == "glyphs":
             return self._text(g)
+        if g.trace is not None:
+            return self._drawing(g)
         recipe = self._recipe(g.recipe) if g.recipe is not None else None
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
@@ -319,6 +322,23 @@ class _Reader:
         if text.bridge is None or height <= 0:
             return 0.0
         return text.bridge.value if text.bridge.dimension == PLAIN else text.bridge.value / height
+
+    def _drawing(self, g: Geometry) -> SolvedGeometry:
+        """Returns a drawing of another program, with its shapes as parts and the curves of each as theirs."""
+        (x, y), unit = self._at(g.fields["start"], g.owner), self._number(g.fields["unit"])
+        c, s = ex.exact_turn(self._direction(g))
+        sense = -1.0 if clockwise(g, self.model.root) else 1.0
+
+        def at(p: Vec) -> Vec:
+            u, v = unit * p[0], sense * unit * p[1]
+            return x + u * c - v * s, y + u * s + v * c
+
+        turn = math.atan2(s, c)
+        shapes = parts_of(g, at, unit, turn, sense)
+        values: Values = {"start": (x, y), "unit": unit, "angle": math.degrees(turn)}
+        whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, shapes, g.construction, g.span)
+        source = g.source.path if g.source is not None else None
+        return replace(whole, source=source, attributes=self._attributes(g))
 
     def _at(self, value: Value, owner: Structure) -> Vec:
         """Returns a point of `owner` in the frame of the root."""

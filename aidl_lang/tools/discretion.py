@@ -12,11 +12,10 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
-from pathlib import PurePosixPath
 
 from aidl_lang.checking import library
+from aidl_lang.common.beside import is_data
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
-from aidl_lang.common.font_files import SUFFIXES
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World
@@ -44,8 +43,8 @@ class Programs:
         return text
 
     def read_bytes(self, path: str) -> bytes:
-        """Returns what is in a font file; no message on one quotes it."""
-        if PurePosixPath(path).suffix.lower() not in SUFFIXES:
+        """Returns what is in a font, of which no message quotes, or a drawing, whose names can be used."""
+        if not is_data(path):
             raise FileError(path, ReadFailure.ANOTHER_KIND)
         return self.world.read_bytes(path)
 

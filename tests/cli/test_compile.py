@@ -172,3 +172,13 @@ def test_permissions(aidl: Aidl, folder: Path) -> None:
     assert "E0902" in aidl("compile", "good.aidl").err
     folder.chmod(0o500)
     assert "E0904" in aidl("compile", "-", "-o", "x.svg", stdin=GOOD).err
+
+
+def test_what_a_program_reads_is_not_overwritten(aidl: Aidl, folder: Path) -> None:
+    disc = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5"/></svg>'
+    (folder / "disc.svg").write_text(disc)
+    (folder / "sign.aidl").write_text('import "disc.svg" as disc\nsolid plate { edge = disc() }\n')
+    result = aidl("compile", "sign.aidl", "-o", "disc.svg")
+    assert result.code == 2
+    assert "error[E0908]: `disc.svg` is read by the program and is not overwritten" in result.err
+    assert (folder / "disc.svg").read_text() == disc

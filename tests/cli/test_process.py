@@ -114,6 +114,28 @@ def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:
     assert process.returncode == 130
 
 
+def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path) -> None:
+    circle = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="{}"/></svg>'
+    (folder / "disc.svg").write_text(circle.format(5))
+    (folder / "sign.aidl").write_text('import "disc.svg" as disc\nsolid plate { edge = disc() }\n')
+    command = [*COMMAND, "watch", "sign.aidl", "-o", "watched.svg"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+        assert process.stderr is not None
+        try:
+            first = process.stderr.readline()
+            time.sleep(1.0)
+            (folder / "other.svg").write_text(circle.format(9))
+            time.sleep(1.0)
+            (folder / "disc.svg").write_text("no drawing")
+            second = process.stderr.readline()
+        finally:
+            process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+    assert "watched.svg: solved" in first
+    assert "error[E0362]" in second
+    assert rest == ""
+
+
 def _hear_interrupts() -> None:
     """In a shell's background job interrupts are ignored, and processes inherit that."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

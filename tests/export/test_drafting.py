@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import io
+from functools import cache
 from itertools import combinations
 
 import pypdfium2
 import pytest
 
+from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld
 from aidl_lang.export import ExportError, Job, Options
 from aidl_lang.export.dimension_marks import DIGIT, Block
 from aidl_lang.export.drafting import Draft, drafted
@@ -15,7 +19,6 @@ from aidl_lang.export.drafting.paper import SCALES, STANDARDS, papers
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.evaluate import bounds
-from tests.compiled import compiled
 from tests.documents import ROOT
 
 CAPITAL = 0.73
@@ -45,6 +48,12 @@ solid panel {
     for i, p in enumerate(spots) { hole h[i] { rim = circle(center: fixed(p), diameter: 4 + (i % 2)) } }
 }
 """
+
+
+@cache
+def compiled(text: str) -> pipeline.Compiled:
+    """What comes of a program that may import what lies beside those of the workshop."""
+    return pipeline.compile(SourceFile("<text>", text), DiskWorld(ROOT / "examples" / "workshop"))
 
 
 def pages(text: str, **draft: object) -> list[Picture]:

@@ -40,8 +40,8 @@ def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
     match value:
         case ast.Point():
             return SymbolKind.GEOMETRY
-        case ast.Call(callee=callee):
-            found = scope.called(callee.text)
+        case ast.Call(callee=callee, receiver=receiver):
+            found = scope.space_of(receiver).called(callee.text)
             if found is None:
                 return SymbolKind.LET
             name, signatures = found

@@ -1,27 +1,37 @@
 """The files that a program imports, each read and parsed once.
 
 A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is the
-folder of the program and all below it. No other file is read, as diagnostics on a file quote it. Mistakes
-inside an imported file are reported at their place there.
+folder of the program and all below it. Drawings of other programs, `.svg` and `.dxf`, are read as files of
+definitions (see `drawings`). No other file is read, as diagnostics on a file quote it. Mistakes inside an
+imported file are reported at their place there.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import field, replace
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from aidl_lang.checking.resolving.cuts import with_placed_cuts
+from aidl_lang.common.beside import PROGRAM
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.drawings import is_drawing
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World, relative_to
 from aidl_lang.syntax import ast
 
-SUFFIX = ".aidl"
+if TYPE_CHECKING:
+    from aidl_lang.checking.resolving.drawings import ImportedDrawing
+
+SUFFIX = PROGRAM
 MAX_FILES = 200
 MAX_CHARACTERS = 2_000_000
-"""Characters of all imported files together."""
+"""Characters of all imported programs together."""
+MAX_BYTES = 20_000_000
+"""Bytes of all imported drawings together."""
 
 
 @record(frozen=False)
@@ -30,10 +40,12 @@ class ImportedModules:
 
     modules  every file once, those that are imported before those that import them; the program is the last
     targets  import statements → the file they bring; without those that failed
+    drawings  the files among these that are drawings of other programs
     """
 
     modules: tuple[ast.Module, ...] = ()
     targets: dict[ast.Import, ast.Module] = field(default_factory=dict)
+    drawings: dict[ast.Module, ImportedDrawing] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
 
@@ -52,7 +64,7 @@ class _Loader:
         self.order: list[ast.Module] = []
         self.known: dict[str, ast.Module] = {}
         self.open: list[str] = []
-        self.characters = 0
+        self.characters = self.bytes = 0
 
     def visit(self, module: ast.Module, path: str) -> None:
         """Loads the imports of a file, then counts the file itself."""
@@ -93,6 +105,8 @@ class _Loader:
         if len(self.known) > MAX_FILES or len(self.open) > MAX_FILES // 4:
             self._report("E0804", f"a program may import at most {MAX_FILES} files", statement.path)
             return None
+        if is_drawing(path):
+            return self._drawing(statement, path)
         text = self._text(statement, path)
         if text is None:
             return None
@@ -109,15 +123,57 @@ class _Loader:
         self.visit(module, path)
         return module
 
+    def _drawing(self, statement: ast.Import, path: str) -> ast.Module | None:
+        from aidl_lang.checking.resolving import drawings
+        from aidl_lang.common.drawings.drawing import DrawingError
+
+        if statement.alias is None and not statement.names:
+            name = re.sub(r"\W+", "_", PurePosixPath(path).stem).strip("_")
+            self.result.diagnostics.append(
+                drawings.nameless(statement, name if name.isidentifier() else "art")
+            )
+            return None
+        if self.world is None:
+            self._unread(statement)
+            return None
+        try:
+            data = self.world.read_bytes(path)
+            self.bytes += len(data)
+            if self.bytes > MAX_BYTES:
+                limit = f"{MAX_BYTES // 1_000_000} MB"
+                self._report(
+                    "E0804", f"drawings that a program imports may have at most {limit}", statement.path
+                )
+                return None
+            found = drawings.read(path, data)
+        except FileError as error:
+            hint = "paths are relative to the file that imports"
+            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
+            return None
+        except DrawingError as error:
+            self.result.diagnostics.append(drawings.refused(error, statement.path))
+            return None
+        self.known[path] = found.module
+        self.result.drawings[found.module] = found
+        self.result.diagnostics += found.remarks(statement.path)
+        return found.module
+
+    def _unread(self, statement: ast.Import) -> None:
+        message = f"`{statement.path.value}` cannot be imported: only this text is at hand"
+        self._report("E0210", message, statement.path)
+
     def _text(self, statement: ast.Import, path: str) -> str | None:
         written = statement.path.value
         if self.world is None:
-            self._report(
-                "E0210", f"`{written}` cannot be imported: only this text is at hand", statement.path
-            )
+            self._unread(statement)
             return None
         if PurePosixPath(path).suffix != SUFFIX:
-            hints = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", "the library needs no import"
+            hints = (
+                f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`",
+                "drawings of other programs end in `.svg` or `.dxf`"
+                if PurePosixPath(path).suffix
+                else "the library needs no import",
+            )
             message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
             self._report("E0210", message, statement.path, *hints)
             return None

@@ -18,6 +18,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
+    from aidl_lang.checking.resolving.drawings import ImportedDrawing
     from aidl_lang.common.world import World
 
 _NOWHERE = ast.Module(SourceFile("built in", ""), (), (), span=Span(SourceFile("built in", ""), 0, 0))
@@ -40,6 +41,7 @@ class Resolution:
     errors       how many the resolver has found so far
     scopes       structures, definitions, loops, comprehensions and files → their scopes
     world        the files beside the program, such as fonts; None if only its text is at hand
+    drawings     the drawings of other programs that it imports, by the sources of their definitions
     """
 
     main: ast.Module
@@ -58,6 +60,12 @@ class Resolution:
     library_scope: SymbolScope = field(default_factory=lambda: SymbolScope(_NOWHERE))
     enter_library: Callable[[ast.Node], None] = lambda _: None
     world: World | None = None
+    drawings: dict[SourceFile, ImportedDrawing] = field(default_factory=dict)
+
+    @property
+    def standard_sources(self) -> tuple[SourceFile, ...]:
+        """The sources of definitions that no author of the program wrote."""
+        return (*self.library.sources, *self.drawings)
 
     def scope_of(self, definition: ast.Node) -> SymbolScope:
         """Returns the scope of a definition's body; one of the library is resolved when it is first

@@ -118,6 +118,13 @@ class SymbolScope:
                 return scope.own_name
         return None
 
+    def space_of(self, receiver: ast.Node | None) -> SymbolScope:
+        """Returns the scope in which `receiver.f(…)` looks for `f`: that of an imported file, or this one."""
+        space = self.value(receiver.text) if isinstance(receiver, ast.Name) else None
+        if space is None or space.kind is not SymbolKind.NAMESPACE or space.scope is None:
+            return self
+        return space.scope.spaces[space.name]
+
     def container(self) -> SymbolScope:
         """Returns the scope whose members the declarations here become: that of the structure or definition
         around.

@@ -133,7 +133,7 @@ class SizedGeometry:
 
     def field(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
         """Yields the dimension of a field; none if nothing that is drawn has this size."""
-        if self.built.type == "glyphs" or not math.isfinite(value):
+        if self.built.type in ("glyphs", "traced") or not math.isfinite(value):
             return
         if written.dimension == ANGLE:
             yield from self._angle(name, value, written)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,12 +36,13 @@ class Target:
 
 @record()
 class BuildResult:
-    """The result of one run."""
+    """The result of one run; `read` has the files beside the program that it asked for, there or not."""
 
     compiled: Compiled
     written: tuple[str, ...]
     notes: tuple[Diagnostic, ...]
     seconds: float
+    read: frozenset[Path] = frozenset()
 
     @property
     def code(self) -> int:
@@ -84,19 +85,22 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     With a `memory` of the last run, only what has changed since then is solved again.
     """
     from aidl_lang import pipeline
+    from aidl_lang.common.world import NotedWorld
 
     start = time.perf_counter()
     source = files.read(arguments.file)
     outputs = targets(arguments)
-    world = files.world(arguments.file)
+    disk = files.world(arguments.file)
+    world = NotedWorld(disk)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
     settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
     compiled = pipeline.compile(source, world, params, settings, show, memory)
+    read = frozenset((disk.root / path).resolve() for path in world.asked)
     written: tuple[str, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
-        written, notes = _write(compiled, outputs, options(arguments, compiled))
-    return BuildResult(compiled, written, notes, time.perf_counter() - start)
+        written, notes = _write(compiled, outputs, options(arguments, compiled), read)
+    return BuildResult(compiled, written, notes, time.perf_counter() - start, read)
 
 
 def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
@@ -123,9 +127,11 @@ def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
 
 
 def _write(
-    compiled: Compiled, outputs: Sequence[Target], options: Options
+    compiled: Compiled, outputs: Sequence[Target], options: Options, read: Collection[Path]
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Writes all outputs once all could be made; returns their names, and diagnostics about them."""
+    """Writes all outputs once all could be made; returns their names, and diagnostics about them. What the
+    program read is not overwritten.
+    """
     from aidl_lang.export import ExportError
 
     try:
@@ -140,6 +146,9 @@ def _write(
             target_names(target, len(result.further)), (result.data, *result.further), strict=True
         )
     ]
+    for name, _ in contents:
+        if name != files.STANDARD and Path(name).resolve() in read:
+            raise UseError("E0908", f"`{name}` is read by the program and is not overwritten")
     for name, data in contents:
         files.write(name, data)
     notes = dict.fromkeys(note for _, result in made for note in result.notes)

@@ -15,9 +15,14 @@ def definitions(view: View, offset: int) -> list[Span]:
     """
     mention = mention_at(view, offset)
     if mention is not None:
-        return [declaration.span for declaration in mention.symbol.declarations]
+        return [_place(view, declaration.span) for declaration in mention.symbol.declarations]
     for node in around(view.module, offset):
         if isinstance(node, ast.Import) and node.path.span.start <= offset <= node.path.span.end:
             target = view.resolution.imports.get(node)
             return [Span(target.source, 0, 0)] if target is not None else []
     return []
+
+
+def _place(view: View, span: Span) -> Span:
+    """Returns the beginning of a drawing for what is defined by it: its text is none of AIDL."""
+    return Span(span.source, 0, 0) if span.source in view.resolution.drawings else span

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import field
 from pathlib import Path
 
+from aidl_lang.checking.resolving.drawings import ImportedDrawing, digest
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.world import FileError
@@ -46,9 +47,17 @@ class Project:
         """True if all that a program imports could be read, and is unchanged."""
         resolution = view.resolution
         imports = (s for m in resolution.modules for s in m.statements if isinstance(s, ast.Import))
-        return all(statement in resolution.imports for statement in imports) and all(
-            self._says(view, module) for module in resolution.modules if module is not view.module
+        return (
+            all(statement in resolution.imports for statement in imports)
+            and all(self._says(view, module) for module in resolution.modules if module is not view.module)
+            and all(self._holds(view, drawing) for drawing in resolution.drawings.values())
         )
+
+    def _holds(self, view: View, drawing: ImportedDrawing) -> bool:
+        try:
+            return digest(view.world.read_bytes(drawing.module.source.name)) == drawing.digest
+        except FileError:
+            return False
 
     def _says(self, view: View, module: ast.Module) -> bool:
         file = view.file(module.source)

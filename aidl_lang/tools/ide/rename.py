@@ -56,6 +56,8 @@ def _own(view: View, offset: int) -> Mention:
     symbol = mention.symbol
     if not symbol.declarations:
         raise CannotError(f"`{symbol.name}` is built in")
+    if symbol.declarations[0].span.source in view.resolution.drawings:
+        raise CannotError(f"`{symbol.name}` is called so in the drawing that is imported")
     if view.is_library(symbol.declarations[0].span.source):
         raise CannotError(f"`{symbol.name}` belongs to the standard library; `alias` gives it a second name")
     return mention

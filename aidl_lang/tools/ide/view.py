@@ -71,12 +71,14 @@ class View:
         return frozenset(self.program.library.sources)
 
     def is_library(self, source: SourceFile) -> bool:
-        return source in self._library
+        return source in self._library or source in self.resolution.drawings
 
     def file(self, source: SourceFile) -> Path | None:
         """Returns the file of a source; None for a built-in one."""
         if source is self.source:
             return self.path
+        if source in self.resolution.drawings:
+            return self.path.parent / source.name
         if self.is_library(source):
             return resources.resource(source.name)
         return self.path.parent / source.name if source in self._files else None

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from aidl_lang.common import resources
+from aidl_lang.common.beside import is_data
 from aidl_lang.common.cancelling import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.pipeline import Settings
@@ -248,8 +249,12 @@ def is_library(path: Path) -> bool:
 
 
 def _stands_on(view: View, path: Path) -> bool:
-    """True if a program imports a file, directly or not; or has a missing import, which may be there now."""
+    """True if a program imports a file, directly or not, or names it as a font; or has a missing import,
+    which may be there now.
+    """
     modules = view.resolution.modules
+    if is_data(path):
+        return any(path.name in module.source.text for module in modules)
     return any(view.file(module.source) == path for module in modules) or any(
         isinstance(statement, ast.Import) and statement not in view.resolution.imports
         for module in modules

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from watchfiles import Change, awatch
 
-from aidl_lang.checking.resolving.imports import SUFFIX
+from aidl_lang.common.beside import may_be_read
 
 _DEBOUNCE = 30
 """Milliseconds in which several changes count as one."""
@@ -18,7 +18,7 @@ only now, and not all of them tell of every change.
 
 
 async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
-    """Calls back whenever a file, or programs beside it or below its folder, have changed, with the paths;
+    """Calls back whenever a file, or what it may read in its folder or below, has changed, with the paths;
     after a quiet while, without any; once when it has begun to see changes. Goes on until it is cancelled.
     """
     try:
@@ -31,7 +31,7 @@ async def _watch(
     file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None], polling: bool | None
 ) -> None:
     def concerns(change: Change, path: str) -> bool:
-        return path.endswith(SUFFIX) or path == str(file)
+        return may_be_read(path) or path == str(file)
 
     has_begun = False
     async for changes in awatch(

@@ -99,7 +99,7 @@ class _Reading:
         span = self.places.now(geometry.span) or around
         element = Element(geometry.path, "geometry", geometry.type, span, _of_geometry(geometry))
         yield DrawnElement(element, geometry, owner)
-        if geometry.type == "glyphs" or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1:
+        if geometry.type in ("glyphs", "traced") or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1:
             return
         for part in geometry.parts:
             yield from self._part(part, owner, span)

@@ -7,6 +7,7 @@ import logging
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from aidl_lang.common.beside import DATA, PROGRAM
 from aidl_lang.tools.lsp.documents import path_of
 from aidl_lang.tools.lsp.server import Server
 from aidl_lang.tools.lsp.settings import Settings
@@ -57,7 +58,9 @@ async def _watch_files(server: Server) -> None:
     watching = known.did_change_watched_files if known is not None else None
     if watching is None or not watching.dynamic_registration:
         return
-    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher("**/*.aidl")])
+    suffixes = ",".join(suffix.removeprefix(".") for suffix in (PROGRAM, *DATA))
+    watcher = types.FileSystemWatcher(f"**/*.{{{suffixes}}}")
+    options = types.DidChangeWatchedFilesRegistrationOptions([watcher])
     method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
     registration = types.Registration("files", method, options)
     try:

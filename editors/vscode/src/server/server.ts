@@ -128,7 +128,7 @@ export class Server implements vscode.Disposable {
       ],
       synchronize: {
         configurationSection: "aidl",
-        fileEvents: vscode.workspace.createFileSystemWatcher("**/*.aidl"),
+        fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{aidl,ttf,otf,svg,dxf}"),
       },
       outputChannel: this.output,
       revealOutputChannelOn: RevealOutputChannelOn.Never,

@@ -1,0 +1,298 @@
+"""DXF files as outlines: millimetres, as seen from above, with blocks in their places."""
+
+from __future__ import annotations
+
+import io
+import logging
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.drawings.drawing import Collector, DrawingError, Remark
+from aidl_lang.common.drawings.splines import cubics
+from aidl_lang.common.drawings.strokes import TURN, Bow, Matrix, Stroke, ends, mapped
+from aidl_lang.common.font_files import Vec
+from aidl_lang.common.prose import counted
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+
+MOST_ENTITIES = 100_000
+_MOST_INSERTS = 20_000
+_DEEPEST = 20
+
+_NAMES = {
+    "TEXT": "text",
+    "MTEXT": "text",
+    "ATTRIB": "text",
+    "ATTDEF": "text",
+    "DIMENSION": "dimension",
+    "ARC_DIMENSION": "dimension",
+    "LEADER": "leader",
+    "MULTILEADER": "leader",
+    "HATCH": "hatch",
+    "MPOLYGON": "hatch",
+    "POINT": "point",
+    "IMAGE": "image",
+    "VIEWPORT": "viewport",
+    "SOLID": "filled face",
+    "TRACE": "filled face",
+    "3DFACE": "filled face",
+    "MESH": "mesh",
+    "RAY": "endless line",
+    "XLINE": "endless line",
+}
+"""How entities that are no outlines are called."""
+
+_FAULTS = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    OSError,
+    RecursionError,
+    StopIteration,
+    TypeError,
+    ValueError,
+)
+"""What ezdxf raises for files that are not as they should be, beside its own errors."""
+
+logging.getLogger("ezdxf").addHandler(logging.NullHandler())
+
+
+def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+    """Returns the elements of a DXF file and what there is to be told of it. Raises DrawingError."""
+    document = _loaded(data, name)
+    walk = _Walk(document, name)
+    try:
+        walk.entities(document.modelspace(), (), "")
+    except _FAULTS as reason:
+        raise _broken(name) from reason
+    return walk.done()
+
+
+def _broken(name: str) -> DrawingError:
+    return DrawingError("E0362", f"`{name}` is no DXF file, or is broken", "export it anew as DXF")
+
+
+def _loaded(data: bytes, name: str) -> Drawing:
+    """Returns a document; one with faults is mended as far as that goes. Raises DrawingError."""
+    import ezdxf
+    from ezdxf import recover
+    from ezdxf.filemanagement import dxf_stream_info
+
+    if data.startswith(b"AutoCAD Binary DXF"):
+        hint = "export it as text: ASCII DXF"
+        raise DrawingError("E0362", f"`{name}` is a binary DXF file, which is not read", hint)
+    codes = data.split(b"\n")[::2]  # every second line is a value
+    if sum(code.strip() == b"0" for code in codes) > MOST_ENTITIES:
+        hint = "export fewer of its layers, or simplify it"
+        message = f"`{name}` is refused: it has more than {MOST_ENTITIES:,} entities"
+        raise DrawingError("E0363", message, hint)
+    faults = (*_FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
+    try:
+        encoding = dxf_stream_info(io.StringIO(data.decode("utf-8", "ignore"))).encoding
+        text = data.decode(encoding, "surrogateescape").replace("\r\n", "\n")
+        return ezdxf.read(io.StringIO(text))  # type: ignore[attr-defined]
+    except faults:
+        checkpoint()
+    try:
+        document, _ = recover.read(io.BytesIO(data))
+    except faults:
+        raise _broken(name) from None
+    return document
+
+
+class _Walk:
+    def __init__(self, document: Drawing, name: str) -> None:
+        self.document = document
+        self.name = name
+        self.found = Collector(name)
+        self.open: dict[tuple[str, ...], list[Stroke]] = defaultdict(list)
+        self.inserts = self.fitted = 0
+        self.circular: list[str] = []
+        hidden = (layer for layer in document.layers if layer.is_off() or layer.is_frozen())
+        self.hidden = {layer.dxf.name.lower() for layer in hidden}
+        self.unit = _millimetres(document.header.get("$INSUNITS", 0))
+
+    def done(self) -> tuple[Collector, list[Remark]]:
+        for names, strokes in self.open.items():
+            self.found.add(names, strokes)
+        return self.found, list(self._remarks())
+
+    def entities(self, entities: Iterable[Any], blocks: tuple[str, ...], around: str) -> None:
+        """Reads entities; `around` is the layer of the block that they stand in."""
+        for entity in entities:
+            checkpoint()
+            layer = str(entity.dxf.get("layer", "0"))
+            if layer == "0" and around:
+                layer = around
+            if entity.dxf.get("invisible", 0) or layer.lower() in self.hidden:
+                self.found.leave_out("hidden entity")
+            elif entity.dxftype() == "INSERT":
+                self._insert(entity, blocks, layer)
+            else:
+                self._entity(entity, (layer, *(b for b in blocks if not b.startswith("*"))))
+
+    def _insert(self, entity: Any, blocks: tuple[str, ...], layer: str) -> None:
+        block = str(entity.dxf.name)
+        if block in blocks or len(blocks) > _DEEPEST:
+            self.circular.append(block)
+            return
+        self.inserts += entity.mcount
+        if self.inserts > _MOST_INSERTS:
+            message = f"`{self.name}` is refused: its blocks stand in more than {_MOST_INSERTS:,} places"
+            raise DrawingError("E0363", message, "export fewer of its layers, or simplify it")
+        if entity.block() is None:
+            self.found.leave_out("dangling block reference")
+            return
+        if entity.mcount > 1:
+            for one in entity.multi_insert():
+                self.entities(one.virtual_entities(), (*blocks, block), layer)
+        else:
+            self.entities(entity.virtual_entities(), (*blocks, block), layer)
+
+    def _entity(self, entity: Any, names: tuple[str, ...]) -> None:
+        kind = entity.dxftype()
+        strokes = list(self._strokes(kind, entity))
+        if not strokes:
+            if kind not in _READ or kind == "POLYLINE":
+                self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` object"))
+            return
+        unit = self.unit or 1.0
+        strokes = [mapped(s, (unit, 0.0, 0.0, unit, 0.0, 0.0)) for s in strokes]
+        if ends(strokes[0])[0] == ends(strokes[-1])[1]:
+            self.found.add(names, strokes)
+        else:
+            self.open[names] += strokes
+            self.found.curves += len(strokes)
+            self.found.check()
+
+    def _strokes(self, kind: str, entity: Any) -> Iterator[Stroke]:
+        match kind:
+            case "LINE":
+                yield _flat(entity.dxf.start), _flat(entity.dxf.end)
+            case "CIRCLE" | "ARC":
+                yield _round(entity, is_whole=kind == "CIRCLE")
+            case "ELLIPSE":
+                yield _ellipse(entity)
+            case "LWPOLYLINE":
+                points = [(float(x), float(y), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
+                height = entity.dxf.get("elevation", 0.0)
+                yield from _bulged(points, entity.closed, _plane(entity, height))
+            case "POLYLINE" if entity.is_2d_polyline or entity.is_3d_polyline:
+                yield from _polyline(entity)
+            case "SPLINE":
+                curves, is_exact = cubics(entity)
+                self.fitted += not is_exact
+                yield from curves
+
+    def _remarks(self) -> Iterator[Remark]:
+        if self.circular:
+            message = (
+                f"`{self.name}` has a block that stands in itself, `{self.circular[0]}`: it is left out there"
+            )
+            yield Remark("W0752", message, ("export it anew in the program that drew it",))
+        if self.fitted:
+            yield Remark(
+                "N0752",
+                f"{counted(self.fitted, 'spline')} of `{self.name}` are followed by cubics, "
+                "to a ten millionth of their size",
+                ("rational splines, and those of a degree above 3, are no Bézier curves",),
+            )
+        if self.unit is None and self.found.elements:
+            yield Remark(
+                "N0753",
+                f"`{self.name}` does not say its unit, and is taken to be in millimetres",
+                ("if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn",),
+            )
+
+
+def _millimetres(units: object) -> float | None:
+    """Returns the millimetres in the units of `$INSUNITS`; None if it names none."""
+    from ezdxf.enums import InsertUnits
+    from ezdxf.units import conversion_factor
+
+    try:
+        unit = InsertUnits(int(str(units)))
+        if unit is InsertUnits.Unitless:
+            return None
+        return float(f"{conversion_factor(unit, InsertUnits.Millimeters):.9g}")  # without its rounding
+    except (TypeError, ValueError):
+        return None
+
+
+_READ = frozenset({"LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE"})
+
+
+def _flat(p: Any) -> Vec:
+    return float(p[0]), float(p[1])
+
+
+def _plane(entity: Any, height: float = 0.0) -> Matrix:
+    """Returns the map of an entity's own coordinates to the world's, seen from above."""
+    system = entity.ocs()
+    (a, b), (c, d), (e, f) = (_flat(system.to_wcs(p)) for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)))
+    return a, b, c, d, e, f
+
+
+def _round(entity: Any, *, is_whole: bool) -> Stroke:
+    center, radius = entity.dxf.center, float(entity.dxf.radius)
+    first, sweep = 0.0, TURN
+    if not is_whole:
+        first = math.radians(entity.dxf.start_angle)
+        sweep = math.radians(entity.dxf.end_angle) - first
+        sweep = sweep % TURN or TURN
+    bow = _bow(_flat(center), (radius, 0.0), (0.0, radius), first, sweep)
+    return mapped(bow, _plane(entity, center[2]))
+
+
+def _ellipse(entity: Any) -> Stroke:
+    first = float(entity.dxf.start_param)
+    sweep = (float(entity.dxf.end_param) - first) % TURN
+    if sweep < 1e-9 or sweep > TURN - 1e-9:
+        sweep = TURN
+    return _bow(
+        _flat(entity.dxf.center), _flat(entity.dxf.major_axis), _flat(entity.minor_axis), first, sweep
+    )
+
+
+def _bow(center: Vec, u: Vec, v: Vec, first: float, sweep: float) -> Bow:
+    bow = Bow(center, u, v, first, sweep, center, center)
+    start = bow.at(first)
+    end = start if bow.is_whole else bow.at(first + sweep)
+    return Bow(center, u, v, first, sweep, start, end)
+
+
+def _polyline(entity: Any) -> Iterator[Stroke]:
+    if entity.is_3d_polyline:
+        points = [(*_flat(v.dxf.location), 0.0) for v in entity.vertices]
+        yield from _bulged(points, entity.is_closed, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+        return
+    kept = [v for v in entity.vertices if not v.dxf.flags & 16]  # without the frame of a fitted spline
+    points = [(*_flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
+    height = entity.dxf.elevation[2] if entity.dxf.hasattr("elevation") else 0.0
+    yield from _bulged(points, entity.is_closed, _plane(entity, height))
+
+
+def _bulged(points: Sequence[tuple[float, float, float]], is_closed: bool, plane: Matrix) -> Iterator[Stroke]:
+    """Yields the edges of a polyline: a line, or an arc of which the bulge is the tangent of a quarter of its
+    sweep.
+    """
+    if is_closed and len(points) > 1:
+        points = [*points, (*points[0][:2], 0.0)]
+    for (x0, y0, bulge), (x1, y1, _) in pairwise(points):
+        start, end = (x0, y0), (x1, y1)
+        if bulge == 0.0 or start == end:
+            yield mapped((start, end), plane)
+            continue
+        dx, dy = x1 - x0, y1 - y0
+        off = (1.0 - bulge * bulge) / (4.0 * bulge)
+        cx, cy = (x0 + x1) / 2 - off * dy, (y0 + y1) / 2 + off * dx
+        radius = math.hypot(dx, dy) * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
+        first, sweep = math.atan2(y0 - cy, x0 - cx), 4.0 * math.atan(bulge)
+        yield mapped(Bow((cx, cy), (radius, 0.0), (0.0, radius), first, sweep, start, end), plane)

@@ -1,0 +1,217 @@
+"""The values of attributes in SVG: lengths, numbers, transforms, styles and the data of paths."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.drawings.strokes import STILL, TURN, Bow, Matrix, Stroke, product, quadratic
+from aidl_lang.common.font_files import Vec
+
+MM_PER_PIXEL = 25.4 / 96
+_PIXELS = {
+    "": 1.0,
+    "px": 1.0,
+    "in": 96.0,
+    "mm": 96 / 25.4,
+    "cm": 960 / 25.4,
+    "q": 24 / 25.4,
+    "pt": 96 / 72,
+    "pc": 16.0,
+    "em": 16.0,
+    "rem": 16.0,
+    "ex": 8.0,
+}
+"""Pixels in each unit of length; em and ex are those of the text that browsers begin with."""
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBERS = re.compile(_NUMBER)
+_LENGTH = re.compile(rf"\s*({_NUMBER})\s*(%|[a-zA-Z]*)\s*")
+
+
+class ValueMistake(ValueError):  # noqa: N818 (a mistake in a file, which is told)
+    """Raised for an attribute that cannot be read."""
+
+
+def pixels(text: str, whole: float) -> float:
+    """Returns a length in pixels; `whole` is what a percentage is one of. Raises ValueMistake."""
+    found = _LENGTH.fullmatch(text)
+    if found is None:
+        raise ValueMistake(text)
+    number, unit = float(found[1]), found[2].lower()
+    if unit == "%":
+        return number * whole / 100
+    if unit not in _PIXELS:
+        raise ValueMistake(text)
+    return number * _PIXELS[unit]
+
+
+def numbers(text: str) -> list[float]:
+    """Returns the numbers of a list. Raises ValueMistake."""
+    if _NUMBERS.sub("", text).strip(" ,\t\r\n\f"):
+        raise ValueMistake(text)
+    return list(map(float, _NUMBERS.findall(text)))
+
+
+def declarations(text: str) -> Iterator[tuple[str, str]]:
+    """Yields the properties of a `style` attribute or of a rule."""
+    for item in text.split(";"):
+        name, colon, value = item.partition(":")
+        if colon:
+            yield name.strip().lower(), value.replace("!important", "").strip()
+
+
+# --- Transforms ------------------------------------------------------------------------------------
+
+_STEP = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^()]*)\)\s*,?\s*")
+
+
+def transform(text: str) -> Matrix:
+    """Returns the map that a `transform` attribute describes. Raises ValueMistake."""
+    matrix, at = STILL, 0
+    if text.strip() in ("", "none"):
+        return matrix
+    while at < len(text):
+        found = _STEP.match(text, at)
+        if found is None:
+            raise ValueMistake(text)
+        matrix, at = product(matrix, _step(found[1], numbers(found[2]))), found.end()
+    return matrix
+
+
+def _step(name: str, given: Sequence[float]) -> Matrix:
+    match name, given:
+        case "matrix", [a, b, c, d, e, f]:
+            return a, b, c, d, e, f
+        case "translate", [x]:
+            return 1.0, 0.0, 0.0, 1.0, x, 0.0
+        case "translate", [x, y]:
+            return 1.0, 0.0, 0.0, 1.0, x, y
+        case "scale", [x]:
+            return x, 0.0, 0.0, x, 0.0, 0.0
+        case "scale", [x, y]:
+            return x, 0.0, 0.0, y, 0.0, 0.0
+        case "rotate", [angle]:
+            c, s = _cos_sin(angle)
+            return c, s, -s, c, 0.0, 0.0
+        case "rotate", [angle, x, y]:
+            c, s = _cos_sin(angle)
+            return c, s, -s, c, x - c * x + s * y, y - s * x - c * y
+        case "skewX", [angle]:
+            return 1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0
+        case "skewY", [angle]:
+            return 1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0
+        case _:
+            raise ValueMistake(name)
+
+
+def _cos_sin(angle: float) -> Vec:
+    """Returns cosine and sine of an angle in degrees, exact for quarter turns."""
+    quarter = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+    turn = math.radians(angle)
+    return quarter.get(angle % 360.0) or (math.cos(turn), math.sin(turn))
+
+
+# --- Paths -----------------------------------------------------------------------------------------
+
+_COMMANDS = re.compile("([MmZzLlHhVvCcSsQqTtAa])")
+
+
+def path(data: str) -> tuple[list[Stroke], bool]:
+    """Returns the curves of path data as far as it can be read, and whether that is all of it."""
+    from fontTools.svgLib.path.parser import parse_path
+
+    pen, (text, is_whole) = _Pen(), _readable(data)
+    try:
+        parse_path(text, pen)
+    except (ValueError, ArithmeticError):
+        return pen.strokes, False
+    return pen.strokes, is_whole
+
+
+def _readable(data: str) -> tuple[str, bool]:
+    """Returns path data with numbers as fontTools reads them, up to where it is no path data."""
+    pieces: list[str] = []
+    command = ""
+    for piece in _COMMANDS.split(data):
+        if _COMMANDS.fullmatch(piece):
+            command = piece
+            pieces.append(piece)
+        elif command in ("A", "a"):  # flags may touch what follows, which fontTools knows
+            pieces.append(" ".join(piece.split()))
+        else:
+            try:
+                pieces.append(" ".join(map(repr, numbers(piece))))
+            except ValueMistake:
+                return "".join(pieces[:-1]), False
+    return "".join(pieces), True
+
+
+class _Pen:
+    """Takes the commands of a path (the protocol of pens in fontTools, with arcs)."""
+
+    def __init__(self) -> None:
+        self.strokes: list[Stroke] = []
+        self.here: Vec = (0.0, 0.0)
+
+    def moveTo(self, p: Vec) -> None:  # noqa: N802 (the name in the library)
+        self.here = p
+
+    def lineTo(self, p: Vec) -> None:  # noqa: N802
+        self._add((self.here, p))
+
+    def curveTo(self, one: Vec, two: Vec, end: Vec) -> None:  # noqa: N802
+        self._add((self.here, one, two, end))
+
+    def qCurveTo(self, control: Vec, end: Vec) -> None:  # noqa: N802
+        self._add(quadratic(self.here, control, end))
+
+    def arcTo(  # noqa: N802
+        self, rx: float, ry: float, rotation: float, is_large: float, is_clockwise: float, end: Vec
+    ) -> None:
+        self._add(_arc(self.here, end, abs(rx), abs(ry), rotation, bool(is_large), bool(is_clockwise)))
+
+    def closePath(self) -> None:  # noqa: N802
+        pass
+
+    def endPath(self) -> None:  # noqa: N802
+        pass
+
+    def _add(self, stroke: Stroke) -> None:
+        self.strokes.append(stroke)
+        self.here = stroke.end if isinstance(stroke, Bow) else stroke[-1]
+        if len(self.strokes) % 1_000 == 0:
+            checkpoint()
+
+
+def _arc(start: Vec, end: Vec, rx: float, ry: float, rotation: float, large: bool, positive: bool) -> Stroke:
+    """Returns an arc by its ends (SVG 2, B.2.4): in the frame of the ellipse, with its radii as units, it is
+    one of a unit circle.
+    """
+    if rx == 0.0 or ry == 0.0 or start == end:
+        return start, end
+    c, s = _cos_sin(rotation)
+
+    def flat(p: Vec) -> Vec:
+        return (c * p[0] + s * p[1]) / rx, (c * p[1] - s * p[0]) / ry
+
+    (x0, y0), (x1, y1) = flat(start), flat(end)
+    dx, dy = x1 - x0, y1 - y0
+    half = math.hypot(dx, dy) / 2
+    if half > 1.0:  # too small to reach: they grow
+        rx, ry = rx * half, ry * half
+        x0, y0, x1, y1 = x0 / half, y0 / half, x1 / half, y1 / half
+        dx, dy, half = dx / half, dy / half, 1.0
+    height = math.sqrt(max(1.0 - half * half, 0.0)) / (2 * half)
+    if large == positive:
+        height = -height
+    mx, my = (x0 + x1) / 2 - height * dy, (y0 + y1) / 2 + height * dx
+    first = math.atan2(y0 - my, x0 - mx)
+    sweep = (math.atan2(y1 - my, x1 - mx) - first) % TURN
+    if not positive:
+        sweep -= TURN
+    u, v = (rx * c, rx * s), (-ry * s, ry * c)
+    center = c * mx * rx - s * my * ry, s * mx * rx + c * my * ry
+    return Bow(center, u, v, first, sweep, start, end)
