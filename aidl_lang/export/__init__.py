@@ -17,6 +17,7 @@ from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture
+    from aidl_lang.export.profiles import Profile
 
 DXF = ("arcs", "r12", "splines")
 """Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
@@ -45,6 +46,7 @@ class Options:
     theme      the look of a picture as a whole, one of `themes.THEMES`
     dxf        the kind of a DXF, one of `DXF`
     tolerance  how far the arcs may be from the curves that they stand for where only arcs are understood, mm
+    profile    what colours, layers and widths tell a cutter, and in which order; `plain` unless said
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -62,11 +64,20 @@ class Options:
     theme: str = "colour"
     dxf: str = "arcs"
     tolerance: float = TOLERANCE
+    profile: Profile | None = None
 
     @property
     def for_cutter(self) -> bool:
         """True if only outlines are wanted."""
-        return self.cut or self.sheet is not None or self.kerf > 0 or self.theme == "cutter"
+        asked = self.cut or self.profile is not None or self.theme == "cutter"
+        return asked or self.sheet is not None or self.kerf > 0
+
+    @property
+    def followed(self) -> Profile | None:
+        """The profile by which a cutter is told what to do; None if the file is for none."""
+        from aidl_lang.export.profiles import PLAIN
+
+        return (self.profile or PLAIN) if self.for_cutter else None
 
 
 @record()

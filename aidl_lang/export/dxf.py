@@ -20,11 +20,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.colors import rgb
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
-from aidl_lang.export.dxf_layers import Layers
+from aidl_lang.export.dxf_layers import Layers, color_attributes
 from aidl_lang.export.dxf_lines import Lines
+from aidl_lang.export.profiles import PLAIN, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -63,7 +63,10 @@ def to_dxf(job: Job) -> Exported:
 
 
 def _written(document: Any, job: Job, is_old: bool) -> Exported:
-    found = outlines(job.model, job.drawing)
+    profile = job.options.followed
+    found = outlines(job.model, job.drawing, profile or PLAIN)
+    if profile is not None:
+        found = [outline for outline in found if outline.operation]
     for application in (BODY, HOLE):
         document.appids.new(application)
     if not is_old:
@@ -73,11 +76,12 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     layers, lines = Layers(document, job.model, is_old), Lines(document, job.drawing.size, is_old)
     for outline in found:
         checkpoint()
-        attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
-        if not job.options.for_cutter:
-            attributes |= lines.attributes(outline.style)
-        if outline.style.color is not None:
-            attributes |= _color(rgb(outline.style.color), is_old)
+        if profile is not None:
+            attributes = _followed(outline, profile, layers)
+        else:
+            attributes = {"layer": layers.name(outline.layer)} | lines.attributes(outline.style)
+            if outline.style.color is not None:
+                attributes |= color_attributes(outline.style.color, is_old)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):
             for application, path in names:
@@ -91,14 +95,12 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     return Exported(data, notes=tuple(layers.notes))
 
 
-def _color(color: tuple[int, int, int], is_old: bool) -> dict[str, int]:
-    """Returns the attribute for a colour: R12 knows those of the AutoCAD Color Index alone."""
-    if not is_old:
-        red, green, blue = color
-        return {"true_color": red << 16 | green << 8 | blue}
-    from ezdxf.colors import aci2rgb
-
-    return {"color": min(range(1, 256), key=lambda index: math.dist(aci2rgb(index), color))}
+def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, Any]:
+    """Returns the layer of an outline for a cutter, and its colour where that is not the layer's."""
+    look, color = profile.look(outline.style.layer, outline.operation), profile.color(outline)
+    name = layers.name(look.layer or outline.layer, look)
+    own = {} if layers.has_color(name, color) else color_attributes(color, layers.is_old)
+    return {"layer": name} | own
 
 
 def _order_classes(document: Any) -> None:

@@ -49,7 +49,8 @@ def paths(file: Path, role: str) -> list[SvgPath]:
 
 
 def sizes(file: Path) -> list[tuple[float, float]]:
-    boxes = [p.bbox() for p in paths(file, "cut")]
+    """Those of the outlines around parts."""
+    boxes = [p.bbox() for p in paths(file, "cut") if p.values["data-operation"] == "outer"]
     return [(round(float(x1 - x0), 3), round(float(y1 - y0), 3)) for x0, y0, x1, y1 in boxes]
 
 
