@@ -172,6 +172,7 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
     """Raises ExportError if the options ask a format for what it cannot have."""
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
+    _refuse(suffix, "--profile", options.profile is not None and not wanted.cuts)
     if options.nest is not None and options.sheet is None:
         raise ExportError(
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
@@ -182,13 +183,13 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
         raise ExportError(
             "E0924",
             f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own",
-            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         )
     if options.dimension and options.for_cutter and wanted.cuts:
         raise ExportError(
             "E0924",
             "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
-            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         )
 
 
@@ -223,15 +224,15 @@ def _emptiness(job: Job) -> list[Diagnostic]:
 
 
 def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    from aidl_lang.export.unsaid import unsaid_notes
+    from aidl_lang.export.unsaid import followed_notes, unsaid_notes
 
-    return unsaid_notes(job, suffix, cuts=cuts)
+    return unsaid_notes(job, suffix, cuts=cuts) + (followed_notes(job) if cuts else [])
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
         able = sorted(
-            s for s, f in FORMATS.items() if (f.cuts if option in ("--sheet", "--kerf") else f.tiles)
+            s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts)
         )
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"

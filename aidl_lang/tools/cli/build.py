@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.prose import counted
+from aidl_lang.common.prose import counted, did_you_mean, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, exit_code
@@ -17,6 +17,7 @@ from aidl_lang.tools.cli.report import UseError, exit_code
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export import Options
+    from aidl_lang.export.profiles import Profile
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.memory import Memory
 
@@ -88,6 +89,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     start = time.perf_counter()
     source = files.read(arguments.file)
     outputs = targets(arguments)
+    _profile(arguments.profile)  # a wrong one is told before any work is done
     world = files.world(arguments.file)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
     settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
@@ -97,6 +99,27 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
         written, notes = _write(compiled, outputs, options(arguments, compiled))
     return BuildResult(compiled, written, notes, time.perf_counter() - start)
+
+
+def _profile(name: str | None) -> Profile | None:
+    """Returns the profile of a name, or the one in a file."""
+    from aidl_lang.export import ExportError
+    from aidl_lang.export.profiles import PROFILES
+
+    if name is None or name in PROFILES:
+        return PROFILES[name] if name else None
+    if not (name.endswith(".toml") or Path(name).is_file()):
+        from aidl_lang.common.names import nearest
+
+        near = did_you_mean(nearest(name, PROFILES))
+        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
+        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
+    from aidl_lang.export.profile_files import parsed
+
+    try:
+        return parsed(files.read(name).text, Path(name).name)
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
 
 
 def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
@@ -119,6 +142,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         theme=arguments.theme,
         dxf=arguments.dxf,
         tolerance=arguments.tolerance,
+        profile=_profile(arguments.profile),
     )
 
 

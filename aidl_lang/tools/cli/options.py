@@ -110,6 +110,12 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 def _add_cutting(parser: argparse.ArgumentParser) -> None:
     """Adds the options for cutters and for printing 1:1."""
     parser.add_argument(
+        "--profile",
+        metavar="NAME",
+        help="colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a file "
+        "such as shop.toml",
+    )
+    parser.add_argument(
         "--sheet",
         type=sizes.size,
         metavar="SIZE",
