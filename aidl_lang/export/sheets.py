@@ -51,20 +51,20 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
             f"a sheet of {size_text(sheet)} has no room within a spacing of {fixed(spacing)} mm",
             "give a larger `--sheet` or a smaller `--spacing`",
         )
-    bodies = job.drawing.bodies
-    if not bodies:
+    count = sum(body.style.quantity for body in job.drawing.bodies)
+    if not count:
         raise ExportError(
             "E0924",
             "there is no part to lay on a sheet",
             "only a `solid` is cut; a `drawing` is engraved on it",
         )
-    if len(bodies) > MOST_PARTS:
-        message = f"{len(bodies)} parts are more than the {MOST_PARTS} that are laid on sheets"
+    if count > MOST_PARTS:
+        message = f"{count} parts are more than the {MOST_PARTS} that are laid on sheets"
         raise ExportError("E0924", message, "draw them in several programs")
     if job.options.nest is not None:
         require("spyrrow", "--nest", "nest")
     try:
-        layout = laid_out(job.drawing, sheet, spacing, job.options.nest)
+        layout = laid_out(job.model.root, job.drawing, sheet, spacing, job.options.nest)
     except NestingError as reason:
         raise ExportError(
             "E0924",

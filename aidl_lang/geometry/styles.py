@@ -16,8 +16,8 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("color", "stroke", "dash", "opacity", "halo")
-"""Looks that a body has as a whole."""
+_OF_BODIES = ("color", "stroke", "dash", "opacity", "halo", "quantity")
+"""Looks and numbers that a body has as a whole."""
 
 
 @record()
@@ -30,6 +30,7 @@ class Style:
     opacity  how much of what lies behind is covered, from 0 to 1
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
+    quantity  how many pieces are made of each part, those around it multiplied
     """
 
     color: str | None = None
@@ -41,6 +42,7 @@ class Style:
     opacity: float | None = None
     edges: str | None = None
     halo: float | None = None
+    quantity: int = 1
 
     @property
     def is_clear(self) -> bool:
@@ -109,6 +111,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         _number(stated.get("opacity"), around.opacity),
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
+        around.quantity * int(_number(stated.get("quantity"), 1.0) or 1),
     )
 
 

@@ -165,7 +165,7 @@ def test_what_sheets_cannot_show(aidl: Aidl, box: Path) -> None:
         assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--dimension", *cutting)) == [
             "error[E0924]: `--dimension` explains the assembled drawing and has no place among what a cutter "
             "follows",
-            "  = hint: write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "  = hint: write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         ]
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", *sheet, "--spacing", "105")) == [
         "error[E0924]: a sheet of 210 × 297 mm has no room within a spacing of 105 mm",
