@@ -16,12 +16,15 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
+    from aidl_lang.export.cut_list import CutList, Item
     from aidl_lang.export.marks import Picture
     from aidl_lang.export.profiles import Profile
 
 DXF = ("arcs", "r12", "splines")
 """Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
-SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
+SHOW = ("names", "points", "bbox", "constraints", "dof", "plan", "numbers", "list")
+ON_SHEETS = frozenset({"names", "numbers", "list"})
+"""What of `SHOW` is of parts laid on sheets."""
 
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -82,12 +85,25 @@ class Options:
 
 @record()
 class Job:
-    """The solved model, the drawing and the options that a writer works from."""
+    """The solved model, the drawing and the options that a writer works from.
+
+    whole  the job that this one was made from, with all that is drawn as it is drawn
+    is_flat  whether bodies lie on the ground wherever they stand in the model
+    """
 
     model: SolvedModel
     drawing: Drawing
     diagnostics: tuple[Diagnostic, ...] = ()
     options: Options = field(default_factory=Options)
+    whole: Job | None = None
+    is_flat: bool = False
+
+    @cached_property
+    def cut_list(self) -> CutList:
+        """The parts of the whole drawing, those that are equal together, each with its number."""
+        from aidl_lang.export.cut_list import cut_list
+
+        return cut_list(self) if self.whole is None else self.whole.cut_list
 
 
 @record()
@@ -142,14 +158,42 @@ class Exporter:
         unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
         if job.options.sheet is not None or job.options.kerf:
             jobs, notes = self._prepared
-        made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
+        if wanted.write_all is not None:
+            made = wanted.write_all(jobs)
+        else:
+            made = _files([*map(wanted.write, jobs), *_list_pages(jobs, suffix)])
+            notes = notes + _unlisted(job, suffix)
         return replace(made, notes=(*notes, *unsaid, *made.notes))
+
+    def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
+        """Writes each part that differs from the others by itself, flat and with its lower left corner at the
+        origin. Raises as `export` does.
+        """
+        from aidl_lang.export.single_parts import jobs_of_parts
+
+        job, notes = self._grown if self._job.options.kerf else (self._job, [])
+        made = []
+        for item, alone in jobs_of_parts(job):
+            written = Exporter(alone).write(suffix)
+            made.append((item, replace(written, notes=(*notes, *written.notes))))
+        return made
+
+    @cached_property
+    def _grown(self) -> tuple[Job, list[Diagnostic]]:
+        """The job with its outlines widened by the cut."""
+        from aidl_lang.export.sheets import grown
+
+        return grown(self._job, self._progress)
 
     @cached_property
     def _prepared(self) -> tuple[list[Job], list[Diagnostic]]:
-        from aidl_lang.export.sheets import prepared
+        from aidl_lang.export.sheets import laid_on_sheets
 
-        return prepared(self._job, self._progress)
+        job, notes = self._grown
+        if job.options.sheet is None:
+            return [job], notes
+        jobs, more = laid_on_sheets(job, job.options.sheet, job.options.spacing)
+        return jobs, notes + more
 
 
 def export(job: Job, suffix: str) -> Exported:
@@ -176,6 +220,14 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
     if options.nest is not None and options.sheet is None:
         raise ExportError(
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
+        )
+    if options.show & ON_SHEETS - {"names"} and options.sheet is None:
+        asked = sorted(options.show & ON_SHEETS - {"names"})
+        raise ExportError(
+            "E0924",
+            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
+            "lay them on sheets: `--sheet 600x400`",
+            "the list alone is written by `-o cutlist.csv`",
         )
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
     _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
@@ -245,6 +297,22 @@ def _files(parts: Sequence[Exported]) -> Exported:
     return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
 
 
+def _list_pages(jobs: Sequence[Job], suffix: str) -> list[Exported]:
+    """Returns the pages of the cut list that are asked for, where a picture can hold them."""
+    if "list" not in jobs[0].options.show or suffix not in PICTURES:
+        return []
+    from aidl_lang.export.cut_list_files import pages
+
+    return [Exported(PICTURES[suffix](page, jobs[0].options)) for page in pages(jobs)]
+
+
+def _unlisted(job: Job, suffix: str) -> list[Diagnostic]:
+    if "list" not in job.options.show or suffix in PICTURES:
+        return []
+    hint = "write it beside: `-o cutlist.csv`, or `-o cutlist.pdf`"
+    return [Diagnostic("N0755", f"the cut list is drawn in pictures, and `{suffix}` is none", hints=(hint,))]
+
+
 def _svg(job: Job) -> Exported:
     from aidl_lang.export.picture import pages
     from aidl_lang.export.svg import to_svg
@@ -267,11 +335,12 @@ def _pdf(job: Job) -> Exported:
 
 
 def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
+    from aidl_lang.export.cut_list_files import pages as pages_of_list
     from aidl_lang.export.font import character_notes
     from aidl_lang.export.pdf import to_pdf
     from aidl_lang.export.picture import pages
 
-    drawn = [page for job in jobs for page in pages(job)]
+    drawn = [*(page for job in jobs for page in pages(job)), *pages_of_list(jobs)]
     root = jobs[0].model.root
     return Exported(to_pdf(drawn, (root.doc or root.path).partition("\n")[0]), notes=character_notes(drawn))
 
@@ -286,6 +355,16 @@ def _dxf(job: Job) -> Exported:
     from aidl_lang.export.dxf import to_dxf
 
     return to_dxf(job)
+
+
+def _csv(job: Job) -> Exported:
+    return _csv_of_all([job])
+
+
+def _csv_of_all(jobs: Sequence[Job]) -> Exported:
+    from aidl_lang.export.cut_list_files import to_csv
+
+    return to_csv(jobs)
 
 
 def _step(job: Job) -> Exported:
@@ -311,6 +390,7 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pdf, "PDF, true to scale", cuts=True, tiles=True, write_all=_pdf_of_all),
     ".png": Format(_png, "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_dxf, "DXF for cutters", cuts=True),
+    ".csv": Format(_csv, cuts=True, write_all=_csv_of_all),
     ".step": Format(_step, "STEP solid", "OCP", "step"),
     ".stp": Format(_step, needs="OCP", extra="step"),
     ".stl": Format(_stl, "STL mesh"),

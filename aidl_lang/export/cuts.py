@@ -88,7 +88,7 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
                 )
             continue
         operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
-        rest = []
+        rest: list[Piece] = []
         for stroke in strokes:
             loops = _bounding(stroke, operation, profile, tolerance)
             area = next(areas) if loops else 0

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
@@ -24,7 +24,9 @@ from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers, color_attributes
 from aidl_lang.export.dxf_lines import Lines
-from aidl_lang.export.profiles import PLAIN, Profile
+from aidl_lang.export.labels import labels
+from aidl_lang.export.marks import Text
+from aidl_lang.export.profiles import PLAIN, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -38,6 +40,10 @@ THINNEST = 1e-6
 """Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
 DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
+LABELS = "labels"
+"""The layer for names and numbers of parts."""
+CAPITAL = 0.73
+"""Height of capitals, by which DXF has the size of a text, relative to the size of the font."""
 TEXT_BYTES, ESCAPED = 255, 7
 """Bytes of a text in XDATA, and of a character that the file's encoding lacks."""
 PATTERN_GOES_ON = 128
@@ -86,6 +92,7 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
         for entity in entities.add(outline, attributes):
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
+    _add_labels(document, labels(job), layers)
     if found:
         _set_view(document, job.drawing)
     _order_classes(document)
@@ -101,6 +108,17 @@ def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, A
     name = layers.name(look.layer or outline.layer, look)
     own = {} if layers.has_color(name, color) else color_attributes(color, layers.is_old)
     return {"layer": name} | own
+
+
+def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
+    """Adds texts on a layer of their own, which is not plotted: a machine leaves it out."""
+    from ezdxf.enums import TextEntityAlignment
+
+    for text in texts:
+        layer = layers.name(LABELS, Look(text.color))
+        document.layers.get(layer).dxf.plot = 0
+        made = document.modelspace().add_text(text.text, height=CAPITAL * text.size, dxfattribs={"layer": layer})
+        made.set_placement(text.at, align=TextEntityAlignment.CENTER)
 
 
 def _order_classes(document: Any) -> None:

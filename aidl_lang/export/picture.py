@@ -12,7 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.export import Job, palette
-from aidl_lang.export.marks import CHARACTER, LETTERS, Area, Curves, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.labels import labels
+from aidl_lang.export.marks import LETTERS, Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.overlay import explain
 from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
@@ -29,8 +30,6 @@ MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 _SEAM_OPACITY = 0.55
-NAME_SIZE = 5.0
-"""Font size of the names of parts on sheets, mm."""
 
 
 def picture(job: Job) -> Picture:
@@ -88,20 +87,9 @@ def pages(job: Job) -> list[Picture]:
 def _sheet(job: Job) -> Picture:
     """Returns the picture of a sheet with parts laid on it."""
     groups = [*_drawn(job, 1.0)]
-    if "names" in job.options.show:
-        names = tuple(_part_names(job.drawing, job.model.root.path))
-        groups.append(Group("show-names", names, {"class": "overlay"}))
+    if texts := tuple(labels(job)):
+        groups.append(Group("show-labels", texts, {"class": "overlay"}))
     return Picture(job.drawing.box, tuple(groups))
-
-
-def _part_names(drawing: Drawing, root: str) -> Iterator[Text]:
-    """Yields the name of each part as large as it allows, up to what is read easily."""
-    for body in drawing.bodies:
-        name = body.path.removeprefix(f"{root}.")
-        left, bottom, right, top = body.box
-        size = min(NAME_SIZE, 0.9 * (right - left) / (CHARACTER * len(name)), 0.9 * (top - bottom))
-        at = (left + right) / 2, (bottom + top) / 2 - 0.3 * size
-        yield Text(at, name, size, palette.NAME, "middle", halo=False)
 
 
 def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:

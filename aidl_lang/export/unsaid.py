@@ -90,7 +90,7 @@ def followed_notes(job: Job) -> list[Diagnostic]:
             Diagnostic(
                 "W0757",
                 f"lines of `{path}` enclose nothing, so there they are engraved as lines and not as areas",
-                structure and structure.span,
+                None if structure is None else structure.span,
                 hints=("close them: end each where the next one begins", "or put them on a layer for lines"),
             )
         )

@@ -53,7 +53,7 @@ def nested(outlines: Sequence[Polygon], sheet: tuple[float, float], seconds: flo
     """
     from spyrrow import Item
 
-    boxes = [(*map(float, o.min(axis=0)), *map(float, o.max(axis=0))) for o in outlines]
+    boxes = [_box(outline) for outline in outlines]
     turns = [_turns(box, sheet) for box in boxes]
     if not all(turns):
         return []
@@ -87,6 +87,11 @@ def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
         Nested(int(placed.id), round(placed.rotation / 90) % 4, *placed.translation)
         for placed in solution.placed_items
     ]
+
+
+def _box(outline: Polygon) -> Bounds:
+    (left, bottom), (right, top) = outline.min(axis=0), outline.max(axis=0)
+    return float(left), float(bottom), float(right), float(top)
 
 
 def _turns(box: Bounds, sheet: tuple[float, float]) -> list[float]:
