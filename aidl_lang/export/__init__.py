@@ -171,6 +171,12 @@ class Exporter:
         """
         from aidl_lang.export.single_parts import jobs_of_parts
 
+        if suffix in (".json", ".csv"):
+            raise ExportError(
+                "E0926",
+                f"`{suffix}` tells of the whole, and is not written part by part",
+                "give it a name without `{part}`",
+            )
         job, notes = self._grown if self._job.options.kerf else (self._job, [])
         made = []
         for item, alone in jobs_of_parts(job):

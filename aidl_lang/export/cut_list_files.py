@@ -58,12 +58,14 @@ def pages(jobs: Sequence[Job]) -> list[Picture]:
     return [
         *_pages(
             "cut-list",
+            "Parts",
             ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut"),
             [_line(item, _SHOWN) for item in found.items],
             frozenset({0, 2, 4, 5, 6, 7, 8}),
         ),
         *_pages(
             "sheets",
+            "Sheets",
             ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
             [_sheet_line(sheet, _SHOWN) for sheet in sheets(found, jobs)],
             frozenset({0, 2, 3, 5, 6}),
@@ -99,11 +101,11 @@ def _harmless(text: str) -> str:
 
 
 def _pages(
-    name: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
+    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
 ) -> Iterator[Picture]:
     for first in range(0, len(rows), _ROWS):
         table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
         width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN
-        title = written("Lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE)
+        title = written(f"{title_of}: lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE)
         groups = (Group(f"{name}-title", (title,), {"class": "table"}), table.group(_MARGIN, _MARGIN))
         yield Picture((0.0, 0.0, width, height), groups)

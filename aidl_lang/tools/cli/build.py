@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.prose import counted, did_you_mean, listed, ticked
+from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, exit_code
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 
 _DEFAULT_FORMAT = ".svg"
+_MOST_NAMES = 8
+"""Files that are told by name."""
 _PATIENCE = 1.0
 """Seconds after which progress is shown."""
 
@@ -61,7 +63,8 @@ class BuildResult:
         freedom = ""
         if model is not None and model.degrees is not None and self.compiled.ok:
             freedom = f", {counted(model.degrees, 'degree')} of freedom"
-        place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
+        written = first_few(self.written, _MOST_NAMES)
+        place, remark = (written, "") if written else (program, ", nothing written")
         status = self.compiled.status
         if status == "solved" and not self.compiled.ok:
             status = "errors after solving"
@@ -73,7 +76,8 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     names = arguments.output or [_default_output(arguments.file)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
     for target in found:
-        files.require_directory(target.name)
+        if not _is_pattern(target.name):
+            files.require_directory(target.name)
         if target.name != files.STANDARD and Path(target.name).resolve() == Path(arguments.file).resolve():
             raise UseError("E0908", f"`{target.name}` is the program itself and is not overwritten")
     return found
@@ -151,23 +155,49 @@ def _write(
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Writes all outputs once all could be made; returns their names, and diagnostics about them."""
     from aidl_lang.export import ExportError
+    from aidl_lang.export.naming import contents
 
+    made: list[tuple[str, bytes]] = []
+    notes: list[Diagnostic] = []
     try:
-        write = compiled.exporting(options, _Progress())
-        made = [(target, write(target.suffix)) for target in outputs]
+        writing = compiled.exporting(options, _Progress())
+        for target in outputs:
+            found, said = contents(writing, target.name, target.suffix)
+            require_one(target.name, len(found))
+            made += found
+            notes += said
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
-    contents = [
-        (name, data)
-        for target, result in made
-        for name, data in zip(
-            target_names(target, len(result.further)), (result.data, *result.further), strict=True
-        )
-    ]
-    for name, data in contents:
+    _require_apart([name for name, _ in made])
+    if any(_is_pattern(target.name) for target in outputs):
+        files.make_directories(name for name, _ in made)
+    for name, data in made:
         files.write(name, data)
-    notes = dict.fromkeys(note for _, result in made for note in result.notes)
-    return tuple(name for name, _ in contents), tuple(notes)
+    return tuple(name for name, _ in made), tuple(dict.fromkeys(notes))
+
+
+def _is_pattern(name: str) -> bool:
+    from aidl_lang.export import ExportError
+    from aidl_lang.export.naming import is_pattern
+
+    try:
+        return is_pattern(name)
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+
+
+def _require_apart(names: Sequence[str]) -> None:
+    """Refuses to write two contents into one file."""
+    seen: set[Path] = set()
+    for name in names:
+        place = Path(name).resolve()
+        if name != files.STANDARD and place in seen:
+            raise UseError(
+                "E0927",
+                f"two outputs go to `{name}`, and nothing is written",
+                "give each a name of its own: further sheets, pages and parts have names made of it",
+            )
+        seen.add(place)
 
 
 class _Progress:
@@ -184,13 +214,10 @@ class _Progress:
             print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def target_names(target: Target, further: int) -> list[str]:
-    """Returns the name of the output, and those of further files."""
-    from aidl_lang.export import file_names
-
-    if further and target.name == files.STANDARD:
-        raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
-    return file_names(target.name, further + 1)
+def require_one(name: str, count: int) -> None:
+    """Refuses several files on standard output."""
+    if count > 1 and name == files.STANDARD:
+        raise UseError("E0914", f"{count} files do not fit on standard output", "name a file with -o")
 
 
 def _default_output(program: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,6 +46,15 @@ def require_directory(name: str) -> None:
     parent = Path(name).parent
     if name != STANDARD and not parent.is_dir():
         raise UseError("E0904", f"`{name}` cannot be written: there is no directory `{parent}`")
+
+
+def make_directories(names: Iterable[str]) -> None:
+    """Makes the directories of files that are missing."""
+    for parent in dict.fromkeys(Path(name).parent for name in names if name != STANDARD):
+        try:
+            parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UseError("E0904", f"`{parent}` cannot be made: {_reason(error)}") from None
 
 
 def write(name: str, data: bytes) -> None:
