@@ -199,7 +199,9 @@ def _elevation(values: list[Value]) -> str:
 
 def _quantity(values: list[Value]) -> str:
     counts = _numbers(values, units.PLAIN)
-    is_one = counts is not None and len(counts) == 1 and counts[0] == int(counts[0]) and 1 <= counts[0] <= MOST
+    is_one = (
+        counts is not None and len(counts) == 1 and counts[0] == int(counts[0]) and 1 <= counts[0] <= MOST
+    )
     return "" if is_one else f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`"
 
 

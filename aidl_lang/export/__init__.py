@@ -289,9 +289,7 @@ def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
-        able = sorted(
-            s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts)
-        )
+        able = sorted(s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts))
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
         )

@@ -23,7 +23,17 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """What begins a formula in programs that open tables."""
 
 _PARTS = (
-    *("number", "part", "quantity", "material", "thickness_mm", "width_mm", "height_mm", "area_mm2", "cut_mm"),
+    *(
+        "number",
+        "part",
+        "quantity",
+        "material",
+        "thickness_mm",
+        "width_mm",
+        "height_mm",
+        "area_mm2",
+        "cut_mm",
+    ),
 )
 _SHEETS = ("sheet", "material", "thickness_mm", "pieces", "numbers", "used_percent", "cut_mm")
 
@@ -106,6 +116,8 @@ def _pages(
     for first in range(0, len(rows), _ROWS):
         table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
         width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN
-        title = written(f"{title_of}: lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE)
+        title = written(
+            f"{title_of}: lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE
+        )
         groups = (Group(f"{name}-title", (title,), {"class": "table"}), table.group(_MARGIN, _MARGIN))
         yield Picture((0.0, 0.0, width, height), groups)

@@ -83,9 +83,7 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
         if role == HOLE:
             operation = profile.operation(style.layer, INNER)
             for loop in drawing.regions[path].loops:
-                yield Outline(
-                    loop.pieces, True, path, layer, style, operation, clockwise=loop.reversed
-                )
+                yield Outline(loop.pieces, True, path, layer, style, operation, clockwise=loop.reversed)
             continue
         operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
         rest: list[Piece] = []
@@ -93,9 +91,7 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
             loops = _bounding(stroke, operation, profile, tolerance)
             area = next(areas) if loops else 0
             for loop in loops:
-                yield Outline(
-                    loop.pieces, True, path, layer, style, FILL, area, clockwise=loop.reversed
-                )
+                yield Outline(loop.pieces, True, path, layer, style, FILL, area, clockwise=loop.reversed)
             rest += () if loops else stroke.pieces
         for pieces in chains(rest, tolerance):
             closed = _is_closed(pieces, tolerance)

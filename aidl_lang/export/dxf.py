@@ -40,7 +40,7 @@ THINNEST = 1e-6
 """Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
 DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
-LABELS = "labels"
+LABELS, GREY = "labels", "#808080"
 """The layer for names and numbers of parts."""
 CAPITAL = 0.73
 """Height of capitals, by which DXF has the size of a text, relative to the size of the font."""
@@ -115,9 +115,11 @@ def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
     from ezdxf.enums import TextEntityAlignment
 
     for text in texts:
-        layer = layers.name(LABELS, Look(text.color))
+        layer = layers.name(LABELS, Look(GREY))
         document.layers.get(layer).dxf.plot = 0
-        made = document.modelspace().add_text(text.text, height=CAPITAL * text.size, dxfattribs={"layer": layer})
+        made = document.modelspace().add_text(
+            text.text, height=CAPITAL * text.size, dxfattribs={"layer": layer}
+        )
         made.set_placement(text.at, align=TextEntityAlignment.CENTER)
 
 

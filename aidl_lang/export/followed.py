@@ -18,7 +18,9 @@ def followed_groups(model: SolvedModel, drawing: Drawing, profile: Profile) -> I
     kinds = {s.path: s.kind for s in model.root.walk()}
     found = [outline for outline in outlines(model, drawing, profile) if outline.operation]
     used: dict[str, int] = {}
-    for (path, operation, layer), run in groupby(found, key=lambda o: (o.path, o.operation, _layer(o, profile))):
+    for (path, operation, layer), run in groupby(
+        found, key=lambda o: (o.path, o.operation, _layer(o, profile))
+    ):
         name = f"{path}:{operation}"
         used[name] = count = used.get(name, 0) + 1
         attributes = {"data-kind": kinds[path], "data-path": path, "data-operation": operation}

@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 from aidl_lang.export import Job, palette
 from aidl_lang.export.marks import CHARACTER, Text
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.engraving import boxes_meet
+from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.parts import COARSE
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.tessellate import piece_points, region_polygons
 
 LABELS = frozenset({"names", "numbers"})
 """What `--show` may ask for of parts on sheets."""
@@ -37,33 +40,47 @@ def labels(job: Job) -> Iterator[Text]:
         words = [str(numbers[body.path])] if numbers else []
         words += [body.path.removeprefix(f"{root}.")] if "names" in asked else []
         label = " ".join(words)
-        middle, size = _room(body.region, CHARACTER * len(label))
+        middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
         at = middle[0], middle[1] - _BASELINE * size
         yield Text(at, label, size, palette.NAME, "middle", halo=False)
 
 
-def _room(region: Region, width: float) -> tuple[Vec, float]:
+def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
+    """Returns what is engraved about a body, as polylines."""
+    near = (s.pieces for s in drawing.strokes)
+    boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
+    return [piece_points(piece, COARSE) for piece, box in boxes if boxes_meet(box, body.box)]
+
+
+def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
     """Returns the middle and the size of the largest text, so many times as wide as high, that lies in the
-    material; the middle of the part where there is room enough.
+    material beside what is engraved, as near to the middle of the part as there is room.
     """
     shrunk = [polygon / (width, 1.0) for polygon in region_polygons(region, COARSE)]
+    sides = [_sides(np.concatenate((polygon, polygon[:1]))) for polygon in shrunk]
+    sides += [_sides(line / (width, 1.0)) for line in engraved]
     outline = np.concatenate(shrunk)
     low, high = outline.min(axis=0), outline.max(axis=0)
     shares = (np.arange(_STEPS) + 0.5) / _STEPS
     spots = low + np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2) * (high - low)
     spots = np.concatenate(([(low + high) / 2], spots))
+    spots = spots[np.argsort(np.hypot(*((spots - spots[0]) * (width, 1.0)).T), kind="stable")]
     spots = spots[within] if (within := inside(shrunk, spots)).any() else spots[:1]
     # A square lies in a circle: where a text is as high as wide, its room is that of a square.
-    sizes = _AIR * np.sqrt(2) * _clearance(spots, shrunk)
+    sizes = _AIR * np.sqrt(2) * _clearance(spots, np.concatenate(sides))
     best = int(np.argmax(np.minimum(sizes, SIZE)))
     x, y = spots[best] * (width, 1.0)
     return (float(x), float(y)), float(min(sizes[best], SIZE))
 
 
-def _clearance(spots: NDArray[np.float64], polygons: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Returns the distance of each point to the nearest side of some polygons."""
-    start = np.concatenate(polygons)
-    way = np.concatenate([np.roll(p, -1, axis=0) - p for p in polygons])
+def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns start and end of each side of a polyline, a row each."""
+    return np.concatenate((line[:-1], line[1:]), axis=1)
+
+
+def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the distance of each point to the nearest side."""
+    start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
     square = np.maximum((way**2).sum(axis=1), 1e-30)
     least = np.full(len(spots), np.inf)
     for k, spot in enumerate(spots):

@@ -35,7 +35,10 @@ def is_pattern(name: str) -> bool:
             raise ExportError(
                 "E0926",
                 f"`{{{word}}}` in `{name}` stands for nothing",
-                *(did_you_mean(_braced(nearest(word, WORDS))) or [f"there are {listed(ticked(_braced(WORDS)))}"]),
+                *(
+                    did_you_mean(_braced(nearest(word, WORDS)))
+                    or [f"there are {listed(ticked(_braced(WORDS)))}"]
+                ),
             )
     if words and not set(words) & set(_TELLING):
         raise ExportError(

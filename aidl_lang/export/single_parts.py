@@ -25,7 +25,9 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
         )
     items = job.cut_list.items
     if not items:
-        raise ExportError("E0926", "there is no part to write", "only a `solid` is cut; a `drawing` is engraved")
+        raise ExportError(
+            "E0926", "there is no part to write", "only a `solid` is cut; a `drawing` is engraved"
+        )
     alone = replace(options, cut=options.for_cutter, sheet=None, nest=None, kerf=0.0, show=frozenset())
     found = {part.body.path: part for part in parts_of(job.model.root, job.drawing)[0]}
     for item in items:

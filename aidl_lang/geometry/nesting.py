@@ -7,13 +7,15 @@ until its time is over, so that how well it does depends on the machine.
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.tessellate import Polygon
+from aidl_lang.geometry.tessellate import Polygon, polygon_area
 
 if TYPE_CHECKING:
     from spyrrow import Item
@@ -22,6 +24,8 @@ SEED = 1
 """Of the packer's random numbers: the same program, time and machine give about the same sheets."""
 _SHORTEST = 1
 """Seconds; the packer counts whole ones."""
+_FILLED = 0.7
+"""Share of a sheet that parts take of it, about."""
 _SLACK = 1e-6
 """Millimetres by which sums of places may be off."""
 
@@ -57,11 +61,15 @@ def nested(outlines: Sequence[Polygon], sheet: tuple[float, float], seconds: flo
     turns = [_turns(box, sheet) for box in boxes]
     if not all(turns):
         return []
+    areas = [polygon_area(outline) for outline in outlines]
     rest = list(range(len(outlines)))
     found: list[list[Nested]] = []
+    end = time.monotonic() + seconds
     while rest:
         checkpoint()
-        share = max(_SHORTEST, round(seconds * len(rest) / len(outlines) / 2 ** len(found)))
+        # Each of the sheets that are still to come has its share of the time that is left.
+        to_come = math.ceil(sum(areas[k] for k in rest) / (_FILLED * sheet[0] * sheet[1]))
+        share = max(_SHORTEST, int((end - time.monotonic()) / to_come))
         items = [Item(str(k), [(float(x), float(y)) for x, y in outlines[k]], 1, turns[k]) for k in rest]
         placed = _strip(items, sheet[1], share)
         here = [p for p in placed if turned_box(boxes[p.number], p.quarters)[2] + p.x <= sheet[0] + _SLACK]

@@ -191,8 +191,7 @@ def _places(pieces: Iterable[Piece], corner: Bounds, size: float) -> tuple[tuple
     return tuple(
         sorted(
             tuple(
-                round((v - o) / (_ALIKE * size) + _OFF_BEAT)
-                for v, o in zip(bounds(p), origin, strict=True)
+                round((v - o) / (_ALIKE * size) + _OFF_BEAT) for v, o in zip(bounds(p), origin, strict=True)
             )
             for p in pieces
         )

@@ -41,6 +41,9 @@ SLACK = 1e-3
 FEW = 200
 """The most parts for which a slower packer is used, which fills the sheets better."""
 
+ROUGH = 0.1
+"""Millimetres that outlines may be wider where that leaves out corners: packing takes a time that grows with them."""
+
 Cell = tuple[int, int]
 """Width and height in micrometres."""
 
@@ -148,19 +151,21 @@ def _packed(parts: Sequence[Part], room: Cell, gap: int, nesting: _Nesting | Non
     if nesting is None or len(parts) == 1:
         return by_boxes
     by_outlines = _by_outlines(parts, nesting)
-    return min(by_boxes, by_outlines, key=_used) if by_outlines else by_boxes
+    found = [by_boxes, by_outlines] if by_outlines else [by_boxes]
+    return min(found, key=lambda sheets: _used(sheets, nesting.sheet))
 
 
-def _used(sheets: Sequence[Sequence[_Place]]) -> tuple[int, float]:
-    """Returns the number of sheets, and the width used of the last one."""
-    return len(sheets), max(_placed_box(place)[2] for place in sheets[-1])
+def _used(sheets: Sequence[Sequence[_Place]], sheet: Size) -> tuple[int, float]:
+    """Returns the number of sheets, and the area of the last one that is lost if the rest is cut off it."""
+    boxes = [_placed_box(place) for place in sheets[-1]]
+    return len(sheets), min(sheet[1] * max(b[2] for b in boxes), sheet[0] * max(b[3] for b in boxes))
 
 
 def _by_outlines(parts: Sequence[Part], nesting: _Nesting) -> list[list[_Place]]:
     from aidl_lang.geometry.nesting import nested
 
     # Each outline has half the spacing around it. Chords are inside of what bulges, by less than COARSE.
-    outlines = [widened(_outline(part), nesting.spacing / 2 + COARSE) for part in parts]
+    outlines = [widened(_outline(part), nesting.spacing / 2 + COARSE, ROUGH) for part in parts]
     room = nesting.sheet[0] - nesting.spacing, nesting.sheet[1] - nesting.spacing
     aside = nesting.spacing / 2
     sheets = nested(outlines, room, nesting.seconds)
