@@ -2,11 +2,11 @@
 
     python benchmarks/nesting.py [--seconds N] [--spacing MM]
 
-Prints Markdown. The parts are those of the Raspberry Pi case, once and eight times, and 200 of several shapes, on
-sheets of 600 × 400 mm. `taken` is the area of all sheets less what can be cut off the last one in one piece, `used` the
-share of it that is material.
-Time is that of the clock, once: packing by outlines takes the time that it is given. The others are further
-algorithms of rectpack, which turn boxes by quarters too.
+Prints Markdown. The parts are those of the Raspberry Pi case, once and eight times, and 200 of several
+shapes, on sheets of 600 × 400 mm. `taken` is the area of all sheets less what can be cut off the last one in
+one piece, `used` the share of it that is material. Time is that of the clock, once: packing by outlines takes
+the time that it is given, and some to begin. The others are further algorithms of rectpack, which turn boxes
+by quarters too.
 """
 
 from __future__ import annotations
@@ -111,7 +111,8 @@ def boxes(compiled: Any) -> list[tuple[float, float]]:
 def material(compiled: Any) -> float:
     from aidl_lang.geometry.measures import area
 
-    return sum(area(body.region) * body.style.quantity for body in compiled.drawing.bodies)
+    areas = (area(body.region) * body.style.quantity for body in compiled.drawing.bodies)
+    return float(sum(areas))
 
 
 def by_rectpack(sizes: Sequence[tuple[float, float]], spacing: float, algorithm: str) -> Result:

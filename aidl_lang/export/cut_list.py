@@ -1,5 +1,5 @@
-"""The list of what is to be cut: each part that differs from the others with its number, how many pieces of it
-there are, of which stock, how large, and how long its cuts are. As data, as CSV, and as pages of a picture.
+"""The list of what is to be cut: each part that differs from the others with its number, how many pieces of
+it there are, of which stock, how large, and how long its cuts are.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from itertools import count, groupby
 
 import numpy as np
@@ -78,29 +79,29 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
     tolerance = RELATIVE_TOLERANCE * drawing.size
     areas = count(1)
     for (path, role, style), group in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
-        strokes = list(group)
         layer = role if role == OPEN else style.layer or role
+        made = partial(Outline, path=path, layer=layer, style=style)
         if role == HOLE:
             operation = profile.operation(style.layer, INNER)
             for loop in drawing.regions[path].loops:
-                yield Outline(loop.pieces, True, path, layer, style, operation, clockwise=loop.reversed)
+                yield made(loop.pieces, True, operation=operation, clockwise=loop.reversed)
             continue
         operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
-        rest: list[Piece] = []
-        for stroke in strokes:
+        followed: list[Piece] = []
+        for stroke in group:
             loops = _bounding(stroke, operation, profile, tolerance)
             area = next(areas) if loops else 0
             for loop in loops:
-                yield Outline(loop.pieces, True, path, layer, style, FILL, area, clockwise=loop.reversed)
-            rest += () if loops else stroke.pieces
-        for pieces in chains(rest, tolerance):
+                yield made(loop.pieces, True, operation=FILL, area=area, clockwise=loop.reversed)
+            followed += () if loops else stroke.pieces
+        for pieces in chains(followed, tolerance):
             closed = _is_closed(pieces, tolerance)
             if operation != FILL:
-                yield Outline(pieces, closed, path, layer, style, operation)
+                yield made(pieces, closed, operation=operation)
             elif closed:
-                yield Outline(pieces, True, path, layer, style, FILL, next(areas))
+                yield made(pieces, True, operation=FILL, area=next(areas))
             else:
-                yield Outline(pieces, False, path, layer, style, ENGRAVE)
+                yield made(pieces, False, operation=ENGRAVE)
 
 
 def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float) -> list[Loop]:

@@ -86,12 +86,7 @@ def names_of_parts(pattern: str, items: Sequence[Item]) -> tuple[list[str], list
     taken: set[str] = set()
     names, changed = [], []
     for item in items:
-        values = {
-            "part": _safe(item.name.replace(", ", "+")),
-            "number": str(item.number),
-            "material": _safe(item.material) if item.material else "no-material",
-        }
-        wanted = PurePath(_WORD.sub(lambda found: values[found[1]], pattern))
+        wanted = PurePath(_filled(pattern, item))
         path, count = wanted, 1
         # Some file systems take capital and small letters for the same.
         while str(path).casefold() in taken:
@@ -102,6 +97,15 @@ def names_of_parts(pattern: str, items: Sequence[Item]) -> tuple[list[str], list
         if count > 1:
             changed.append(str(path))
     return names, [_changed_note(pattern, changed)] if changed else []
+
+
+def _filled(pattern: str, item: Item) -> str:
+    values = {
+        "part": _safe(item.name.replace(", ", "+")),
+        "number": str(item.number),
+        "material": _safe(item.material) if item.material else "no-material",
+    }
+    return _WORD.sub(lambda found: values[found[1]], pattern)
 
 
 def _safe(text: str) -> str:

@@ -14,7 +14,8 @@ from aidl_lang.export import ExportError
 from aidl_lang.export.profiles import CUT, ENGRAVE, FILL, OPERATIONS, PROFILES, Layer, Look, Profile
 
 _KEYS = ("base", "order", "letters", "layers", *OPERATIONS)
-_LOOK = ("color", "width", "layer")
+_LOOK = ("color", "width", "layer", "colour")
+_FIELDS = {"colour": "color"}
 THINNEST, WIDEST = 0.001, 5.0
 """Widths of lines, mm."""
 _LONGEST = 255
@@ -70,12 +71,13 @@ class _Reader:
         made = base
         readers: dict[str, Callable[[Any, str], Any]] = {
             "color": self._color,
+            "colour": self._color,
             "width": self._width,
             "layer": self._layer_name,
         }
         for key, read in readers.items():
             if key in table:
-                made = replace(made, **{key: read(table[key], f"{where}.{key}")})
+                made = replace(made, **{_FIELDS.get(key, key): read(table[key], f"{where}.{key}")})
         return made
 
     def _known(self, table: Mapping[str, Any], keys: Iterable[str], where: str) -> None:

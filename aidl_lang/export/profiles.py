@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 FILL, ENGRAVE, SCORE, INNER, OUTER = OPERATIONS = ("fill", "engrave", "score", "inner", "outer")
 """Areas that are engraved, lines that are engraved or scored, cuts inside parts, and those around them."""
 CUT = "cut"
-"""As the operation of a layer: what a part is cut out by stays what it is, and lines are cut as inner ones."""
+"""As the operation of a layer: the outlines of parts stay what they are, and lines are cut as inner ones."""
 CUTS = (INNER, OUTER)
 
 
 @record()
 class Look:
-    """A colour, as `#rrggbb`; the width of lines, mm; the name of a layer, or None for that of the program."""
+    """A colour, as `#rrggbb`; the width of lines, mm; the name of a layer, None for that of the program."""
 
     color: str
     width: float = 0.1

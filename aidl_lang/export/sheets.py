@@ -16,8 +16,8 @@ from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nesting import NestingError
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset
-from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.parts import Size
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sheets import laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
@@ -26,7 +26,7 @@ MOST_PARTS = 5000
 
 
 def grown(job: Job, progress: Progress) -> tuple[Job, list[Diagnostic]]:
-    """Returns the job with its outlines widened by half the cut, with notes. `progress` hears how many are."""
+    """Returns the job with its outlines widened by half the cut, with notes. `progress` hears of it."""
     if not job.options.kerf:
         return job, []
     notes = twice_compensated(job.model.root, job.options.kerf)

@@ -42,7 +42,7 @@ FEW = 200
 """The most parts for which a slower packer is used, which fills the sheets better."""
 
 ROUGH = 0.1
-"""Millimetres that outlines may be wider where that leaves out corners: packing takes a time that grows with them."""
+"""Millimetres that outlines may be wider where that leaves out corners, by which packing takes longer."""
 
 Cell = tuple[int, int]
 """Width and height in micrometres."""

@@ -22,7 +22,6 @@ from aidl_lang.geometry.tessellate import face_polygons
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 
-
 _ROOTS: dict[int, tuple[Drawing, SolvedStructure]] = {}
 
 

@@ -112,8 +112,8 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--profile",
         metavar="NAME",
-        help="colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a file "
-        "such as shop.toml",
+        help="colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
+        "file such as shop.toml",
     )
     parser.add_argument(
         "--sheet",
