@@ -32,7 +32,9 @@ assembly tag {
         drawing name { letters = text("OB", center: fixed((10, 5)), height: 12) }
         drawing frame { edge = rectangle(center: fixed((10, 5)), width: 40, height: 20) }
         @layer("score") drawing fold { crease = line(fixed((-40, -15)), fixed((40, -15))) }
-        @layer("fill") drawing mark { ring = ring(center: fixed((-25, -5)), outer_radius: 5, inner_radius: 3) }
+        @layer("fill") drawing mark {
+            disc = ring(center: fixed((-25, -5)), outer_radius: 5, inner_radius: 3)
+        }
         @layer("cut") drawing slit { way = line(fixed((0, -20)), fixed((20, -20))) }
     }
 }
@@ -83,7 +85,7 @@ def test_svg_and_dxf_agree_in_order_and_colour(name: str) -> None:
     told = in_svg(PLATE, profile)
     found = document(PLATE, profile)
     in_dxf = [color_in_dxf(found, entity) for entity in found.modelspace()]
-    # The frame, a fold, a ring of two, a slit, the bore, the plate; and the letters: O has two outlines, B three.
+    # The frame, a fold, a ring of two, a slit, the bore, the plate, and the outlines of O and B.
     assert len(in_dxf) == 1 + 1 + 2 + 1 + 1 + 1 + 5
     places = [OPERATIONS.index(operation) for operation, *_ in told]
     assert places == sorted(places)

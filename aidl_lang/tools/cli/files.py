@@ -120,12 +120,13 @@ def decoded(data: bytes, what: str) -> str:
 
 
 def _neighbours(path: Path) -> list[str]:
-    """Returns programs beside a missing one that may have been meant."""
+    """Returns files of the kind beside a missing one that may have been meant; most are programs."""
     from difflib import get_close_matches
 
     with suppress(OSError):
-        beside = [entry.name for entry in path.parent.glob("*.aidl")]
-        near = get_close_matches(path.name.removesuffix(".aidl") + ".aidl", beside, n=1)
+        kind = path.suffix if path.suffix == ".toml" else ".aidl"
+        beside = [entry.name for entry in path.parent.glob(f"*{kind}")]
+        near = get_close_matches(path.name.removesuffix(kind) + kind, beside, n=1)
         return [f"did you mean `{path.with_name(name)}`?" for name in near]
     return []
 
