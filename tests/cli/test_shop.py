@@ -400,3 +400,24 @@ def test_python_saves_part_by_part(folder: Path) -> None:
     made = compiled.model(BOX).save(folder / "new" / "{part}.dxf", kerf=0.2)
     assert [path.name for path in made.paths] == ["lid.dxf", "s.dxf", "strip.dxf"]
     assert all(path.is_file() for path in made.paths)
+
+
+# --- What falls out ------------------------------------------------------------------------------
+
+
+def test_what_falls_out_is_counted_named_and_measured() -> None:
+    """The ring of 16 mm within `ring` and the insides of A and B: all in one warning."""
+    text = (
+        "@thickness(3) solid sign { plate = rectangle(center: origin, width: 90, height: 40)\n"
+        'hole name { letter = text("AB", center: (-15, 0), height: 20)\n'
+        "groove = ring(center: fixed((28, 0)), outer_radius: 10, inner_radius: 8) } }"
+    )
+    (warning,) = (d for d in compiled.compiled(text).diagnostics if d.code == "W0714")
+    assert warning.message == "4 pieces fall out of solid `sign`: hole `sign.name` cuts all around them"
+    assert (
+        warning.label
+        == "nothing holds what is inside `groove` and `letter`: 4 pieces, the largest 16 × 16 mm"
+    )
+    (warning,) = (d for d in compiled.compiled(text.replace('"AB"', '"I"')).diagnostics if d.code == "W0714")
+    assert warning.message == "a piece falls out of solid `sign`: hole `sign.name` cuts all around it"
+    assert warning.label == "nothing holds what is inside `groove`: 16 × 16 mm"
