@@ -159,7 +159,7 @@ def test_what_sheets_cannot_show(aidl: Aidl, box: Path) -> None:
     )
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", *sheet, "--show", "names,dof,points")) == [
         "error[E0924]: `--show dof,points` explains the assembled drawing and has no place on cut sheets",
-        "  = hint: `--show names` puts the names of the parts on them",
+        "  = hint: `--show names,numbers` writes the names and numbers of the parts on them",
     ]
     for cutting in (sheet, ("--cut",), ("--kerf", "0.1")):
         assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--dimension", *cutting)) == [
