@@ -22,10 +22,14 @@ if TYPE_CHECKING:
 
 DXF = ("arcs", "r12", "splines")
 """Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
-SHOW = ("names", "points", "bbox", "constraints", "dof", "plan", "numbers", "list")
-ON_SHEETS = frozenset({"names", "numbers", "list"})
-"""What of `SHOW` is of parts laid on sheets."""
+SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
+"""What explains a drawing on top of it."""
+ON_SHEETS = ("names", "numbers", "list")
+"""What is shown of parts laid on sheets: on them, and on pages of its own."""
 
+
+_OF_CUTTERS = ("--sheet", "--kerf", "--profile")
+"""Options of formats that a cutter follows."""
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -34,7 +38,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 class Options:
     """The options of an export; each format reads those that concern it.
 
-    show       what explains the drawing on top of it, some of `SHOW`
+    show       what explains the drawing on top of it, some of `SHOW`, or of `ON_SHEETS` if there are sheets
     dimension  whether to draw dimensions
     cut        the outlines alone, as hairlines without fills: what a cutter follows
     pixels     larger side of a raster picture
@@ -177,6 +181,7 @@ class Exporter:
                 f"`{suffix}` tells of the whole, and is not written part by part",
                 "give it a name without `{part}`",
             )
+        _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
         job, notes = self._grown if self._job.options.kerf else (self._job, [])
         made = []
         for item, alone in jobs_of_parts(job):
@@ -227,8 +232,8 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
         raise ExportError(
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
         )
-    if options.show & ON_SHEETS - {"names"} and options.sheet is None:
-        asked = sorted(options.show & ON_SHEETS - {"names"})
+    asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
+    if asked and options.sheet is None:
         raise ExportError(
             "E0924",
             f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
@@ -289,7 +294,7 @@ def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
-        able = sorted(s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts))
+        able = sorted(s for s, f in FORMATS.items() if (f.cuts if option in _OF_CUTTERS else f.tiles))
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
         )

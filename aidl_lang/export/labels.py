@@ -33,7 +33,7 @@ _AIR = 0.9
 def labels(job: Job) -> Iterator[Text]:
     """Yields a text for each part, as large as it allows, up to what is read easily."""
     asked = job.options.show & LABELS
-    if not asked:
+    if not asked or job.options.sheet is None:
         return
     root, numbers = job.model.root.path, job.cut_list.numbers if "numbers" in asked else {}
     for body in job.drawing.bodies:

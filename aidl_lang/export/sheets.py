@@ -35,7 +35,7 @@ def grown(job: Job, progress: Progress) -> tuple[Job, list[Diagnostic]]:
 
 def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
     """Returns a job for each sheet, with notes; raises ExportError if the parts cannot be laid out."""
-    if unfit := sorted(job.options.show - ON_SHEETS):
+    if unfit := sorted(job.options.show.difference(ON_SHEETS)):
         raise ExportError(
             "E0924",
             f"`--show {','.join(unfit)}` explains the assembled drawing and has no place on cut sheets",

@@ -16,7 +16,7 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
     """
     options = job.options
     is_on_sheets = options.sheet is not None
-    if options.dimension or (options.show and not (is_on_sheets and options.show <= ON_SHEETS)):
+    if options.dimension or (options.show and not (is_on_sheets and options.show.issubset(ON_SHEETS))):
         option = "--dimension" if options.dimension else f"--show {','.join(sorted(options.show))}"
         raise ExportError(
             "E0926",

@@ -375,6 +375,10 @@ def test_patterns_that_are_none(aidl: Aidl, box: Path) -> None:
             "single parts",
             "  = hint: write it to a file of its own",
         ]
+    for option in (("--kerf", "0.1"), ("--profile", "plain")):
+        assert refused(aidl("compile", "box.aidl", "-o", "{part}.stl", *option))[0] == (
+            f"error[E0924]: `{option[0]}` has no meaning for `.stl`"
+        )
     text = "drawing d { l = line(start: (0, 0), end: (9, 0)) }"
     assert refused(aidl("compile", "-", "-o", "{part}.svg", stdin=text)) == [
         "error[E0926]: there is no part to write",
