@@ -223,6 +223,18 @@ def require(package: str, for_what: str, extra: str) -> None:
         raise ExportError("E0913", message, f"pip install 'aidl-lang[{extra}]'")
 
 
+def require_sheets(options: Options) -> None:
+    """Raises ExportError if something is to be shown of parts on sheets, and there are none."""
+    asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
+    if asked and options.sheet is None:
+        raise ExportError(
+            "E0924",
+            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
+            "lay them on sheets: `--sheet 600x400`",
+            "the list alone is written by `-o cutlist.csv`",
+        )
+
+
 def _check(options: Options, suffix: str, wanted: Format) -> None:
     """Raises ExportError if the options ask a format for what it cannot have."""
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
@@ -232,14 +244,7 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
         raise ExportError(
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
         )
-    asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
-    if asked and options.sheet is None:
-        raise ExportError(
-            "E0924",
-            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
-            "lay them on sheets: `--sheet 600x400`",
-            "the list alone is written by `-o cutlist.csv`",
-        )
+    require_sheets(options)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
     _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
     if options.theme not in ("colour", "cutter") and options.for_cutter:

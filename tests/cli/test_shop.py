@@ -232,6 +232,9 @@ def test_what_is_of_sheets_needs_sheets(aidl: Aidl, box: Path) -> None:
         "  = hint: lay them on sheets: `--sheet 600x400`",
         "  = hint: the list alone is written by `-o cutlist.csv`",
     ]
+    assert refused(aidl("show", "box.aidl", "--show", "numbers"))[0] == (
+        "error[E0924]: `--show numbers` is about the parts on sheets, and there are none"
+    )
     text = "drawing d { l = line(start: (0, 0), end: (9, 0)) }"
     assert refused(aidl("compile", "-", "-o", "x.csv", stdin=text)) == [
         "error[E0924]: there is no part to list",
