@@ -27,7 +27,6 @@ SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 ON_SHEETS = ("names", "numbers", "list")
 """What is shown of parts laid on sheets: on them, and on pages of its own."""
 
-
 _OF_CUTTERS = ("--sheet", "--kerf", "--profile")
 """Options of formats that a cutter follows."""
 
@@ -311,13 +310,20 @@ def _files(parts: Sequence[Exported]) -> Exported:
     return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
 
 
-def _list_pages(jobs: Sequence[Job], suffix: str) -> list[Exported]:
-    """Returns the pages of the cut list that are asked for, where a picture can hold them."""
-    if "list" not in jobs[0].options.show or suffix not in PICTURES:
+def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
+    """Returns the pages of the cut list that are asked for."""
+    if "list" not in jobs[0].options.show:
         return []
     from aidl_lang.export.cut_list_files import pages
 
-    return [Exported(PICTURES[suffix](page, jobs[0].options)) for page in pages(jobs)]
+    return pages(jobs)
+
+
+def _list_pages(jobs: Sequence[Job], suffix: str) -> list[Exported]:
+    """Returns the pages of the cut list that are asked for, each as a file of its own."""
+    if suffix not in PICTURES:
+        return []
+    return [Exported(PICTURES[suffix](page, jobs[0].options)) for page in _pages_of_list(jobs)]
 
 
 def _unlisted(job: Job, suffix: str) -> list[Diagnostic]:
@@ -349,12 +355,11 @@ def _pdf(job: Job) -> Exported:
 
 
 def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.cut_list_files import pages as pages_of_list
     from aidl_lang.export.font import character_notes
     from aidl_lang.export.pdf import to_pdf
     from aidl_lang.export.picture import pages
 
-    drawn = [*(page for job in jobs for page in pages(job)), *pages_of_list(jobs)]
+    drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
     root = jobs[0].model.root
     return Exported(to_pdf(drawn, (root.doc or root.path).partition("\n")[0]), notes=character_notes(drawn))
 

@@ -61,9 +61,7 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
 
 
 def pages(jobs: Sequence[Job]) -> list[Picture]:
-    """Returns the list as pages, if `--show list` asks for it."""
-    if "list" not in jobs[0].options.show:
-        return []
+    """Returns the list as pages."""
     found = jobs[0].cut_list
     return [
         *_pages(
