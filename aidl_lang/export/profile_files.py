@@ -28,6 +28,8 @@ def parsed(text: str, name: str) -> Profile:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as reason:
         raise _wrong(name, f"it is not TOML: {reason}") from None
+    except RecursionError:
+        raise _wrong(name, "its values are nested too deeply") from None
     return _Reader(name).profile(table)
 
 

@@ -266,6 +266,7 @@ def test_a_file_of_ones_own() -> None:
 
 
 WRONG = {
+    f"x = {'[' * 5000}": ("its values are nested too deeply", ()),
     "x": ("it is not TOML: Expected '=' after a key in a key/value pair (at end of document)", ()),
     "colour = 3": (
         "there is no key `colour`",
