@@ -176,12 +176,14 @@ class Model:
     def save(self, path: str | Path, **options: object) -> Saved:
         """Writes the drawing in the format of the file's suffix, with the options of `aidl compile` as
         keywords: `save("plate.dxf", kerf=0.15)`, `save("plate.pdf", theme="blueprint", dimension=True)`.
-        Further sheets and pages go into files beside it. Returns what was written.
+        Further sheets and pages go into files beside it; with `{part}` in its name there is a file for each
+        part: `save("parts/{part}.dxf")`. Returns what was written.
 
         Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and for a
         model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
         """
-        from aidl_lang.export import file_names, suffix_of
+        from aidl_lang.export import suffix_of
+        from aidl_lang.export.naming import contents, is_pattern
         from aidl_lang.tools.cli import files
         from aidl_lang.tools.cli.keywords import read
 
@@ -191,14 +193,14 @@ class Model:
             raise self._compiled.refused(
                 "the model is not ok, so nothing is written without `best_effort=True`"
             )
-        made = self._compiled.exported(suffix, asked.options)
-        if not (folder := Path(path).parent).is_dir():
+        is_one = not is_pattern(str(path))
+        made, notes = contents(self._compiled.exporting(asked.options), str(path), suffix)
+        if is_one and not (folder := Path(path).parent).is_dir():
             raise FileNotFoundError(ENOENT, "there is no such folder", str(folder))
-        contents = (made.data, *made.further)
-        paths = tuple(map(Path, file_names(str(path), len(contents))))
-        for each, data in zip(paths, contents, strict=True):
-            files.replace(each, data)
-        return Saved(paths, made.notes)
+        for name, data in made:
+            Path(name).parent.mkdir(parents=True, exist_ok=True)
+            files.replace(Path(name), data)
+        return Saved(tuple(Path(name) for name, _ in made), notes)
 
     def _repr_svg_(self) -> str | None:
         """Returns the drawing for notebooks, as far as the solver came."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
@@ -20,13 +20,17 @@ if TYPE_CHECKING:
     from aidl_lang.checking.allowing import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
-    from aidl_lang.export import Exported, Options, Progress
+    from aidl_lang.export import Exported, Exporter, Options, Progress
     from aidl_lang.export.comparison import Comparison
+    from aidl_lang.export.cut_list import Item
     from aidl_lang.export.drafting import Draft
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
     from aidl_lang.solver.solution import StageReport
+
+
+T = TypeVar("T")
 
 
 def _never(span: Span) -> bool:
@@ -93,29 +97,15 @@ class Compiled:
         """
         return self.exporting(options)(suffix)
 
-    def exporting(
-        self, options: Options | None = None, progress: Progress | None = None
-    ) -> Callable[[str], Exported]:
+    def exporting(self, options: Options | None = None, progress: Progress | None = None) -> Exporting:
         """Returns `exported` for several formats with the same options: what they have in common is worked
         out once, and `progress` hears of it.
         """
-        from aidl_lang.export import Exporter, ExportError, Job, Options
+        from aidl_lang.export import Exporter, Job, Options
 
         made = Options(self.show) if options is None else options
         job = Job(*self._finished, tuple(self.diagnostics), made)
-        exporter = Exporter(job) if progress is None else Exporter(job, progress)
-
-        def write(suffix: str) -> Exported:
-            try:
-                with limited_to(self.limit):
-                    made = exporter.write(suffix)
-            except OutOfTime:
-                hint = "write a format that holds less: pictures without `--show`, outlines alone"
-                message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
-                raise ExportError("E0955", message, hint) from None
-            return replace(made, notes=self._audible(made.notes))
-
-        return write
+        return Exporting(Exporter(job) if progress is None else Exporter(job, progress), self)
 
     def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
         """Returns the drawing sheets in each of some formats of pictures. Raises as `exported` does."""
@@ -142,7 +132,7 @@ class Compiled:
         model, drawing = self._finished
         with within(self.limit, "measuring"):
             found = survey(model, drawing, paths, densities)
-        return replace(found, notes=self._audible(found.notes))
+        return replace(found, notes=self.audible(found.notes))
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """Measures the part at a path, or the whole. Raises as `surveyed` does."""
@@ -159,7 +149,7 @@ class Compiled:
         with within(self.limit, "comparing"):
             return compare(Version(*self._finished), Version(*after._finished))
 
-    def _audible(self, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def audible(self, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
         """Returns the notes on a use of the drawing that the program does not want unsaid."""
         if not self.allowances:
             return tuple(notes)
@@ -177,3 +167,34 @@ class Compiled:
         """Returns what to raise, with the errors, if something cannot be done for them."""
         wrong = [d for d in self.diagnostics if d.is_error]
         return AidlError(*wrong, message=": ".join([what, *(d.message for d in wrong[:1])]))
+
+
+class Exporting:
+    """Writes the drawing of a compiled program in several formats, within its limit of time each."""
+
+    def __init__(self, exporter: Exporter, compiled: Compiled) -> None:
+        self._exporter, self._compiled = exporter, compiled
+
+    def __call__(self, suffix: str) -> Exported:
+        """Returns the drawing in the format of a file suffix. Raises as `Compiled.exported` does."""
+        return self._audible(self._limited(suffix, self._exporter.write))
+
+    def parts(self, suffix: str) -> list[tuple[Item, Exported]]:
+        """Returns each part that differs from the others by itself, with its item of the cut list."""
+        made = self._limited(suffix, self._exporter.write_parts)
+        return [(item, self._audible(exported)) for item, exported in made]
+
+    def _limited(self, suffix: str, write: Callable[[str], T]) -> T:
+        from aidl_lang.export import ExportError
+
+        limit = self._compiled.limit
+        try:
+            with limited_to(limit):
+                return write(suffix)
+        except OutOfTime:
+            hint = "write a format that holds less: pictures without `--show`, outlines alone"
+            message = f"writing the drawing as `{suffix}` takes more than {limit:g} seconds"
+            raise ExportError("E0955", message, hint) from None
+
+    def _audible(self, made: Exported) -> Exported:
+        return replace(made, notes=self._compiled.audible(made.notes))

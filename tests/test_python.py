@@ -126,7 +126,8 @@ def test_what_is_neither_is_told(tmp_path: Path) -> None:
         ({"sheet": object()}, "`sheet` takes numbers and texts, not `object`"),
         (
             {"show": "nams"},
-            "`show`: there is no `nams`; there are names, points, bbox, constraints, dof, plan",
+            "`show`: there is no `nams`; there are names, points, bbox, constraints, dof, plan, numbers, "
+            "list",
         ),
     ],
 )
@@ -194,7 +195,7 @@ def test_a_format_that_is_not_known(name: str, message: str) -> None:
     with pytest.raises(aidl_lang.AidlError) as told:
         aidl_lang.compile(PLATE).save(name)
     assert str(told.value) == message
-    assert told.value.__notes__ == ["hint: formats: 3mf, dxf, json, pdf, png, step, stl, stp, svg"]
+    assert told.value.__notes__ == ["hint: formats: 3mf, csv, dxf, json, pdf, png, step, stl, stp, svg"]
 
 
 # --- Errors ----------------------------------------------------------------------------------------

@@ -118,6 +118,8 @@ def _read(
 ORIENTATIONS = ("top", "front", "side")
 THINNEST, WIDEST = 0.01, 1000.0
 """mm, of lines, dashes and gaps that can be seen."""
+MOST = 1000
+"""Pieces of a part."""
 EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "none")
 NO_OUTLINE = TextVal("none")
@@ -147,6 +149,14 @@ def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attri
             f"`@{attribute.name.text}` is said of what has {has}, and `{of.name}` is a {of.kind}",
             attribute,
             hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
+        )
+        return False
+    if name == "quantity" and of.kind in ("drawing", "hole"):
+        it.report(
+            "E0517",
+            f"`@{attribute.name.text}` is said of parts to be made, and `{of.name}` is a {of.kind}",
+            attribute,
+            hints=[f"put `{attribute.span.one_line}` before a `solid` or an `assembly`"],
         )
         return False
     if name != "stroke" or of.kind != "drawing" or values != [NO_OUTLINE]:
@@ -188,6 +198,14 @@ def _elevation(values: list[Value]) -> str:
     lengths = _numbers(values, units.LENGTH)
     is_one = lengths is not None and len(lengths) == 1
     return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+
+
+def _quantity(values: list[Value]) -> str:
+    counts = _numbers(values, units.PLAIN)
+    is_one = (
+        counts is not None and len(counts) == 1 and counts[0] == int(counts[0]) and 1 <= counts[0] <= MOST
+    )
+    return "" if is_one else f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`"
 
 
 def _stroke(values: list[Value]) -> str:
@@ -255,6 +273,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "orientation": _orientation,
     "thickness": _thickness,
     "elevation": _elevation,
+    "quantity": _quantity,
     "layer": _text("layer"),
     "material": _text("material"),
     **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},

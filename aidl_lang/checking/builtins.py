@@ -184,8 +184,20 @@ MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 
 ATTRIBUTES = (
-    *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
-    *("stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip"),
+    *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity"),
+    *(
+        "detached",
+        "note",
+        "stroke",
+        "dash",
+        "opacity",
+        "shade",
+        "edges",
+        "halo",
+        "behind",
+        "in_front",
+        "clip",
+    ),
     *("title", "author", "number", "revision", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""

@@ -16,12 +16,19 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
+    from aidl_lang.export.cut_list import CutList, Item
     from aidl_lang.export.marks import Picture
+    from aidl_lang.export.profiles import Profile
 
 DXF = ("arcs", "r12", "splines")
 """Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
+"""What explains a drawing on top of it."""
+ON_SHEETS = ("names", "numbers", "list")
+"""What is shown of parts laid on sheets: on them, and on pages of its own."""
 
+_OF_CUTTERS = ("--sheet", "--kerf", "--profile")
+"""Options of formats that a cutter follows."""
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -30,7 +37,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 class Options:
     """The options of an export; each format reads those that concern it.
 
-    show       what explains the drawing on top of it, some of `SHOW`
+    show       what explains the drawing on top of it, some of `SHOW`, or of `ON_SHEETS` if there are sheets
     dimension  whether to draw dimensions
     cut        the outlines alone, as hairlines without fills: what a cutter follows
     pixels     larger side of a raster picture
@@ -45,6 +52,7 @@ class Options:
     theme      the look of a picture as a whole, one of `themes.THEMES`
     dxf        the kind of a DXF, one of `DXF`
     tolerance  how far the arcs may be from the curves that they stand for where only arcs are understood, mm
+    profile    what colours, layers and widths tell a cutter, and in which order; `plain` unless said
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -62,21 +70,43 @@ class Options:
     theme: str = "colour"
     dxf: str = "arcs"
     tolerance: float = TOLERANCE
+    profile: Profile | None = None
 
     @property
     def for_cutter(self) -> bool:
         """True if only outlines are wanted."""
-        return self.cut or self.sheet is not None or self.kerf > 0 or self.theme == "cutter"
+        asked = self.cut or self.profile is not None or self.theme == "cutter"
+        return asked or self.sheet is not None or self.kerf > 0
+
+    @property
+    def followed(self) -> Profile | None:
+        """The profile by which a cutter is told what to do; None if the file is for none."""
+        from aidl_lang.export.profiles import PLAIN
+
+        return (self.profile or PLAIN) if self.for_cutter else None
 
 
 @record()
 class Job:
-    """The solved model, the drawing and the options that a writer works from."""
+    """The solved model, the drawing and the options that a writer works from.
+
+    whole  the job that this one was made from, with all that is drawn as it is drawn
+    is_flat  whether bodies lie on the ground wherever they stand in the model
+    """
 
     model: SolvedModel
     drawing: Drawing
     diagnostics: tuple[Diagnostic, ...] = ()
     options: Options = field(default_factory=Options)
+    whole: Job | None = None
+    is_flat: bool = False
+
+    @cached_property
+    def cut_list(self) -> CutList:
+        """The parts of the whole drawing, those that are equal together, each with its number."""
+        from aidl_lang.export.cut_list import cut_list
+
+        return cut_list(self) if self.whole is None else self.whole.cut_list
 
 
 @record()
@@ -131,14 +161,49 @@ class Exporter:
         unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
         if job.options.sheet is not None or job.options.kerf:
             jobs, notes = self._prepared
-        made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
+        if wanted.write_all is not None:
+            made = wanted.write_all(jobs)
+        else:
+            made = _files([*map(wanted.write, jobs), *_list_pages(jobs, suffix)])
+            notes = notes + _unlisted(job, suffix)
         return replace(made, notes=(*notes, *unsaid, *made.notes))
+
+    def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
+        """Writes each part that differs from the others by itself, flat and with its lower left corner at the
+        origin. Raises as `export` does.
+        """
+        from aidl_lang.export.single_parts import jobs_of_parts
+
+        if suffix in (".json", ".csv"):
+            raise ExportError(
+                "E0926",
+                f"`{suffix}` tells of the whole, and is not written part by part",
+                "give it a name without `{part}`",
+            )
+        _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
+        job, notes = self._grown if self._job.options.kerf else (self._job, [])
+        made = []
+        for item, alone in jobs_of_parts(job):
+            written = Exporter(alone).write(suffix)
+            made.append((item, replace(written, notes=(*notes, *written.notes))))
+        return made
+
+    @cached_property
+    def _grown(self) -> tuple[Job, list[Diagnostic]]:
+        """The job with its outlines widened by the cut."""
+        from aidl_lang.export.sheets import grown
+
+        return grown(self._job, self._progress)
 
     @cached_property
     def _prepared(self) -> tuple[list[Job], list[Diagnostic]]:
-        from aidl_lang.export.sheets import prepared
+        from aidl_lang.export.sheets import laid_on_sheets
 
-        return prepared(self._job, self._progress)
+        job, notes = self._grown
+        if job.options.sheet is None:
+            return [job], notes
+        jobs, more = laid_on_sheets(job, job.options.sheet, job.options.spacing)
+        return jobs, notes + more
 
 
 def export(job: Job, suffix: str) -> Exported:
@@ -157,27 +222,41 @@ def require(package: str, for_what: str, extra: str) -> None:
         raise ExportError("E0913", message, f"pip install 'aidl-lang[{extra}]'")
 
 
+def require_sheets(options: Options) -> None:
+    """Raises ExportError if something is to be shown of parts on sheets, and there are none."""
+    asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
+    if asked and options.sheet is None:
+        raise ExportError(
+            "E0924",
+            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
+            "lay them on sheets: `--sheet 600x400`",
+            "the list alone is written by `-o cutlist.csv`",
+        )
+
+
 def _check(options: Options, suffix: str, wanted: Format) -> None:
     """Raises ExportError if the options ask a format for what it cannot have."""
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
+    _refuse(suffix, "--profile", options.profile is not None and not wanted.cuts)
     if options.nest is not None and options.sheet is None:
         raise ExportError(
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
         )
+    require_sheets(options)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
     _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
     if options.theme not in ("colour", "cutter") and options.for_cutter:
         raise ExportError(
             "E0924",
             f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own",
-            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         )
     if options.dimension and options.for_cutter and wanted.cuts:
         raise ExportError(
             "E0924",
             "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
-            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         )
 
 
@@ -212,16 +291,14 @@ def _emptiness(job: Job) -> list[Diagnostic]:
 
 
 def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    from aidl_lang.export.unsaid import unsaid_notes
+    from aidl_lang.export.unsaid import followed_notes, unsaid_notes
 
-    return unsaid_notes(job, suffix, cuts=cuts)
+    return unsaid_notes(job, suffix, cuts=cuts) + (followed_notes(job) if cuts else [])
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
-        able = sorted(
-            s for s, f in FORMATS.items() if (f.cuts if option in ("--sheet", "--kerf") else f.tiles)
-        )
+        able = sorted(s for s, f in FORMATS.items() if (f.cuts if option in _OF_CUTTERS else f.tiles))
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
         )
@@ -231,6 +308,29 @@ def _files(parts: Sequence[Exported]) -> Exported:
     """Joins several contents to one file with the others beside it."""
     data, *further = (content for part in parts for content in (part.data, *part.further))
     return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
+
+
+def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
+    """Returns the pages of the cut list that are asked for."""
+    if "list" not in jobs[0].options.show:
+        return []
+    from aidl_lang.export.cut_list_files import pages
+
+    return pages(jobs)
+
+
+def _list_pages(jobs: Sequence[Job], suffix: str) -> list[Exported]:
+    """Returns the pages of the cut list that are asked for, each as a file of its own."""
+    if suffix not in PICTURES:
+        return []
+    return [Exported(PICTURES[suffix](page, jobs[0].options)) for page in _pages_of_list(jobs)]
+
+
+def _unlisted(job: Job, suffix: str) -> list[Diagnostic]:
+    if "list" not in job.options.show or suffix in PICTURES:
+        return []
+    hint = "write it beside: `-o cutlist.csv`, or `-o cutlist.pdf`"
+    return [Diagnostic("N0755", f"the cut list is drawn in pictures, and `{suffix}` is none", hints=(hint,))]
 
 
 def _svg(job: Job) -> Exported:
@@ -259,7 +359,7 @@ def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
     from aidl_lang.export.pdf import to_pdf
     from aidl_lang.export.picture import pages
 
-    drawn = [page for job in jobs for page in pages(job)]
+    drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
     root = jobs[0].model.root
     return Exported(to_pdf(drawn, (root.doc or root.path).partition("\n")[0]), notes=character_notes(drawn))
 
@@ -274,6 +374,16 @@ def _dxf(job: Job) -> Exported:
     from aidl_lang.export.dxf import to_dxf
 
     return to_dxf(job)
+
+
+def _csv(job: Job) -> Exported:
+    return _csv_of_all([job])
+
+
+def _csv_of_all(jobs: Sequence[Job]) -> Exported:
+    from aidl_lang.export.cut_list_files import to_csv
+
+    return to_csv(jobs)
 
 
 def _step(job: Job) -> Exported:
@@ -299,6 +409,7 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pdf, "PDF, true to scale", cuts=True, tiles=True, write_all=_pdf_of_all),
     ".png": Format(_png, "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_dxf, "DXF for cutters", cuts=True),
+    ".csv": Format(_csv, cuts=True, write_all=_csv_of_all),
     ".step": Format(_step, "STEP solid", "OCP", "step"),
     ".stp": Format(_step, needs="OCP", extra="step"),
     ".stl": Format(_stl, "STL mesh"),

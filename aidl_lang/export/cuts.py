@@ -1,29 +1,34 @@
-"""The outlines that a machine follows, in order: drawings on parts first, then the outlines of parts.
+"""The outlines that a machine follows, with what it does along each, in order.
 
-Outlines come from the inside out: holes before the outline around them, and a part that lies in the hole of
-another before that hole, so that nothing is cut in a piece that has come loose.
+What is engraved and scored comes before what is cut, the cuts inside parts before those around them, as the
+profile says. The outline around an opening in which another part lies is cut late, after that part, so that
+nothing is cut in a piece that has come loose.
 """
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from itertools import groupby
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from itertools import count, groupby
 
 import numpy as np
 
 from aidl_lang.common.numbers import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.chains import chains
+from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
+from aidl_lang.geometry.nearness import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, union_bounds
-from aidl_lang.geometry.region import Loop
+from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
+from aidl_lang.geometry.tessellate import loop_points
 
 HOLE, OPEN = "hole", "open"
 
@@ -35,6 +40,8 @@ class Outline:
     path   of the body, or of the structure that draws the lines
     layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
     style  of its lines; what it says of a fill is said of none
+    operation  what a machine does along it, one of `OPERATIONS`; none for `open` ones
+    area   the number of the area that it bounds together with others, where that is engraved
     hole   path of the hole that an inner outline comes from; a ring has its inner one without any
     clockwise  whether a whole curve, which has no direction of its own, is run through clockwise
     """
@@ -44,27 +51,73 @@ class Outline:
     path: str
     layer: str
     style: Style
+    operation: str = ""
+    area: int = 0
     hole: str | None = None
     clockwise: bool = False
 
 
-def outlines(model: SolvedModel, drawing: Drawing) -> list[Outline]:
+def outlines(model: SolvedModel, drawing: Drawing, profile: Profile = PLAIN) -> list[Outline]:
     """Returns all outlines of a drawing in the order of drawing and cutting."""
-    return [*_lines(drawing), *_cuts(model, drawing)]
+    rank = {operation: place for place, operation in enumerate(("", *profile.order))}
+    return sorted(
+        [*_lines(drawing, profile), *_cuts(model, drawing, profile)], key=lambda o: rank[o.operation]
+    )
 
 
-def _lines(drawing: Drawing) -> Iterator[Outline]:
+def unfilled(drawing: Drawing, profile: Profile) -> list[str]:
+    """Returns the paths of drawings that are to be engraved as areas and have lines that enclose none."""
+    return list(
+        dict.fromkeys(
+            outline.path
+            for outline in _lines(drawing, profile)
+            if outline.operation == ENGRAVE and profile.operation(outline.style.layer, ENGRAVE) == FILL
+        )
+    )
+
+
+def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
     tolerance = RELATIVE_TOLERANCE * drawing.size
-    for (path, role, style), strokes in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
+    areas = count(1)
+    for (path, role, style), group in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
         layer = role if role == OPEN else style.layer or role
+        made = partial(Outline, path=path, layer=layer, style=style)
         if role == HOLE:
+            operation = profile.operation(style.layer, INNER)
             for loop in drawing.regions[path].loops:
-                yield Outline(loop.pieces, True, path, layer, style, clockwise=loop.reversed)
+                yield made(loop.pieces, True, operation=operation, clockwise=loop.reversed)
             continue
-        for pieces in chains([piece for s in strokes for piece in s.pieces], tolerance):
-            start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
-            closed = math.dist(start, end) <= tolerance < _extent(pieces)
-            yield Outline(pieces, closed, path, layer, style)
+        operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
+        followed: list[Piece] = []
+        for stroke in group:
+            loops = _bounding(stroke, operation, profile, tolerance)
+            area = next(areas) if loops else 0
+            for loop in loops:
+                yield made(loop.pieces, True, operation=FILL, area=area, clockwise=loop.reversed)
+            followed += () if loops else stroke.pieces
+        for pieces in chains(followed, tolerance):
+            closed = _is_closed(pieces, tolerance)
+            if operation != FILL:
+                yield made(pieces, closed, operation=operation)
+            elif closed:
+                yield made(pieces, True, operation=FILL, area=next(areas))
+            else:
+                yield made(pieces, False, operation=ENGRAVE)
+
+
+def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float) -> list[Loop]:
+    """Returns the outlines of the area that a stroke is engraved as; none if its lines are followed."""
+    if stroke.faces and (operation == FILL or (operation == ENGRAVE and profile.letters == FILL)):
+        return [loop for face in stroke.faces for loop in face.loops]
+    if operation != FILL:
+        return []
+    found = chains(stroke.pieces, tolerance)
+    return [Loop(pieces) for pieces in found] if all(_is_closed(c, tolerance) for c in found) else []
+
+
+def _is_closed(pieces: Sequence[Piece], tolerance: float) -> bool:
+    start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
+    return math.dist(start, end) <= tolerance < _extent(pieces)
 
 
 def _extent(pieces: Iterable[Piece]) -> float:
@@ -72,20 +125,57 @@ def _extent(pieces: Iterable[Piece]) -> float:
     return max(right - left, top - bottom)
 
 
-def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
+def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Outline]:
+    """Yields the outlines of parts by rising area, those in a part before the one around it."""
     kinds = {s.path: s.kind for s in model.root.walk()}
     edges = _HoleEdges(model, drawing)
     faces = [(face, body) for body in drawing.bodies for face in body.region.faces]
     faces.sort(key=lambda pair: significant(loop_area(pair[0].outer)))
-    for face, body in faces:
-        for loop in face.holes:
+    late = _late(faces)
+    for number, (face, body) in enumerate(faces):
+        for k, loop in enumerate(face.holes):
             hole = edges.owner(loop, body.path)
             style = drawing.styles[hole or body.path].with_lines_of(body.style)
+            operation = profile.operation(style.layer, OUTER if (number, k) in late else INNER)
             yield Outline(
-                loop.pieces, True, body.path, style.layer or HOLE, style, hole, clockwise=loop.reversed
+                loop.pieces,
+                True,
+                body.path,
+                style.layer or HOLE,
+                style,
+                operation,
+                hole=hole,
+                clockwise=loop.reversed,
             )
         layer = body.style.layer or kinds[body.path]
-        yield Outline(face.outer.pieces, True, body.path, layer, body.style)
+        operation = profile.operation(body.style.layer, OUTER)
+        yield Outline(face.outer.pieces, True, body.path, layer, body.style, operation)
+
+
+def _late(faces: Sequence[tuple[Face, Body]]) -> set[tuple[int, int]]:
+    """Returns the openings, as numbers of a face and of a hole in it, in which other faces lie."""
+    if len(faces) < 2:
+        return set()
+    openings = [(n, k, loop) for n, (face, _) in enumerate(faces) for k, loop in enumerate(face.holes)]
+    boxes = [union_bounds([*map(bounds, face.outer.pieces)]) for face, _ in faces]
+    around = [union_bounds([*map(bounds, loop.pieces)]) for *_, loop in openings]
+    found: set[tuple[int, int]] = set()
+    for face, number in near_pairs([*boxes, *around], 0.0):
+        if not face < len(faces) <= number:
+            continue
+        n, k, loop = openings[number - len(faces)]
+        box, room = boxes[face], around[number - len(faces)]
+        fits = room[0] <= box[0] and room[1] <= box[1] and box[2] <= room[2] and box[3] <= room[3]
+        if n != face and (n, k) not in found and fits and _holds(loop, faces[face][0]):
+            found.add((n, k))
+    return found
+
+
+def _holds(loop: Loop, face: Face) -> bool:
+    """Tells whether most of an outline lies in a loop, on which it may end."""
+    spots = np.array([point(piece, t) for piece in face.outer.pieces for t in (0.25, 0.5, 0.75)])
+    polygon = loop_points(loop, 0.01 * _extent(loop.pieces))
+    return bool(inside([polygon], spots).mean() > 0.5)
 
 
 class _HoleEdges:

@@ -16,15 +16,17 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.colors import rgb
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
-from aidl_lang.export.dxf_layers import Layers
+from aidl_lang.export.dxf_layers import Layers, color_attributes
 from aidl_lang.export.dxf_lines import Lines
+from aidl_lang.export.labels import labels
+from aidl_lang.export.marks import Text
+from aidl_lang.export.profiles import PLAIN, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -38,6 +40,10 @@ THINNEST = 1e-6
 """Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
 DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
+LABELS, GREY = "labels", "#808080"
+"""The layer for names and numbers of parts."""
+CAPITAL = 0.73
+"""Height of capitals, by which DXF has the size of a text, relative to the size of the font."""
 TEXT_BYTES, ESCAPED = 255, 7
 """Bytes of a text in XDATA, and of a character that the file's encoding lacks."""
 PATTERN_GOES_ON = 128
@@ -63,7 +69,10 @@ def to_dxf(job: Job) -> Exported:
 
 
 def _written(document: Any, job: Job, is_old: bool) -> Exported:
-    found = outlines(job.model, job.drawing)
+    profile = job.options.followed
+    found = outlines(job.model, job.drawing, profile or PLAIN)
+    if profile is not None:
+        found = [outline for outline in found if outline.operation]
     for application in (BODY, HOLE):
         document.appids.new(application)
     if not is_old:
@@ -73,15 +82,17 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     layers, lines = Layers(document, job.model, is_old), Lines(document, job.drawing.size, is_old)
     for outline in found:
         checkpoint()
-        attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
-        if not job.options.for_cutter:
-            attributes |= lines.attributes(outline.style)
-        if outline.style.color is not None:
-            attributes |= _color(rgb(outline.style.color), is_old)
+        if profile is not None:
+            attributes = _followed(outline, profile, layers)
+        else:
+            attributes = {"layer": layers.name(outline.layer)} | lines.attributes(outline.style)
+            if outline.style.color is not None:
+                attributes |= color_attributes(outline.style.color, is_old)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
+    _add_labels(document, labels(job), layers)
     if found:
         _set_view(document, job.drawing)
     _order_classes(document)
@@ -91,14 +102,25 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     return Exported(data, notes=tuple(layers.notes))
 
 
-def _color(color: tuple[int, int, int], is_old: bool) -> dict[str, int]:
-    """Returns the attribute for a colour: R12 knows those of the AutoCAD Color Index alone."""
-    if not is_old:
-        red, green, blue = color
-        return {"true_color": red << 16 | green << 8 | blue}
-    from ezdxf.colors import aci2rgb
+def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, Any]:
+    """Returns the layer of an outline for a cutter, and its colour where that is not the layer's."""
+    look, color = profile.look(outline.style.layer, outline.operation), profile.color(outline)
+    name = layers.name(look.layer or outline.layer, look)
+    own = {} if layers.has_color(name, color) else color_attributes(color, layers.is_old)
+    return {"layer": name} | own
 
-    return {"color": min(range(1, 256), key=lambda index: math.dist(aci2rgb(index), color))}
+
+def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
+    """Adds texts on a layer of their own, which is not plotted: a machine leaves it out."""
+    from ezdxf.enums import TextEntityAlignment
+
+    for text in texts:
+        layer = layers.name(LABELS, Look(GREY))
+        document.layers.get(layer).dxf.plot = 0
+        made = document.modelspace().add_text(
+            text.text, height=CAPITAL * text.size, dxfattribs={"layer": layer}
+        )
+        made.set_placement(text.at, align=TextEntityAlignment.CENTER)
 
 
 def _order_classes(document: Any) -> None:

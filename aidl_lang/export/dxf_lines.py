@@ -8,10 +8,15 @@ from aidl_lang.common.numbers import fixed
 from aidl_lang.geometry.styles import Style
 
 WEIGHTS = (
-    *(5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211),
+    *(0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211),
 )
 """Hundredths of a millimetre: DXF takes no others."""
 DASHED = "DASHED"
+
+
+def weight(width: float) -> int:
+    """Returns the weight nearest to a width, mm."""
+    return min(WEIGHTS, key=lambda known: abs(known - 100 * width))
 
 
 class Lines:
@@ -28,8 +33,7 @@ class Lines:
         """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
         found: dict[str, Any] = {}
         if style.width is not None and not self._is_old:
-            wanted = 100 * style.width
-            found["lineweight"] = min(WEIGHTS, key=lambda weight: abs(weight - wanted))
+            found["lineweight"] = weight(style.width)
         if (dashes := style.dashes(self._size)) is not None:
             found["linetype"] = self._linetype(dashes, is_named=bool(style.dash))
         return found

@@ -12,7 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.export import Job, palette
-from aidl_lang.export.marks import CHARACTER, LETTERS, Area, Curves, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.labels import labels
+from aidl_lang.export.marks import LETTERS, Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.overlay import explain
 from aidl_lang.export.shading import gradient_of
 from aidl_lang.export.themes import themed
@@ -30,10 +31,6 @@ MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 _SEAM_OPACITY = 0.55
-HAIRLINE = 0.1
-"""Width in mm of the lines that a cutter follows."""
-NAME_SIZE = 5.0
-"""Font size of the names of parts on sheets, mm."""
 
 
 def picture(job: Job) -> Picture:
@@ -51,8 +48,7 @@ def _whole(job: Job) -> Picture:
 
         seen, dimensions = dimensioned(job.model, job.drawing, box)
     overlay = explain(job.model, job.drawing, options.show, seen, size)
-    marks = _cut_marks(job.drawing) if options.for_cutter else _marks(job.model.root, job.drawing, size)
-    groups = [*_groups(job.model, job.drawing, marks)]
+    groups = [*_drawn(job, size)]
     groups += dimensions
     groups += [
         Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
@@ -62,6 +58,15 @@ def _whole(job: Job) -> Picture:
         0.0 if options.tile else MARGIN * size, 0.0 if options.for_cutter else _overhang(job.drawing)
     )
     return Picture(_grown(overlay.box, margin), tuple(groups))
+
+
+def _drawn(job: Job, size: float) -> Iterator[Group]:
+    """Yields the groups of the drawing: for a cutter what it follows, else one for each structure."""
+    if job.options.followed is not None:
+        from aidl_lang.export.followed import followed_groups
+
+        return followed_groups(job.model, job.drawing, job.options.followed)
+    return _groups(job.model, job.drawing, _marks(job.model.root, job.drawing, size))
 
 
 def _overhang(drawing: Drawing) -> float:
@@ -82,22 +87,10 @@ def pages(job: Job) -> list[Picture]:
 
 def _sheet(job: Job) -> Picture:
     """Returns the picture of a sheet with parts laid on it."""
-    marks = _cut_marks(job.drawing)
-    groups = [group for group in _groups(job.model, job.drawing, marks) if group.marks]
-    if "names" in job.options.show:
-        names = tuple(_part_names(job.drawing, job.model.root.path))
-        groups.append(Group("show-names", names, {"class": "overlay"}))
+    groups = [*_drawn(job, 1.0)]
+    if texts := tuple(labels(job)):
+        groups.append(Group("show-labels", texts, {"class": "overlay"}))
     return Picture(job.drawing.box, tuple(groups))
-
-
-def _part_names(drawing: Drawing, root: str) -> Iterator[Text]:
-    """Yields the name of each part as large as it allows, up to what is read easily."""
-    for body in drawing.bodies:
-        name = body.path.removeprefix(f"{root}.")
-        left, bottom, right, top = body.box
-        size = min(NAME_SIZE, 0.9 * (right - left) / (CHARACTER * len(name)), 0.9 * (top - bottom))
-        at = (left + right) / 2, (bottom + top) / 2 - 0.3 * size
-        yield Text(at, name, size, palette.NAME, "middle", halo=False)
 
 
 def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:
@@ -162,17 +155,6 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     from aidl_lang.export.halos import Halos
 
     return Halos(drawing, root)
-
-
-def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
-    """Yields outlines to cut and drawings to engrave. Curves that bound nothing have had their warning."""
-    for body in drawing.bodies:
-        for face in body.region.faces:
-            yield body.path, Area(face, None, Ink(palette.CUT, HAIRLINE), "cut")
-    for stroke in drawing.strokes:
-        if stroke.role == "drawing":
-            ink = Ink(stroke.style.color or palette.ENGRAVE, HAIRLINE)
-            yield stroke.path, Curves(stroke.pieces, ink, "engrave")
 
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed, size_text
 from aidl_lang.common.prose import named
-from aidl_lang.export import ExportError, Job, Progress, require
+from aidl_lang.export import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.unsaid import twice_compensated
 from aidl_lang.geometry.arcs import as_arcs, has_slivers
 from aidl_lang.geometry.drawing import Drawing, Stroke
@@ -16,34 +16,30 @@ from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nesting import NestingError
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset
+from aidl_lang.geometry.parts import Size
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sheets import Size, laid_out
+from aidl_lang.geometry.sheets import laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
 MOST_PARTS = 5000
 """More parts are a mistake, and would take minutes to pack."""
 
 
-def prepared(job: Job, progress: Progress) -> tuple[list[Job], list[Diagnostic]]:
-    """Returns the job for a cutter, one for each sheet, with notes; raises ExportError if the parts cannot be
-    laid out. `progress` hears how many outlines are widened.
-    """
-    notes = []
-    if job.options.kerf:
-        notes += twice_compensated(job.model.root, job.options.kerf)
-        job = replace(job, drawing=_widened(job, job.options.kerf / 2, progress))
-    if job.options.sheet is None:
-        return [job], notes
-    jobs, more = _on_sheets(job, job.options.sheet, job.options.spacing)
-    return jobs, notes + more
+def grown(job: Job, progress: Progress) -> tuple[Job, list[Diagnostic]]:
+    """Returns the job with its outlines widened by half the cut, with notes. `progress` hears of it."""
+    if not job.options.kerf:
+        return job, []
+    notes = twice_compensated(job.model.root, job.options.kerf)
+    return replace(job, drawing=_widened(job, job.options.kerf / 2, progress), whole=job), notes
 
 
-def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
-    if unfit := sorted(job.options.show - {"names"}):
+def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
+    """Returns a job for each sheet, with notes; raises ExportError if the parts cannot be laid out."""
+    if unfit := sorted(job.options.show.difference(ON_SHEETS)):
         raise ExportError(
             "E0924",
             f"`--show {','.join(unfit)}` explains the assembled drawing and has no place on cut sheets",
-            "`--show names` puts the names of the parts on them",
+            "`--show names,numbers` writes the names and numbers of the parts on them",
         )
     if min(sheet) <= 2 * spacing:
         raise ExportError(
@@ -51,20 +47,20 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
             f"a sheet of {size_text(sheet)} has no room within a spacing of {fixed(spacing)} mm",
             "give a larger `--sheet` or a smaller `--spacing`",
         )
-    bodies = job.drawing.bodies
-    if not bodies:
+    count = sum(body.style.quantity for body in job.drawing.bodies)
+    if not count:
         raise ExportError(
             "E0924",
             "there is no part to lay on a sheet",
             "only a `solid` is cut; a `drawing` is engraved on it",
         )
-    if len(bodies) > MOST_PARTS:
-        message = f"{len(bodies)} parts are more than the {MOST_PARTS} that are laid on sheets"
+    if count > MOST_PARTS:
+        message = f"{count} parts are more than the {MOST_PARTS} that are laid on sheets"
         raise ExportError("E0924", message, "draw them in several programs")
     if job.options.nest is not None:
         require("spyrrow", "--nest", "nest")
     try:
-        layout = laid_out(job.drawing, sheet, spacing, job.options.nest)
+        layout = laid_out(job.model.root, job.drawing, sheet, spacing, job.options.nest)
     except NestingError as reason:
         raise ExportError(
             "E0924",
@@ -74,7 +70,8 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
     if layout.oversize:
         raise _oversize(layout.oversize, sheet, spacing)
     notes = [_stray_note(job.model, layout.strays)] if layout.strays else []
-    return [replace(job, drawing=drawing) for drawing in layout.sheets], notes
+    whole = job.whole or job
+    return [replace(job, drawing=drawing, whole=whole) for drawing in layout.sheets], notes
 
 
 def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) -> ExportError:

@@ -10,7 +10,7 @@ from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.evaluate import LARGEST
-from aidl_lang.geometry.placement import Plane, planes, thickness_of
+from aidl_lang.geometry.placement import GROUND, Plane, planes, thickness_of
 
 THINNEST = 1e-6
 """mm. A smaller thickness is lost among the tolerances of programs that read the file."""
@@ -30,7 +30,7 @@ class PlacedBody:
 
 def placed_bodies(job: Job) -> list[PlacedBody]:
     """Returns the bodies in order of drawing. Raises ExportError for one that cannot be made a solid."""
-    stand = planes(job.model.root)
+    stand = _planes(job)
     found = []
     for body in job.drawing.bodies:
         thickness = thickness_of(body, job.options.thickness)
@@ -42,10 +42,16 @@ def placed_bodies(job: Job) -> list[PlacedBody]:
 
 def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
     """Returns the strokes with the planes they lie in."""
-    stand = planes(job.model.root)
+    stand = _planes(job)
     for stroke in job.drawing.strokes:
         _require_place(stroke.path, stand[stroke.path])
     return [(stroke, stand[stroke.path]) for stroke in job.drawing.strokes]
+
+
+def _planes(job: Job) -> dict[str, Plane]:
+    if job.is_flat:
+        return dict.fromkeys((s.path for s in job.model.root.walk()), GROUND)
+    return planes(job.model.root)
 
 
 def thick_bodies(job: Job) -> tuple[list[PlacedBody], tuple[Diagnostic, ...]]:

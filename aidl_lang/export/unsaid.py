@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed
-from aidl_lang.common.prose import listed, ticked
+from aidl_lang.common.prose import listed, named, ticked
 from aidl_lang.export import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_unlined
@@ -51,6 +51,50 @@ def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
             hints=("pictures (.svg, .png, .pdf) are drawn so",),
         )
     ]
+
+
+def followed_notes(job: Job) -> list[Diagnostic]:
+    """Returns notes on layers that the profile for a cutter does not know, and on areas to be engraved that
+    are none.
+    """
+    from aidl_lang.export.cuts import unfilled
+    from aidl_lang.export.profiles import PLAIN
+
+    asked, profile = job.options.profile, job.options.followed
+    if profile is None:
+        return []
+    notes = []
+    unknown = {
+        str(s.attributes["layer"][0]): s.span
+        for s in reversed(list(job.model.root.walk()))
+        if "layer" in s.attributes and not profile.knows(str(s.attributes["layer"][0]))
+    }
+    if unknown and asked not in (None, PLAIN):
+        names = list(unknown)[::-1]
+        notes.append(
+            Diagnostic(
+                "N0754",
+                f"the profile `{profile.name}` does not say what is done on the {_layers(names)}: "
+                "parts are cut there and drawings engraved as elsewhere",
+                unknown[names[0]],
+                hints=(f'say it in a file for `--profile`: `[layers]` with `"{names[0]}" = "score"`',),
+            )
+        )
+    for path in unfilled(job.drawing, profile):
+        structure = job.model.root.find(path)
+        notes.append(
+            Diagnostic(
+                "W0757",
+                f"lines of `{path}` enclose nothing, so there they are engraved as lines and not as areas",
+                None if structure is None else structure.span,
+                hints=("close them: end each where the next one begins", "or put them on a layer for lines"),
+            )
+        )
+    return notes
+
+
+def _layers(names: Sequence[str]) -> str:
+    return f"{'layer' if len(names) == 1 else 'layers'} {named(names)}"
 
 
 def _states(holder: SolvedStructure | SolvedGeometry, name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Stroke
-from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds
+from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds, reverse
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
 from aidl_lang.geometry.region import Region
@@ -38,10 +38,26 @@ def engraved(
                 break
             inside, rest = divided(rest, body.region)
             if inside:
-                on.setdefault(body.path, []).append(replace(stroke, pieces=inside))
+                on.setdefault(body.path, []).extend(_cut_off(stroke, inside))
         if _length(rest) > NO_LENGTH:
             off.append(replace(stroke, pieces=rest))
     return on, off
+
+
+def _cut_off(stroke: Stroke, inside: tuple[Piece, ...]) -> Iterator[Stroke]:
+    """Yields a stroke as far as it lies on a body: letters whole, with what they enclose, or as lines."""
+    if not stroke.faces or inside == stroke.pieces:
+        yield replace(stroke, pieces=inside)
+        return
+    here = {*inside, *map(reverse, inside)}
+    whole = [f for f in stroke.faces if all(p in here for loop in f.loops for p in loop.pieces)]
+    enclosing = {p for f in whole for loop in f.loops for p in loop.pieces}
+    enclosing |= {*map(reverse, enclosing)}
+    letters = tuple(p for p in inside if p in enclosing)
+    if letters:
+        yield replace(stroke, pieces=letters, faces=tuple(whole))
+    if rest := tuple(p for p in inside if p not in enclosing):
+        yield replace(stroke, pieces=rest, faces=())
 
 
 def owner(bodies: Mapping[str, Body], path: str) -> str | None:

@@ -8,12 +8,14 @@ until its time is over, so that how well it does depends on the machine.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.geometry.tessellate import Polygon
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.tessellate import Polygon, polygon_area
 
 if TYPE_CHECKING:
     from spyrrow import Item
@@ -22,6 +24,8 @@ SEED = 1
 """Of the packer's random numbers: the same program, time and machine give about the same sheets."""
 _SHORTEST = 1
 """Seconds; the packer counts whole ones."""
+_FILLED = 0.7
+"""Share of a sheet that parts take of it, about."""
 _SLACK = 1e-6
 """Millimetres by which sums of places may be off."""
 
@@ -40,23 +44,35 @@ class Nested:
     y: float
 
 
+def turned_box(box: Bounds, quarters: int) -> Bounds:
+    """Returns a box turned by quarters about the origin."""
+    for _ in range(quarters % 4):  # (x, y) becomes (-y, x)
+        box = -box[3], box[0], -box[1], box[2]
+    return box
+
+
 def nested(outlines: Sequence[Polygon], sheet: tuple[float, float], seconds: float) -> list[list[Nested]]:
     """Returns the places of outlines, mm, on each sheet, whose lower left corner is the origin; no sheets if
     an outline is too large for one. Needs the package spyrrow. Raises NestingError.
     """
     from spyrrow import Item
 
-    turns = [_turns(outline, sheet) for outline in outlines]
+    boxes = [_box(outline) for outline in outlines]
+    turns = [_turns(box, sheet) for box in boxes]
     if not all(turns):
         return []
+    areas = [polygon_area(outline) for outline in outlines]
     rest = list(range(len(outlines)))
     found: list[list[Nested]] = []
+    end = time.monotonic() + seconds
     while rest:
         checkpoint()
-        share = max(_SHORTEST, round(seconds * len(rest) / len(outlines) / 2 ** len(found)))
+        # Each of the sheets that are still to come has its share of the time that is left.
+        to_come = math.ceil(sum(areas[k] for k in rest) / (_FILLED * sheet[0] * sheet[1]))
+        share = max(_SHORTEST, int((end - time.monotonic()) / to_come))
         items = [Item(str(k), [(float(x), float(y)) for x, y in outlines[k]], 1, turns[k]) for k in rest]
         placed = _strip(items, sheet[1], share)
-        here = [place for place in placed if _right(outlines[place.number], place) <= sheet[0] + _SLACK]
+        here = [p for p in placed if turned_box(boxes[p.number], p.quarters)[2] + p.x <= sheet[0] + _SLACK]
         assert here, "the first part of a strip is no wider than the sheet"
         found.append(sorted(here, key=lambda place: place.number))
         on_it = {place.number for place in here}
@@ -81,15 +97,14 @@ def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
     ]
 
 
-def _turns(outline: Polygon, sheet: tuple[float, float]) -> list[float]:
+def _box(outline: Polygon) -> Bounds:
+    (left, bottom), (right, top) = outline.min(axis=0), outline.max(axis=0)
+    return float(left), float(bottom), float(right), float(top)
+
+
+def _turns(box: Bounds, sheet: tuple[float, float]) -> list[float]:
     """Returns the quarter turns in which an outline fits, degrees."""
-    width, height = (float(side) for side in outline.max(axis=0) - outline.min(axis=0))
+    width, height = box[2] - box[0], box[3] - box[1]
     upright = [0.0, 180.0] if width <= sheet[0] and height <= sheet[1] else []
     lying = [90.0, 270.0] if height <= sheet[0] and width <= sheet[1] else []
     return [*upright, *lying]
-
-
-def _right(outline: Polygon, place: Nested) -> float:
-    """Returns how far to the right a placed outline reaches."""
-    cos, sin = (round(f(math.tau / 4 * place.quarters)) for f in (math.cos, math.sin))
-    return float((cos * outline[:, 0] - sin * outline[:, 1]).max()) + place.x

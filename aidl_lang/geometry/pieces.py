@@ -228,16 +228,26 @@ def fallen_piece_notes(
     for mass, solid in zip(masses, solids, strict=True):
         if mass.structure.path in free or mass.section.num_contour() < _RING:
             continue
-        loose: dict[str, int] = {}
+        loose: dict[str, _Loose] = {}
         islands = union([f.section for s in _islands(mass.structure) for f in walk.faces.get(s.path, ())])
         for piece, gap in _enclosed(mass.section.decompose()):
             if not is_nothing(intersection(piece, islands)):
                 continue  # put there on purpose
             if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, held.get(solid.path, ())):
-                for path in _cutting(walk, holes.get(mass.structure.path, ()), gap, piece):
-                    loose[path] = loose.get(path, 0) + 1
-        for path, count in loose.items():
-            yield _fallen(known[path], mass.structure, walk, count)
+                for path, around in _cutting(walk, holes.get(mass.structure.path, ()), gap, piece):
+                    fallen = loose.setdefault(path, _Loose([], {}))
+                    fallen.pieces.append(piece)
+                    fallen.around.update(around)
+        for path, fallen in loose.items():
+            yield _fallen(known[path], mass.structure, walk, fallen)
+
+
+@record()
+class _Loose:
+    """The pieces that a hole cuts free, and the names of its geometries that are around them."""
+
+    pieces: list[Section]
+    around: dict[str, None]
 
 
 def _islands(structure: SolvedStructure) -> Iterator[SolvedStructure]:
@@ -307,17 +317,22 @@ def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
 
 def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
-) -> Iterator[str]:
-    """Yields the paths of the holes that took away the material between a piece and the rest."""
+) -> Iterator[tuple[str, dict[str, None]]]:
+    """Yields the paths of the holes that took away the material between a piece and the rest, and the names
+    of their geometries that did.
+    """
     between = difference(opening, piece)
     for hole in holes:
-        if hole.path in walk.faces:
-            cut = union([f.section for f in walk.faces[hole.path]])
-            if not is_nothing(intersection(cut, between)):
-                yield hole.path
+        near = [f for f in walk.faces.get(hole.path, ()) if boxes_meet(f.section, between)]
+        faces = [f for f in near if not is_nothing(intersection(f.section, between))]
+        if faces:
+            yield hole.path, {g.name: None for f in faces for g in f.geometries}
 
 
-def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: int) -> Diagnostic:
+def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, loose: _Loose) -> Diagnostic:
+    count, largest = len(loose.pieces), max(loose.pieces, key=lambda piece: piece.area())
+    left, bottom, right, top = region_bounds(trace_all(walk.network, [largest])[0].region)
+    size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
     pieces = "a piece falls" if count == 1 else f"{count} pieces fall"
     hints = [f"leave a bridge: a `solid` in `{hole.name}` stays, so one across the gap holds the piece"]
@@ -332,7 +347,8 @@ def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: 
         f"{pieces} out of {solid.kind} `{solid.path}`: hole `{hole.path}` cuts all around "
         f"{'it' if count == 1 else 'them'}",
         hole.span or solid.span,
-        "nothing holds what is inside",
+        f"nothing holds what is inside {named(loose.around)}: "
+        f"{size if count == 1 else f'{count} pieces, the largest {size}'}",
         hints=tuple(hints),
         fix=fix,
     )

@@ -57,6 +57,10 @@ class Plane:
         return np.column_stack((self.u, self.v, normal, self.origin + depth * normal))
 
 
+GROUND = Plane(np.zeros(3), *_AXES["top"])
+"""Where material grows up from what is drawn, which lies flat."""
+
+
 def planes(root: SolvedStructure) -> dict[str, Plane]:
     """Returns the plane of each structure, by its path.
 

@@ -50,13 +50,22 @@ def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Se
     return section
 
 
-def widened(polygon: Polygon, by: float) -> Polygon:
-    """Returns the outer boundary of all within a distance of a polygon, or a little further out."""
+def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
+    """Returns the outer boundary of all within a distance of a polygon, or a little further out: up to twice
+    `rough`, for which corners that matter less are left out, but no further than its box.
+    """
     m = _manifold()
-    reach = by / math.cos(math.pi / _CORNERS)  # of a round corner's chords
-    section: Section = m.CrossSection([polygon], m.FillRule.NonZero).offset(
-        reach, m.JoinType.Round, 2.0, _CORNERS
-    )
+
+    def grown(by: float) -> Any:
+        reach = by / math.cos(math.pi / _CORNERS)  # of a round corner's chords
+        section = m.CrossSection([polygon], m.FillRule.NonZero)
+        return section.offset(reach, m.JoinType.Round, 2.0, _CORNERS)
+
+    section: Section = grown(by)
+    if rough:
+        left, bottom, right, top = section.bounds()
+        box = m.CrossSection.square((right - left, top - bottom)).translate((left, bottom))
+        section = grown(by + rough).simplify(rough) ^ box
     return max(
         (np.asarray(p, np.float64) for p in section.to_polygons()),
         key=lambda p: float(np.ptp(p, axis=0).max()),

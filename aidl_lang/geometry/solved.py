@@ -135,7 +135,7 @@ class SolvedGeometry:
 class SolvedStructure:
     """A solved structure. `box` is None if there is nothing to bound. `orientation` is its own, or that of
     what is around it. `attributes`: name → argument values as written (`color`, `layer`, `thickness`,
-    `elevation`, `material`, `detached`, `note`, `orientation`). `degrees` is None if they could not be
+    `elevation`, `material`, `quantity`, `detached`, `note`, …). `degrees` is None if they could not be
     counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
     that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`. `clip`: the geometry that
     all in it is drawn inside of; `inside` is what it encloses, as far as that lies in those around it, once

@@ -16,8 +16,8 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo")
-"""Looks that a body has as a whole."""
+_OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
+"""Looks and numbers that a body has as a whole."""
 
 
 @record()
@@ -60,6 +60,7 @@ class Style:
     shade    how the fill of a body changes over it
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
+    quantity  how many pieces are made of each part, those around it multiplied
     """
 
     color: str | None = None
@@ -72,6 +73,7 @@ class Style:
     shade: Shade | None = None
     edges: str | None = None
     halo: float | None = None
+    quantity: int = 1
 
     @property
     def is_clear(self) -> bool:
@@ -144,6 +146,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         around.shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
+        around.quantity * int(_number(stated.get("quantity"), 1.0) or 1),
     )
 
 

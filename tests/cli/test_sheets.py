@@ -49,7 +49,8 @@ def paths(file: Path, role: str) -> list[SvgPath]:
 
 
 def sizes(file: Path) -> list[tuple[float, float]]:
-    boxes = [p.bbox() for p in paths(file, "cut")]
+    """Those of the outlines around parts."""
+    boxes = [p.bbox() for p in paths(file, "cut") if p.values["data-operation"] == "outer"]
     return [(round(float(x1 - x0), 3), round(float(y1 - y0), 3)) for x0, y0, x1, y1 in boxes]
 
 
@@ -158,13 +159,13 @@ def test_what_sheets_cannot_show(aidl: Aidl, box: Path) -> None:
     )
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", *sheet, "--show", "names,dof,points")) == [
         "error[E0924]: `--show dof,points` explains the assembled drawing and has no place on cut sheets",
-        "  = hint: `--show names` puts the names of the parts on them",
+        "  = hint: `--show names,numbers` writes the names and numbers of the parts on them",
     ]
     for cutting in (sheet, ("--cut",), ("--kerf", "0.1")):
         assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--dimension", *cutting)) == [
             "error[E0924]: `--dimension` explains the assembled drawing and has no place among what a cutter "
             "follows",
-            "  = hint: write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+            "  = hint: write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
         ]
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", *sheet, "--spacing", "105")) == [
         "error[E0924]: a sheet of 210 × 297 mm has no room within a spacing of 105 mm",

@@ -191,7 +191,7 @@ def test_pixels_of_a_solid_without_outline() -> None:
 
 def test_contours_are_cut_without_an_outline_too() -> None:
     for options in ({"cut": True}, {"theme": "cutter"}):
-        assert 'stroke-width="0.1"' in group(written(".svg", BALL, **options).data.decode(), "a.shine")
+        assert 'stroke-width="0.1"' in group(written(".svg", BALL, **options).data.decode(), "a.shine:outer")
     made = written(".dxf", BALL)
     entities = list(ezdxf.read(io.StringIO(made.data.decode())).modelspace())
     assert sorted(e.dxftype() for e in entities) == ["CIRCLE", "CIRCLE", "LINE"]
@@ -363,7 +363,7 @@ def test_letters_take_the_lines_of_a_theme() -> None:
 
 
 def test_a_cutter_gets_the_outlines_of_letters() -> None:
-    svg = group(written(".svg", LETTERS, cut=True).data.decode(), "a.marks")
+    svg = group(written(".svg", LETTERS, cut=True).data.decode(), "a.marks:engrave")
     assert set(re.findall('fill="(.*?)"', svg)) == {"none"}
     made = ezdxf.read(io.StringIO(written(".dxf", LETTERS).data.decode()))
     entities = [e for e in made.modelspace() if e.dxf.layer == "drawing"]

@@ -11,19 +11,31 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
+from aidl_lang.geometry import sheets
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece
 from aidl_lang.geometry.drawing import Body, Drawing, draw
 from aidl_lang.geometry.evaluate import ends, point
 from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.sheets import Layout, laid_out
+from aidl_lang.geometry.sheets import Layout
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.tessellate import face_polygons
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 
+_ROOTS: dict[int, tuple[Drawing, SolvedStructure]] = {}
+
 
 def drawing_of(*members: SolvedStructure) -> Drawing:
-    return draw(model(structure("assembly", "part", *members)))[0]
+    solved = model(structure("assembly", "part", *members))
+    drawing = draw(solved)[0]
+    _ROOTS[id(drawing)] = drawing, solved.root
+    return drawing
+
+
+def laid_out(
+    drawing: Drawing, sheet: tuple[float, float], spacing: float, nest: float | None = None
+) -> Layout:
+    return sheets.laid_out(_ROOTS[id(drawing)][1], drawing, sheet, spacing, nest)
 
 
 def shape(body: Body) -> Polygon:

@@ -168,7 +168,7 @@ def _table_of_holes(view: View) -> Table:
 
 def _list_of_parts(content: Content) -> Table:
     rows = tuple(
-        (str(item.number), item.name, str(len(item.bodies)), item.style.material or "", item.size)
+        (str(item.number), item.name, str(item.count), item.style.material or "", item.size)
         for item in content.items
     )
     return Table("parts", ("Item", "Name", "Qty", "Material", "Size"), rows, frozenset({0, 2}))
@@ -183,8 +183,8 @@ def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) ->
     title = said("title", subject) or _named(subject.doc, subject.name)
     if subject is not root:
         title = f"{said('title') or _plain(root.name)}: {title}"
-        if content.count > 1:
-            title = f"{title} ({content.count}×)"
+    if content.count > 1:
+        title = f"{title} ({content.count}×)"
     thickness = content.style.thickness
     return Title(
         title,

@@ -16,9 +16,9 @@ from aidl_lang.geometry.dimensions import dimensions, overall
 from aidl_lang.geometry.dimensions.completing import completed
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.engraving import engraved
-from aidl_lang.geometry.evaluate import Bounds, bounds
-from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.parts import gathered, shape_of
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import Style
 
@@ -68,6 +68,11 @@ class Item:
         return self.bodies[0].style
 
     @property
+    def count(self) -> int:
+        """How many pieces are made of it."""
+        return sum(body.style.quantity for body in self.bodies)
+
+    @property
     def size(self) -> str:
         left, bottom, right, top = self.bodies[0].box
         sides = [right - left, top - bottom]
@@ -93,7 +98,7 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
     root, styles = model.root, drawing.styles
     if len(drawing.bodies) < 2:
         style = drawing.bodies[0].style if drawing.bodies else styles[root.path]
-        return [Content(root, style, (_view(model, drawing),))]
+        return [Content(root, style, (_view(model, drawing),), count=style.quantity)]
     items = _items(drawing.bodies)
     parts = []
     on, _ = engraved(drawing.bodies, drawing.strokes)
@@ -102,7 +107,7 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
         alone = _only(drawing, [body], on.get(body.path, ()))
         subject = root.find(body.path) or root
         own = _of_body(model, alone, [b.path for b in drawing.bodies if b is not body])
-        parts.append(Content(subject, body.style, (_view(own, alone),), count=len(item.bodies)))
+        parts.append(Content(subject, body.style, (_view(own, alone),), count=item.count))
     shown = {d.group for content in parts for view in content.views for g in view.wanted for d in g}
     between = [size for size in model.sizes if size.origin == "hand" and size.group not in shown]
     return [Content(root, styles[root.path], tuple(_overview(model, drawing, items, between)), items), *parts]
@@ -152,27 +157,10 @@ def _overview(
 
 def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
     """Returns the bodies with equal ones together, in order of writing."""
-    alike: dict[object, list[Body]] = {}
-    for body in bodies:
-        alike.setdefault(_shape(body), []).append(body)
     return tuple(
-        Item(number, tuple(group), _stem(group[0].path)) for number, group in enumerate(alike.values(), 1)
+        Item(number, tuple(group), _stem(group[0].path))
+        for number, group in enumerate(gathered(bodies, shape_of), 1)
     )
-
-
-def _shape(body: Body) -> object:
-    """Returns a key that bodies share which are moved copies of each other, and of one stock."""
-    left, bottom, right, top = region_bounds(body.region)
-    size = max(right - left, top - bottom)
-    slack = _ALIKE * size
-    places = sorted(
-        tuple(round(v / slack) for v in _relative(bounds(p), left, bottom)) for p in body.region.pieces
-    )
-    return body.style.material, body.style.thickness, round(size, 6), tuple(places)
-
-
-def _relative(box: Bounds, left: float, bottom: float) -> Bounds:
-    return box[0] - left, box[1] - bottom, box[2] - left, box[3] - bottom
 
 
 def _stem(path: str) -> str:

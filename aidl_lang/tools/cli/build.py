@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.prose import counted
+from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, exit_code
@@ -17,11 +17,14 @@ from aidl_lang.tools.cli.report import UseError, exit_code
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export import Options
+    from aidl_lang.export.profiles import Profile
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.memory import Memory
 
 
 _DEFAULT_FORMAT = ".svg"
+_MOST_NAMES = 8
+"""Files that are told by name."""
 _PATIENCE = 1.0
 """Seconds after which progress is shown."""
 
@@ -61,7 +64,8 @@ class BuildResult:
         freedom = ""
         if model is not None and model.degrees is not None and self.compiled.ok:
             freedom = f", {counted(model.degrees, 'degree')} of freedom"
-        place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
+        written = first_few(self.written, _MOST_NAMES)
+        place, remark = (written, "") if written else (program, ", nothing written")
         status = self.compiled.status
         if status == "solved" and not self.compiled.ok:
             status = "errors after solving"
@@ -73,7 +77,8 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     names = arguments.output or [_default_output(arguments.file)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
     for target in found:
-        files.require_directory(target.name)
+        if not _is_pattern(target.name):
+            files.require_directory(target.name)
         if target.name != files.STANDARD and Path(target.name).resolve() == Path(arguments.file).resolve():
             raise UseError("E0908", f"`{target.name}` is the program itself and is not overwritten")
     return found
@@ -90,6 +95,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     start = time.perf_counter()
     source = files.read(arguments.file)
     outputs = targets(arguments)
+    _profile(arguments.profile)  # a wrong one is told before any work is done
     disk = files.world(arguments.file)
     world = NotedWorld(disk)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
@@ -101,6 +107,29 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
         written, notes = _write(compiled, outputs, options(arguments, compiled), read)
     return BuildResult(compiled, written, notes, time.perf_counter() - start, read)
+
+
+def _profile(name: str | None) -> Profile | None:
+    """Returns the profile of a name, or the one in a file."""
+    if name is None:
+        return None
+    from aidl_lang.export import ExportError
+    from aidl_lang.export.profiles import PROFILES
+
+    if name in PROFILES:
+        return PROFILES[name]
+    if not (name.endswith(".toml") or Path(name).is_file()):
+        from aidl_lang.common.names import nearest
+
+        near = did_you_mean(nearest(name, PROFILES))
+        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
+        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
+    from aidl_lang.export.profile_files import parsed
+
+    try:
+        return parsed(files.read(name).text, Path(name).name)
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
 
 
 def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
@@ -123,6 +152,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         theme=arguments.theme,
         dxf=arguments.dxf,
         tolerance=arguments.tolerance,
+        profile=_profile(arguments.profile),
     )
 
 
@@ -133,26 +163,52 @@ def _write(
     program read is not overwritten.
     """
     from aidl_lang.export import ExportError
+    from aidl_lang.export.naming import contents
 
+    made: list[tuple[str, bytes]] = []
+    notes: list[Diagnostic] = []
     try:
-        write = compiled.exporting(options, _Progress())
-        made = [(target, write(target.suffix)) for target in outputs]
+        writing = compiled.exporting(options, _Progress())
+        for target in outputs:
+            found, said = contents(writing, target.name, target.suffix)
+            require_one(target.name, len(found))
+            made += found
+            notes += said
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
-    contents = [
-        (name, data)
-        for target, result in made
-        for name, data in zip(
-            target_names(target, len(result.further)), (result.data, *result.further), strict=True
-        )
-    ]
-    for name, _ in contents:
+    _require_apart([name for name, _ in made])
+    for name, _ in made:
         if name != files.STANDARD and Path(name).resolve() in read:
             raise UseError("E0908", f"`{name}` is read by the program and is not overwritten")
-    for name, data in contents:
+    if any(_is_pattern(target.name) for target in outputs):
+        files.make_directories(name for name, _ in made)
+    for name, data in made:
         files.write(name, data)
-    notes = dict.fromkeys(note for _, result in made for note in result.notes)
-    return tuple(name for name, _ in contents), tuple(notes)
+    return tuple(name for name, _ in made), tuple(dict.fromkeys(notes))
+
+
+def _is_pattern(name: str) -> bool:
+    from aidl_lang.export import ExportError
+    from aidl_lang.export.naming import is_pattern
+
+    try:
+        return is_pattern(name)
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+
+
+def _require_apart(names: Sequence[str]) -> None:
+    """Refuses to write two contents into one file."""
+    seen: set[Path] = set()
+    for name in names:
+        place = Path(name).resolve()
+        if name != files.STANDARD and place in seen:
+            raise UseError(
+                "E0927",
+                f"two outputs go to `{name}`, and nothing is written",
+                "give each a name of its own: further sheets, pages and parts have names made of it",
+            )
+        seen.add(place)
 
 
 class _Progress:
@@ -169,13 +225,10 @@ class _Progress:
             print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def target_names(target: Target, further: int) -> list[str]:
-    """Returns the name of the output, and those of further files."""
-    from aidl_lang.export import file_names
-
-    if further and target.name == files.STANDARD:
-        raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
-    return file_names(target.name, further + 1)
+def require_one(name: str, count: int) -> None:
+    """Refuses several files on standard output."""
+    if count > 1 and name == files.STANDARD:
+        raise UseError("E0914", f"{count} files do not fit on standard output", "name a file with -o")
 
 
 def _default_output(program: str) -> str:

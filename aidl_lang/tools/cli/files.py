@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,6 +46,15 @@ def require_directory(name: str) -> None:
     parent = Path(name).parent
     if name != STANDARD and not parent.is_dir():
         raise UseError("E0904", f"`{name}` cannot be written: there is no directory `{parent}`")
+
+
+def make_directories(names: Iterable[str]) -> None:
+    """Makes the directories of files that are missing."""
+    for parent in dict.fromkeys(Path(name).parent for name in names if name != STANDARD):
+        try:
+            parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UseError("E0904", f"`{parent}` cannot be made: {_reason(error)}") from None
 
 
 def write(name: str, data: bytes) -> None:
@@ -110,12 +120,13 @@ def decoded(data: bytes, what: str) -> str:
 
 
 def _neighbours(path: Path) -> list[str]:
-    """Returns programs beside a missing one that may have been meant."""
+    """Returns files of the kind beside a missing one that may have been meant; most are programs."""
     from difflib import get_close_matches
 
     with suppress(OSError):
-        beside = [entry.name for entry in path.parent.glob("*.aidl")]
-        near = get_close_matches(path.name.removesuffix(".aidl") + ".aidl", beside, n=1)
+        kind = path.suffix if path.suffix == ".toml" else ".aidl"
+        beside = [entry.name for entry in path.parent.glob(f"*{kind}")]
+        near = get_close_matches(path.name.removesuffix(kind) + kind, beside, n=1)
         return [f"did you mean `{path.with_name(name)}`?" for name in near]
     return []
 

@@ -12,6 +12,7 @@ from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.tools.cli.options import add_drawing
+from aidl_lang.tools.cli.report import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.compiled import Compiled
@@ -54,7 +55,10 @@ def read(said: Mapping[str, object], compiled: Compiled) -> Asked:
     except argparse.ArgumentError as reason:
         name = (reason.argument_name or "").lstrip("-").replace("-", "_")
         raise _refused(f"`{name}`: {reason.message}") from None
-    return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
+    try:
+        return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
+    except UseError as reason:
+        raise AidlError(reason.diagnostic) from None
 
 
 def _known(name: str, known: list[str]) -> str:

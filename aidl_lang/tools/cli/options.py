@@ -65,7 +65,8 @@ def add_look(parser: argparse.ArgumentParser) -> None:
         type=_layers,
         default=frozenset(),
         metavar="LAYERS",
-        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
+        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan; "
+        "with --sheet: names, numbers, list",
     )
     parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
     parser.add_argument(
@@ -109,6 +110,12 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 def _add_cutting(parser: argparse.ArgumentParser) -> None:
     """Adds the options for cutters and for printing 1:1."""
+    parser.add_argument(
+        "--profile",
+        metavar="NAME",
+        help="colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
+        "file such as shop.toml",
+    )
     parser.add_argument(
         "--sheet",
         type=sizes.size,
@@ -276,12 +283,13 @@ def _tolerance(text: str) -> float:
 
 
 def _layers(text: str) -> frozenset[str]:
-    from aidl_lang.export import SHOW
+    from aidl_lang.export import ON_SHEETS, SHOW
 
+    known = dict.fromkeys((*SHOW, *ON_SHEETS))
     layers = [layer.strip() for layer in text.split(",") if layer.strip()]
     for layer in layers:
-        if layer not in SHOW:
-            raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(SHOW)}")
+        if layer not in known:
+            raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(known)}")
     return frozenset(layers)
 
 

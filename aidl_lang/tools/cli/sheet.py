@@ -41,9 +41,9 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import ExportError, Options
+    from aidl_lang.export import ExportError, Options, file_names
     from aidl_lang.export.drafting import Draft
-    from aidl_lang.tools.cli.build import Target, target_names
+    from aidl_lang.tools.cli.build import Target, require_one
 
     start = time.perf_counter()
     source = files.read(arguments.file)
@@ -63,8 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError.of(reason.diagnostic) from None
     written = []
     for target, result in zip(targets, made, strict=True):
-        names = target_names(target, len(result.further))
-        for name, data in zip(names, (result.data, *result.further), strict=True):
+        datas = (result.data, *result.further)
+        require_one(target.name, len(datas))
+        for name, data in zip(file_names(target.name, len(datas)), datas, strict=True):
             files.write(name, data)
             written.append(name)
     show(dict.fromkeys(note for result in made for note in result.notes))

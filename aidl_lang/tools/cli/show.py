@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_look, add_params, add_program
-from aidl_lang.tools.cli.report import exit_code, show
+from aidl_lang.tools.cli.report import UseError, exit_code, show
 from aidl_lang.tools.terminal.protocols import GRAPHICS, PROTOCOLS, has_true_colour, protocol
 from aidl_lang.tools.terminal.screen import Extent, Screen, cell_size, fit
 
@@ -43,16 +43,20 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import Job, Options
+    from aidl_lang.export import ExportError, Job, Options, require_sheets
     from aidl_lang.export.picture import picture
 
+    options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
+    try:
+        require_sheets(options)
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
     source, world = files.read(arguments.file), files.world(arguments.file)
     layers = tuple(sorted(arguments.show))
     compiled = pipeline.compile(source, world, params=dict(arguments.params), show=layers)
     show(compiled.diagnostics)
     may_be_shown = compiled.ok or arguments.best_effort
     if may_be_shown and compiled.model is not None and compiled.drawing is not None:
-        options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
         drawn = picture(Job(compiled.model, compiled.drawing, tuple(compiled.diagnostics), options))
         name = _protocol() if arguments.protocol == "auto" else arguments.protocol
         files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))

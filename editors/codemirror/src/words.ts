@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1042,6 +1042,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},
   {"prefix": "@orientation", "title": "how a part stands", "body": "@orientation(${1:front})$0", "place": "attribute"},
+  {"prefix": "@quantity", "title": "how many pieces are made of a part", "body": "@quantity(${1:4})$0", "place": "attribute"},
   {"prefix": "@elevation", "title": "how high a part lies", "body": "@elevation(${1:18mm})$0", "place": "attribute"},
   {"prefix": "@note", "title": "a note on the drawing", "body": "@note(\"${1:glue here}\")$0", "place": "attribute"},
   {"prefix": "@allow", "title": "a note or warning not to be told", "body": "@allow(\"${1:N0602}\")$0", "place": "attribute"},

@@ -22,7 +22,7 @@ from aidl_lang.tools.vocabulary import vocabulary
 
 _ATTRIBUTES: dict[str, Type] = {
     **dict.fromkeys(("thickness", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
-    "opacity": NumberType(PLAIN),
+    **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
     **dict.fromkeys(STACKING, StructureType()),
     CLIP: GeometryType(""),
 }

@@ -1,0 +1,226 @@
+"""The parts of a drawing, each by itself: laid flat by its own frame, with what is engraved on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from aidl_lang.common.records import record
+from aidl_lang.geometry.contacts import Contacts
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
+from aidl_lang.geometry.engraving import boxes_meet, engraved, owner
+from aidl_lang.geometry.evaluate import Bounds, bounds, inward
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.solved import SolvedStructure
+from aidl_lang.geometry.tessellate import face_polygons
+
+COARSE = 0.05
+"""Millimetres from an outline to the polygon that stands for it where places are sought."""
+_ALIKE = 1e-6
+"""Relative difference of parts that are equal."""
+_OFF_BEAT = 0.2137
+"""Shifts what is rounded, so that round numbers lie between two steps of it and not on their border."""
+_WORTH_TURNING = 1e-6
+"""Relative area that a turned rectangle has to save."""
+
+Size = tuple[float, float]
+T = TypeVar("T")
+
+
+@record()
+class Motion:
+    """A turn about the origin, degrees counter-clockwise, then a shift, mm."""
+
+    turn: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+
+    def pieces(self, pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+        # Where the shift takes the origin is where the curves are seen from.
+        angle = math.radians(self.turn)
+        c, s = math.cos(angle), math.sin(angle)
+        origin = -(c * self.x + s * self.y), s * self.x - c * self.y
+        return tuple(inward(piece, origin, -self.turn, mirrored=False) for piece in pieces)
+
+    def face(self, face: Face) -> Face:
+        return Face(self._loop(face.outer), tuple(map(self._loop, face.holes)))
+
+    def _loop(self, loop: Loop) -> Loop:
+        return Loop(self.pieces(loop.pieces), loop.reversed)
+
+    def region(self, region: Region) -> Region:
+        return Region(tuple(map(self.face, region.faces)))
+
+
+@record()
+class Part:
+    """A body with its engraving, its seams, and the regions of the structures it was made of."""
+
+    body: Body
+    strokes: tuple[Stroke, ...]
+    seams: tuple[Seam, ...]
+    regions: dict[str, Region]
+    box: Bounds
+
+    @property
+    def size(self) -> Size:
+        return self.box[2] - self.box[0], self.box[3] - self.box[1]
+
+    @property
+    def stock(self) -> tuple[str, float]:
+        """What it is made of, by which parts are sorted: material and thickness."""
+        return self.body.style.material or "", self.body.style.thickness or 0.0
+
+    def moved(self, by: Motion) -> Part:
+        region = by.region(self.body.region)
+        strokes = tuple(
+            replace(s, pieces=by.pieces(s.pieces), faces=tuple(map(by.face, s.faces))) for s in self.strokes
+        )
+        box = region_bounds(region)
+        return Part(
+            replace(self.body, region=region, box=box),
+            strokes,
+            tuple(replace(seam, pieces=by.pieces(seam.pieces)) for seam in self.seams),
+            {path: by.region(below) for path, below in self.regions.items()},
+            union_bounds([box, *(bounds(piece) for s in strokes for piece in s.pieces)]),
+        )
+
+
+def parts_of(root: SolvedStructure, drawing: Drawing) -> tuple[list[Part], list[Stroke]]:
+    """Returns the parts, each turned as its own frame is, and what drawings have beside all of them."""
+    on, off = engraved(drawing.bodies, drawing.strokes)
+    turns = dict(_turns(root))
+    found = [
+        part.moved(Motion(-turn)) if (turn := turns[part.body.path] % 360.0) else part
+        for part in _parts(drawing, on)
+    ]
+    return found, off
+
+
+def _turns(root: SolvedStructure) -> Iterator[tuple[str, float]]:
+    """Yields the path of each structure and how far it is turned, degrees."""
+
+    def visit(s: SolvedStructure, turn: float, sense: float) -> Iterator[tuple[str, float]]:
+        turn += sense * s.frame.rotation
+        yield s.path, turn
+        for child in s.structures:
+            yield from visit(child, turn, -sense if s.frame.mirrored else sense)
+
+    yield from visit(root, 0.0, 1.0)
+
+
+def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
+    bodies = {body.path: body for body in drawing.bodies}
+    below: dict[str, dict[str, Region]] = {path: {} for path in bodies}
+    shared: dict[str, Region] = {}  # holes of an assembly may cut several of its bodies
+    for path, region in drawing.regions.items():
+        above = owner(bodies, path)
+        (shared if above is None else below[above])[path] = region
+    seams: dict[str, list[Seam]] = {path: [] for path in bodies}
+    for seam in drawing.seams:
+        seams[seam.body].append(seam)
+    for body in drawing.bodies:
+        strokes = tuple(on.get(body.path, ()))
+        box = union_bounds([body.box, *(bounds(piece) for s in strokes for piece in s.pieces)])
+        regions = below[body.path]
+        regions |= {p: r for p, r in shared.items() if boxes_meet(region_bounds(r), body.box)}
+        yield Part(body, strokes, tuple(seams[body.path]), regions, box)
+
+
+def drawn(drawing: Drawing, parts: Sequence[Part], box: Bounds | None = None) -> Drawing:
+    """Returns the drawing of some parts alone, in a box or that of the parts."""
+    regions = dict[str, Region]()
+    for part in parts:
+        for path, below in part.regions.items():
+            faces = regions.get(path, Region()).faces
+            regions[path] = Region(faces + below.faces)
+    return Drawing(
+        tuple(part.body for part in parts),
+        regions,
+        tuple(seam for part in parts for seam in part.seams),
+        tuple(stroke for part in parts for stroke in part.strokes),
+        (),
+        Contacts(),
+        drawing.styles,
+        union_bounds([part.box for part in parts]) if box is None else box,
+    )
+
+
+def alike(parts: Iterable[Part]) -> list[list[Part]]:
+    """Returns parts with equal ones together, in order of writing."""
+    return gathered(parts, lambda part: (shape_of(part.body), _engraving(part)))
+
+
+def gathered(things: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]:
+    """Returns things with those of one key together, in their order."""
+    groups: dict[Hashable, list[T]] = {}
+    for thing in things:
+        groups.setdefault(key(thing), []).append(thing)
+    return list(groups.values())
+
+
+def shape_of(body: Body) -> Hashable:
+    """Returns a key that bodies share which are moved copies of each other, and of one stock."""
+    corner = region_bounds(body.region)
+    size = max(corner[2] - corner[0], corner[3] - corner[1])
+    return (
+        body.style.material,
+        body.style.thickness,
+        body.style.quantity,
+        round(size, 6),
+        _places(body.region.pieces, corner, size),
+    )
+
+
+def _engraving(part: Part) -> Hashable:
+    corner = region_bounds(part.body.region)
+    size = max(corner[2] - corner[0], corner[3] - corner[1])
+    return tuple(sorted((s.style.layer or "", _places(s.pieces, corner, size)) for s in part.strokes))
+
+
+def _places(pieces: Iterable[Piece], corner: Bounds, size: float) -> tuple[tuple[int, ...], ...]:
+    """Returns the boxes of pieces from a corner, in steps so small that equal ones are the same."""
+    origin = corner[:2] * 2
+    return tuple(
+        sorted(
+            tuple(
+                round((v - o) / (_ALIKE * size) + _OFF_BEAT) for v, o in zip(bounds(p), origin, strict=True)
+            )
+            for p in pieces
+        )
+    )
+
+
+def upright_turn(part: Part) -> float:
+    """Returns the turn, degrees, after which the box around a part is smallest; 0 if no turn saves area."""
+    from scipy.spatial import ConvexHull
+
+    outer = np.concatenate([face_polygons(face, COARSE)[0] for face in part.body.region.faces])
+    corners = outer[ConvexHull(outer).vertices]
+    ways = np.roll(corners, -1, axis=0) - corners
+    angles = np.unique(np.round(np.arctan2(ways[:, 1], ways[:, 0]) % (math.pi / 2), 12))
+    c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    along, across = c * corners[:, 0] + s * corners[:, 1], c * corners[:, 1] - s * corners[:, 0]
+    areas = np.ptp(along, axis=1) * np.ptp(across, axis=1)
+    best = int(areas.argmin())
+    width, height = np.ptp(outer, axis=0)
+    if areas[best] >= (1 - _WORTH_TURNING) * width * height:
+        return 0.0
+    return -math.degrees(float(angles[best]))
+
+
+def smallest_size(part: Part) -> Size:
+    """Returns the sides of the smallest rectangle around the material of a part, mm; the longer one first
+    where the part is turned for it.
+    """
+    turn = upright_turn(part)
+    left, bottom, right, top = region_bounds(Motion(turn).region(part.body.region)) if turn else part.body.box
+    width, height = right - left, top - bottom
+    return (max(width, height), min(width, height)) if turn else (width, height)

@@ -1,0 +1,228 @@
+"""The workshop example of a Raspberry Pi case: every panel in every format, and all of them put together."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pypdfium2
+import pytest
+import trimesh
+from shapely.geometry import Polygon
+from svgelements import SVG
+from svgelements import Path as SvgPath
+
+from aidl_lang import Model
+from aidl_lang.export import Options
+from aidl_lang.export.profiles import PROFILES
+from tests.compiled import model
+from tests.documents import ROOT
+from tests.export import step_reading
+from tests.export.readers import Loop, read_dxf
+from tests.export.test_dxf_for_cutters import is_closed, ring
+
+PANELS = ("base", "lid", "front", "back", "right", "left")
+HOLES = {"base": 4, "lid": 9, "front": 4, "back": 0, "right": 3, "left": 1}
+THICKNESS, KERF = 3.0, 0.15
+LENGTH, DEPTH, HEIGHT = 97.0, 66.0, 32.4
+SHEET = (300.0, 200.0)
+
+
+@cache
+def case() -> Model:
+    found = model((ROOT / "examples" / "workshop" / "pi_case.aidl").read_text("utf-8"))
+    assert found.ok
+    assert found.diagnostics == []
+    return found
+
+
+def test_panels_are_apart_and_of_one_stock() -> None:
+    drawing = case()._compiled.drawing
+    assert drawing is not None
+    assert tuple(body.path.removeprefix("pi_case.") for body in drawing.bodies) == PANELS
+    assert {(body.style.material, body.style.thickness) for body in drawing.bodies} == {("birch plywood", 3)}
+    assert all(
+        pair.relation == "apart" and pair.gap is not None and pair.gap > 4.99 for pair in drawing.pairs
+    )
+
+
+def sheet(suffix: str, **options: Any) -> bytes:
+    made = case()._compiled.exported(
+        suffix, Options(sheet=SHEET, kerf=KERF, profile=PROFILES["lightburn"], **options)
+    )
+    assert made.notes == ()
+    assert made.further == ()
+    return made.data
+
+
+def test_dxf_has_closed_contours_on_the_layers_of_the_profile() -> None:
+    found = ezdxf.read(io.StringIO(sheet(".dxf").decode()))
+    assert not found.audit().errors
+    by_layer: dict[str, list[Any]] = {}
+    for entity in found.modelspace():
+        assert is_closed(entity)
+        by_layer.setdefault(entity.dxf.layer, []).append(entity)
+    counts = {layer: len(entities) for layer, entities in by_layer.items()}
+    assert list(by_layer) == ["C00-fill", "C05-inner", "C10-outer"]
+    assert counts["C10-outer"] == len(PANELS)
+    assert counts["C05-inner"] == sum(HOLES.values())
+    # R A S P B E R R Y P I: one outline each; R, A, P have a hole, B two.
+    assert counts["C00-fill"] == 11 + sum({"R": 1, "A": 1, "P": 1, "B": 2}.get(c, 0) for c in "RASPBERRYPI")
+
+
+def test_the_cut_is_half_on_either_side() -> None:
+    """Each outline against the drawn one, grown or shrunk by shapely."""
+    drawn = read_dxf(case().export("dxf"))
+    wide = ezdxf.read(io.StringIO(sheet(".dxf").decode())).modelspace()
+    for name, body in drawn.items():
+        if name == "pi_case.lid.label":
+            continue
+        shapes = sorted((Polygon(loop.polygon(64)) for loop in body.loops), key=lambda p: -p.area)
+        cut = [Polygon(ring(e, 1e-3)) for e in wide if e.dxf.layer != "C00-fill" and _path(e) == name]
+        cut.sort(key=lambda p: -p.area)
+        assert len(cut) == len(shapes) == 1 + HOLES[name.rpartition(".")[2]]
+        for k, (before, after) in enumerate(zip(shapes, cut, strict=True)):
+            grown = before.buffer(KERF / 2 if k == 0 else -KERF / 2, join_style="mitre", mitre_limit=10)
+            assert after.area == pytest.approx(grown.area, rel=2e-3)
+            assert after.length == pytest.approx(grown.length, rel=2e-3)
+
+
+def _path(entity: Any) -> str:
+    return "".join(tag.value for tag in entity.get_xdata("AIDL") if tag.code == 1000)
+
+
+def test_svg_and_pdf_are_as_large_as_the_sheet_and_hold_as_much() -> None:
+    svg = SVG.parse(io.BytesIO(sheet(".svg")), ppi=25.4)
+    paths = list(svg.elements(lambda e: isinstance(e, SvgPath)))
+    by_operation = {
+        op: [p for p in paths if p.values["data-operation"] == op] for op in ("inner", "outer", "fill")
+    }
+    assert [len(found) for found in by_operation.values()] == [sum(HOLES.values()), len(PANELS), 1]
+    for path in by_operation["outer"]:
+        left, top, right, bottom = path.bbox()
+        assert min(left, top) > 2.9
+        assert right < SHEET[0] - 2.9
+        assert bottom < SHEET[1] - 2.9
+    assert re.search(rb'width="300mm"', sheet(".svg"))
+    with pypdfium2.PdfDocument(sheet(".pdf")) as made:
+        assert len(made) == 1
+        assert [side * 25.4 / 72 for side in made[0].get_size()] == pytest.approx(SHEET, abs=1e-3)
+        assert len(list(made[0].get_objects())) == len(paths)
+
+
+def test_the_cut_list_adds_up() -> None:
+    text = sheet(".csv").decode("utf-8-sig")
+    parts, sheets = (list(csv.DictReader(io.StringIO(part))) for part in text.split("\r\n\r\n"))
+    assert [part["part"] for part in parts] == list(PANELS)
+    told = {
+        name.rpartition(".")[2]: body for name, body in read_dxf(case().export("dxf", dxf="splines")).items()
+    }
+    for part in parts:
+        body = told[part["part"]]
+        assert float(part["area_mm2"]) == pytest.approx(body.area, abs=0.01)
+        assert float(part["cut_mm"]) == pytest.approx(body.perimeter, abs=0.01)
+        x0, y0, x1, y1 = body.box
+        assert (float(part["width_mm"]), float(part["height_mm"])) == pytest.approx(
+            (x1 - x0, y1 - y0), abs=0.001
+        )
+    assert float(sheets[0]["cut_mm"]) == pytest.approx(sum(float(part["cut_mm"]) for part in parts), abs=0.01)
+
+
+def panels(suffix: str) -> dict[str, bytes]:
+    found = case()._compiled.exporting(Options()).parts(suffix)
+    return {item.name: made.data for item, made in found}
+
+
+def test_step_of_each_panel(tmp_path: Path) -> None:
+    told = {
+        name.rpartition(".")[2]: body for name, body in read_dxf(case().export("dxf", dxf="splines")).items()
+    }
+    for name, data in panels(".step").items():
+        found = step_reading.read(data, tmp_path)
+        solids = [part for part in found.parts if part.count("SOLID")]
+        (solid,) = solids
+        assert solid.is_valid
+        assert solid.is_closed
+        assert solid.volume == pytest.approx(THICKNESS * told[name].area, rel=1e-9)
+
+
+# --- Put together --------------------------------------------------------------------------------
+
+_T = THICKNESS
+STANDING = {
+    "base": ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], (0, 0, 0)),
+    "lid": ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], (0, 0, HEIGHT - _T)),
+    "front": ([[1, 0, 0], [0, 0, -1], [0, 1, 0]], (0, _T, 0)),
+    "back": ([[-1, 0, 0], [0, 0, 1], [0, 1, 0]], (LENGTH, DEPTH - _T, 0)),
+    "right": ([[0, 0, 1], [1, 0, 0], [0, 1, 0]], (LENGTH - _T, 0, 0)),
+    "left": ([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], (_T, DEPTH, 0)),
+}
+"""How each panel, lying with its corner at the origin and its outside up, gets to its place in the case."""
+
+
+def standing(suffix: str) -> dict[str, trimesh.Trimesh]:
+    found = {}
+    for name, data in panels(suffix).items():
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=suffix[1:])
+        assert mesh.is_watertight
+        motion = np.eye(4)
+        motion[:3, :3], motion[:3, 3] = STANDING[name]
+        assert np.linalg.det(motion) == pytest.approx(1)
+        found[name] = mesh.apply_transform(motion)
+    return found
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".3mf"])
+def test_the_panels_make_a_closed_case(suffix: str) -> None:
+    """No two of them share any room, and together they are as large as a hollow box less the openings."""
+    meshes = standing(suffix)
+    together = trimesh.boolean.union(list(meshes.values()))
+    total = sum(mesh.volume for mesh in meshes.values())
+    assert together.volume == pytest.approx(total, abs=0.05)
+    assert together.bounds == pytest.approx(np.array([[0, 0, 0], [LENGTH, DEPTH, HEIGHT]]), abs=1e-3)
+    hollow = (LENGTH - 2 * _T) * (DEPTH - 2 * _T) * (HEIGHT - 2 * _T)
+    openings = sum(
+        abs(loop.area)
+        for body in read_dxf(case().export("dxf", dxf="splines")).items()
+        for loop in _inner(body)
+    )
+    assert total == pytest.approx(LENGTH * DEPTH * HEIGHT - hollow - _T * openings, rel=1e-4)
+
+
+def _inner(named: tuple[str, Any]) -> list[Loop]:
+    name, body = named
+    if name.endswith("label"):
+        return []
+    return sorted(body.loops, key=lambda loop: -abs(loop.area))[1:]
+
+
+def test_the_openings_lie_where_the_plugs_of_the_board_are() -> None:
+    """Places of the plugs from the corner of the board, mm, and the board 2 mm from the panels beside it."""
+    drawn = read_dxf(case().export("dxf"))
+
+    def middles(panel: str) -> list[tuple[float, float]]:
+        body = drawn[f"pi_case.{panel}"]
+        left, bottom, _, _ = body.box
+        boxes = [
+            (loop.polygon(64).min(axis=0), loop.polygon(64).max(axis=0)) for loop in _inner((panel, body))
+        ]
+        return sorted((float(a[0] + b[0]) / 2 - left, float(a[1] + b[1]) / 2 - bottom) for a, b in boxes)
+
+    board = THICKNESS + 2
+    holes = middles("base")
+    assert [x for x, _ in holes] == pytest.approx([board + 3.5] * 2 + [board + 61.5] * 2, abs=0.01)
+    assert sorted({round(y, 2) for _, y in holes}) == [board + 3.5, board + 52.5]
+    assert [x for x, _ in middles("front")] == pytest.approx(
+        [board + x for x in (11.2, 26, 39.5, 54)], abs=0.01
+    )
+    assert [x for x, _ in middles("right")] == pytest.approx([board + y for y in (9, 27, 45.75)], abs=0.01)
+    deck = THICKNESS + 5 + 1.4
+    assert [y for _, y in middles("right")] == pytest.approx([deck + 8, deck + 8, deck + 7], abs=0.01)
+    assert math.dist(middles("left")[0], (DEPTH / 2, deck - 2.5)) < 0.01

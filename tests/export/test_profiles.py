@@ -1,0 +1,394 @@
+"""Profiles: the same colours, widths and layers in SVG, DXF and PDF, in the order of a machine."""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import re
+from functools import cache
+
+import ezdxf
+import pypdfium2
+import pypdfium2.raw as pdfium
+import pytest
+from ezdxf.colors import int2rgb
+from ezdxf.document import Drawing as Document
+from shapely import Polygon, unary_union
+from svgelements import SVG
+from svgelements import Path as SvgPath
+
+from aidl_lang import pipeline
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.source import SourceFile
+from aidl_lang.export import ExportError, Options
+from aidl_lang.export.profile_files import parsed
+from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile
+
+PLATE = """\
+assembly tag {
+    solid plate {
+        body = rectangle(center: origin, width: 80, height: 50)
+        hole bore { rim = circle(center: fixed((-25, 10)), radius: 6) }
+        drawing name { letters = text("OB", center: fixed((10, 5)), height: 12) }
+        drawing frame { edge = rectangle(center: fixed((10, 5)), width: 40, height: 20) }
+        @layer("score") drawing fold { crease = line(fixed((-40, -15)), fixed((40, -15))) }
+        @layer("fill") drawing mark {
+            disc = ring(center: fixed((-25, -5)), outer_radius: 5, inner_radius: 3)
+        }
+        @layer("cut") drawing slit { way = line(fixed((0, -20)), fixed((20, -20))) }
+    }
+}
+"""
+INCH = 25.4
+
+
+@cache
+def compiled(text: str = PLATE) -> pipeline.Compiled:
+    found = pipeline.compile(SourceFile("tag.aidl", text))
+    assert found.ok, found.diagnostics
+    return found
+
+
+def svg_paths(text: str, profile: Profile) -> list[SvgPath]:
+    data = compiled(text).export(".svg", Options(profile=profile))
+    svg = SVG.parse(io.BytesIO(data), ppi=INCH)
+    return list(svg.elements(lambda e: isinstance(e, SvgPath)))
+
+
+def in_svg(text: str, profile: Profile) -> list[tuple[str, str, bool]]:
+    """Operation, colour and whether it is filled, of each path in the order of the file."""
+    found = []
+    for path in svg_paths(text, profile):
+        filled = path.values["fill"] != "none"
+        assert filled != (path.values["stroke"] != "none")
+        color = path.values["fill" if filled else "stroke"]
+        found.append((path.values["data-operation"], color, filled))
+    return found
+
+
+def document(text: str, profile: Profile, **options: str) -> Document:
+    data = compiled(text).export(".dxf", Options(profile=profile, **options))
+    found = ezdxf.read(io.StringIO(data.decode("cp1252" if options else "utf-8")))
+    assert not found.audit().errors
+    return found
+
+
+def color_in_dxf(found: Document, entity: object) -> str:
+    own, layer = entity.dxf, found.layers.get(entity.dxf.layer).dxf  # type: ignore[attr-defined]
+    value = own.true_color if own.hasattr("true_color") else layer.true_color
+    return "#{:02x}{:02x}{:02x}".format(*int2rgb(value))
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_svg_and_dxf_agree_in_order_and_colour(name: str) -> None:
+    profile = PROFILES[name]
+    told = in_svg(PLATE, profile)
+    found = document(PLATE, profile)
+    in_dxf = [color_in_dxf(found, entity) for entity in found.modelspace()]
+    # The frame, a fold, a ring of two, a slit, the bore, the plate, and the outlines of O and B.
+    assert len(in_dxf) == 1 + 1 + 2 + 1 + 1 + 1 + 5
+    places = [OPERATIONS.index(operation) for operation, *_ in told]
+    assert places == sorted(places)
+    assert set(places) == set(range(len(OPERATIONS)))
+    seen = [color for color, before in zip(in_dxf, [None, *in_dxf], strict=False) if color != before]
+    assert seen == [
+        c
+        for c, before in zip([c for _, c, _ in told], [None, *[c for _, c, _ in told]], strict=False)
+        if c != before
+    ]
+    assert {color for operation, color, _ in told if operation == "outer"} == {profile.looks["outer"].color}
+
+
+def test_the_colours_of_lightburn_are_those_of_its_palette_in_rising_order() -> None:
+    palette = [
+        "#000000",
+        "#0000ff",
+        "#ff0000",
+        "#00e000",
+        "#d0d000",
+        "#ff8000",
+        "#00e0e0",
+        "#ff00ff",
+        "#b4b4b4",
+    ]
+    palette += ["#0000a0", "#a00000"]
+    looks = PROFILES["lightburn"].looks
+    numbers = [palette.index(looks[operation].color) for operation in OPERATIONS]
+    assert numbers == sorted(set(numbers))
+    assert [look.layer[:3] for look in looks.values()] == [f"C{n:02}" for n in numbers]  # type: ignore[index]
+
+
+def test_the_colours_of_glowforge_rise() -> None:
+    colors = [PROFILES["glowforge"].looks[operation].color for operation in OPERATIONS]
+    assert colors == sorted(set(colors))
+
+
+def test_ponoko_cuts_blue_and_engraves_red_with_the_thinnest_lines() -> None:
+    told = in_svg(PLATE, PROFILES["ponoko"])
+    assert {(color, filled) for operation, color, filled in told if operation in ("inner", "outer")} == {
+        ("#0000ff", False)
+    }
+    assert {(color, filled) for operation, color, filled in told if operation in ("engrave", "score")} == {
+        ("#ff0000", False)
+    }
+    assert {(color, filled) for operation, color, filled in told if operation == "fill"} == {
+        ("#000000", True)
+    }
+    lines = [p for p in svg_paths(PLATE, PROFILES["ponoko"]) if p.values["stroke"] != "none"]
+    assert {path.values["stroke-width"] for path in lines} == {"0.01"}
+    found = document(PLATE, PROFILES["ponoko"])
+    assert {found.layers.get(e.dxf.layer).dxf.lineweight for e in found.modelspace()} == {0}
+
+
+def test_areas_are_closed_and_have_the_size_of_what_is_drawn() -> None:
+    filled = [p for p in svg_paths(PLATE, PROFILES["lightburn"]) if p.values["fill"] != "none"]
+    assert len(filled) == 2  # the letters of a text are one path
+    *_, ring = filled
+    outer, inner = (
+        Polygon([(s.x, s.y) for s in map(sub.point, [k / 720 for k in range(720)])])
+        for sub in map(SvgPath, ring.as_subpaths())
+    )
+    assert abs(outer.area - inner.area) == pytest.approx(3.141593 * (25 - 9), rel=1e-3)
+    entities = [e for e in document(PLATE, PROFILES["lightburn"]).modelspace() if e.dxf.layer == "C00-fill"]
+    assert len(entities) == 7
+    assert all(e.dxftype() == "CIRCLE" or e.closed for e in entities)
+
+
+def test_plain_follows_letters_and_keeps_colours() -> None:
+    text = PLATE.replace("drawing frame", '@color("teal") drawing frame')
+    told = in_svg(text, PROFILES["plain"])
+    assert [color for operation, color, _ in told if operation == "engrave"].count("#008080") == 1
+    assert [filled for operation, _, filled in told if operation == "engrave"] == [False] * 6
+    found = document(text, PROFILES["plain"])
+    assert {e.dxf.layer for e in found.modelspace()} == {"solid", "hole", "drawing", "fill", "score", "cut"}
+    assert in_svg(text, PROFILES["glowforge"]) == in_svg(PLATE, PROFILES["glowforge"])
+
+
+def test_pdf_has_the_same_colours_and_widths_in_the_same_order() -> None:
+    data = compiled().export(".pdf", Options(profile=PROFILES["ponoko"]))
+    with pypdfium2.PdfDocument(data) as made:
+        objects = list(made[0].get_objects())
+        found = [_of_pdf(o) for o in objects if o.type == pdfium.FPDF_PAGEOBJ_PATH]
+    told = [(color, filled) for _, color, filled in in_svg(PLATE, PROFILES["ponoko"])]
+    assert [(color, filled) for color, filled, _ in found] == told
+    widths = [width for _, filled, width in found if not filled]
+    assert widths == pytest.approx([0.01] * len(widths), rel=1e-3)
+
+
+def _of_pdf(drawn: pypdfium2.PdfObject) -> tuple[str, bool, float]:
+    fill, stroke = ctypes.c_int(), ctypes.c_int()
+    assert pdfium.FPDFPath_GetDrawMode(drawn.raw, fill, stroke)
+    ask = pdfium.FPDFPageObj_GetFillColor if fill.value else pdfium.FPDFPageObj_GetStrokeColor
+    channels = [ctypes.c_uint() for _ in range(4)]
+    assert ask(drawn.raw, *channels)
+    width = ctypes.c_float()
+    assert pdfium.FPDFPageObj_GetStrokeWidth(drawn.raw, width)
+    color = "#{:02x}{:02x}{:02x}".format(*(c.value for c in channels[:3]))
+    return color, bool(fill.value), width.value
+
+
+def test_r12_has_the_nearest_colours_of_the_index() -> None:
+    found = document(PLATE, PROFILES["glowforge"], dxf="r12")
+    assert {
+        layer.dxf.name: layer.dxf.color for layer in found.layers if layer.dxf.name not in ("0", "DEFPOINTS")
+    }.items() >= {
+        "fill": 7,
+        "engrave": 5,
+        "score": 3,
+        "inner": 1,
+        "outer": 6,
+    }.items()
+
+
+# --- Order ---------------------------------------------------------------------------------------
+
+NESTED = """\
+assembly nest {
+    @detached solid around {
+        disc = circle(center: fixed((0, 0)), radius: 40)
+        hole bay { rim = circle(center: fixed((0, 0)), radius: 30) }
+        hole eye { rim = circle(center: fixed((35, 0)), radius: 2) }
+    }
+    @detached solid within {
+        disc = circle(center: fixed((0, 0)), radius: 20)
+        hole eye { rim = circle(center: fixed((0, 0)), radius: 5) }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_nothing_is_cut_in_a_piece_that_has_come_loose(name: str) -> None:
+    circles = document(NESTED, PROFILES[name]).modelspace()
+    assert [c.dxf.radius for c in circles] == [5, 2, 20, 30, 40]
+    told = [operation for operation, *_ in in_svg(NESTED, PROFILES[name])]
+    assert told == ["inner", "inner", "outer", "outer", "outer"]
+
+
+def test_an_order_of_ones_own() -> None:
+    text = 'order = ["outer", "inner", "score", "engrave", "fill"]'
+    told = [operation for operation, *_ in in_svg(PLATE, parsed(text, "shop.toml"))]
+    places = [OPERATIONS.index(operation) for operation in told]
+    assert places == sorted(places, reverse=True)
+
+
+# --- Files ---------------------------------------------------------------------------------------
+
+SHOP = """\
+base = "glowforge"
+letters = "engrave"
+
+[outer]
+colour = "navy"
+width = 0.05
+layer = "OUT"
+
+[layers]
+fold = "score"
+Glue_Here = {as = "engrave", color = "#a0a000", layer = "C12"}
+"""
+
+
+def test_a_file_of_ones_own() -> None:
+    text = PLATE.replace('@layer("score")', '@layer("Fold")').replace(
+        "drawing frame", '@layer("glue_here") drawing frame'
+    )
+    profile = parsed(SHOP, "shop.toml")
+    told = in_svg(text, profile)
+    assert ("outer", "#000080", False) in told
+    assert ("engrave", "#a0a000", False) in told
+    assert ("score", "#00ff00", False) in told
+    assert [filled for operation, _, filled in told if operation == "engrave"] == [False] * 6
+    found = document(text, profile)
+    assert found.layers.get("OUT").dxf.lineweight == 5
+    assert {e.dxf.layer for e in found.modelspace()} == {"OUT", "C12", "score", "engrave", "inner", "fill"}
+    assert compiled(text).exported(".svg", Options(profile=profile)).notes == ()
+
+
+WRONG = {
+    f"x = {'[' * 5000}": ("its values are nested too deeply", ()),
+    "x": ("it is not TOML: Expected '=' after a key in a key/value pair (at end of document)", ()),
+    "colour = 3": (
+        "there is no key `colour`",
+        ("there are `base`, `order`, `letters`, `layers`, `fill`, `engrave`, `score`, `inner` and `outer`",),
+    ),
+    "oter = {}": ("there is no key `oter`", ("did you mean `outer`?",)),
+    "[outer]\ncolr = 'red'": ("there is no key `outer.colr`", ("did you mean `color`?",)),
+    "outer = 3": ("`outer` is a table, not `3`", ()),
+    "[outer]\ncolor = 'redd'": ('`outer.color` is a colour such as "#ff0000" or "red", not `"redd"`', ()),
+    "[outer]\nwidth = 0": ("`outer.width` is millimetres from 0.001 to 5, not `0`", ()),
+    "[outer]\nwidth = true": ("`outer.width` is millimetres from 0.001 to 5, not `True`", ()),
+    "[outer]\nwidth = nan": ("`outer.width` is millimetres from 0.001 to 5, not `nan`", ()),
+    "[outer]\nlayer = ''": ('`outer.layer` is a name of 1 to 255 letters, not `""`', ()),
+    "base = 'lightbrun'": (
+        '`base` is `plain`, `lightburn`, `glowforge` or `ponoko`, not `"lightbrun"`',
+        ("did you mean `lightburn`?",),
+    ),
+    "base = []": ("`base` is `plain`, `lightburn`, `glowforge` or `ponoko`, not `[]`", ()),
+    "letters = 'cut'": ('`letters` is `fill` or `engrave`, not `"cut"`', ()),
+    "order = ['outer']": (
+        "`order` names each operation once, not `['outer']`",
+        ("the usual one is `fill`, `engrave`, `score`, `inner` and `outer`",),
+    ),
+    "layers = 'x'": ('`layers` is a table, not `"x"`', ()),
+    "[layers]\nx = 3": ("`layers.x` is the name of an operation, or a table, not `3`", ()),
+    "[layers]\nx = 'engrav'": (
+        '`layers.x` is `fill`, `engrave`, `score`, `inner`, `outer` or `cut`, not `"engrav"`',
+        ("did you mean `engrave`?",),
+    ),
+    "[layers]\nx = {color = 'red'}": (
+        "`layers.x` does not say what is done with it",
+        ('say it: `as = "score"`',),
+    ),
+    "[layers]\nx = {as = 'score', colr = 'red'}": (
+        "there is no key `layers.x.colr`",
+        ("did you mean `color`?",),
+    ),
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_file_is_told(text: str) -> None:
+    what, hints = WRONG[text]
+    with pytest.raises(ExportError) as caught:
+        parsed(text, "shop.toml")
+    found = caught.value.diagnostic
+    assert (found.code, found.message, found.hints) == (
+        "E0957",
+        f"the profile `shop.toml` cannot be used: {what}",
+        hints,
+    )
+
+
+# --- What is told --------------------------------------------------------------------------------
+
+
+def notes(text: str, **options: object) -> list[Diagnostic]:
+    return list(compiled(text).exported(".svg", Options(**options)).notes)  # type: ignore[arg-type]
+
+
+def test_layers_that_the_profile_does_not_know() -> None:
+    text = PLATE.replace('@layer("score")', '@layer("ritzen")').replace(
+        "hole bore", '@layer("glue") hole bore'
+    )
+    (note,) = notes(text, profile=PROFILES["lightburn"])
+    assert (note.code, note.message) == (
+        "N0754",
+        "the profile `lightburn` does not say what is done on the layers `glue` and `ritzen`: "
+        "parts are cut there and drawings engraved as elsewhere",
+    )
+    assert note.span is not None
+    assert note.span.line == 4
+    assert note.hints == ('say it in a file for `--profile`: `[layers]` with `"glue" = "score"`',)
+    assert notes(text, cut=True) == []
+    assert notes(text, profile=PROFILES["plain"]) == []
+
+
+def test_lines_that_enclose_no_area() -> None:
+    text = PLATE.replace('@layer("score")', '@layer("fill")')
+    (note,) = notes(text, cut=True)
+    assert (note.code, note.message) == (
+        "W0757",
+        "lines of `tag.plate.fold` enclose nothing, so there they are engraved as lines and not as areas",
+    )
+    assert note.hints == (
+        "close them: end each where the next one begins",
+        "or put them on a layer for lines",
+    )
+    assert [operation for operation, *_ in in_svg(text, PROFILES["ponoko"])].count("engrave") == 2
+
+
+def test_letters_over_the_edge_of_a_part_are_lines_on_its_sheet() -> None:
+    """A letter that ends on the part is engraved as an area, one that does not as lines up to the edge."""
+    text = (
+        "assembly a { @detached solid p { r = rectangle(center: fixed((0, 0)), width: 30, height: 20) }"
+        ' drawing d { t = text("II", center: fixed((13, 0)), height: 10, width: 12) } }'
+    )
+    text = text.replace(", height: 10, width: 12", ", height: 10")
+    result = compiled(text)
+    made = result.exported(".svg", Options(profile=PROFILES["glowforge"], sheet=(60, 40)))
+    svg = SVG.parse(io.BytesIO(made.data), ppi=INCH)
+    paths = list(svg.elements(lambda e: isinstance(e, SvgPath)))
+    (plate,) = [p.bbox() for p in paths if p.values["data-operation"] == "outer"]
+    drawn = [p for p in paths if p.values["data-path"] == "a.d"]
+    assert {p.values["data-operation"] for p in drawn} <= {"fill", "engrave"}
+    for path in drawn:
+        assert path.bbox()[2] <= plate[2] + 1e-6
+
+
+def test_no_colour_of_the_program_reaches_a_machine_that_goes_by_colour() -> None:
+    text = PLATE.replace("solid plate", '@color("crimson") solid plate')
+    data = compiled(text).export(".svg", Options(profile=PROFILES["ponoko"])).decode()
+    assert set(re.findall('(?:fill|stroke)="(#[^"]*)"', data)) == {"#000000", "#ff0000", "#0000ff"}
+
+
+def test_what_is_cut_encloses_what_is_drawn() -> None:
+    paths = [
+        p for p in svg_paths(PLATE, PROFILES["lightburn"]) if p.values["data-operation"] in ("inner", "outer")
+    ]
+    rings = [
+        Polygon([(s.x, s.y) for s in map(p.point, [k / 360 for k in range(360)])])
+        for p in paths
+        if p.values["data-path"] == "tag.plate"
+    ]
+    assert unary_union(rings).area == pytest.approx(4000, rel=1e-3)
