@@ -14,6 +14,7 @@ from typing import Any
 from aidl_lang.checking import sizes
 from aidl_lang.common.records import record
 from aidl_lang.export import FORMATS, OFFERED, Exported, Format, Options, file_names
+from aidl_lang.export.profiles import PROFILES
 from aidl_lang.export.themes import THEMES
 
 Change = Callable[[Options, str], Options]
@@ -47,6 +48,10 @@ def _nested(options: Options, given: str) -> Options:
     return replace(options, nest=_NESTING if given == "outlines" else None)
 
 
+def _profiled(options: Options, given: str) -> Options:
+    return replace(options, profile=PROFILES[given])
+
+
 def _is_picture(made: Format) -> bool:
     return made.tiles
 
@@ -56,6 +61,7 @@ OPTIONS = (
     Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=sizes.length(given))),
     Option("nest", "Packed by", "boxes", _nested, ("boxes", "outlines")),
     Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=sizes.length(given))),
+    Option("profile", "Profile", "plain", _profiled, tuple(PROFILES)),
     Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, _is_picture),
     Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=sizes.size(given)), fits=_is_picture),
 )
