@@ -123,17 +123,15 @@ def _holds(outer: Sides, inner: Sides) -> bool:
 
 
 def _left_inside(seen: Sequence[_Seen], here: Structure) -> Iterator[Diagnostic]:
-    """Yields a warning for each thing that moved away from others that were drawn inside it, and in nothing
-    smaller.
+    """Yields a warning for each thing that moved away from others that were drawn on it: inside it, and on
+    nothing that was written in between.
     """
     left: dict[int, list[_Seen]] = {}
-    for inner in seen:
-        around = [
-            o for o in seen if o is not inner and o.extent > inner.extent and _holds(o.written, inner.written)
-        ]
-        if not around or not inner.stayed or inner.thing.name is None:
+    for number, inner in enumerate(seen):
+        below = [o for o in seen[:number] if o.extent > inner.extent and _holds(o.written, inner.written)]
+        if not below or not inner.stayed or inner.thing.name is None:
             continue
-        nearest = min(around, key=lambda o: o.extent)
+        nearest = below[-1]
         x, y = _middle(inner.solved)
         if (
             nearest.way > _FAR * nearest.extent
