@@ -182,7 +182,7 @@ class Model:
         model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
         """
         from aidl_lang.export import file_names, suffix_of
-        from aidl_lang.tools.cli import files
+        from aidl_lang.common.replacing import replace
         from aidl_lang.tools.cli.keywords import read
 
         asked = read(options, self._compiled)
@@ -197,7 +197,7 @@ class Model:
         contents = (made.data, *made.further)
         paths = tuple(map(Path, file_names(str(path), len(contents))))
         for each, data in zip(paths, contents, strict=True):
-            files.replace(each, data)
+            replace(each, data)
         return Saved(paths, made.notes)
 
     def _repr_svg_(self) -> str | None:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from enum import Enum
 from multiprocessing import connection
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from pebble import ProcessPool
@@ -30,6 +30,33 @@ class Limit(Enum):
     MEMORY = "memory"
 
 
+class LimitError(Exception):
+    """Raised in place of the result of a call that met a limit elsewhere, as on a machine of a cluster."""
+
+    def __init__(self, limit: Limit) -> None:
+        super().__init__(limit)
+        self.limit = limit
+
+
+class Engine(Protocol):
+    """Whatever carries out calls: the processes of this machine, or the workers of a cluster."""
+
+    @property
+    def places(self) -> int:
+        """The number of calls that it carries out side by side, as far as it is known now."""
+        ...
+
+    def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
+        """Has a call carried out within some seconds; `limit_met` tells how it broke. The task, its arguments
+        and its result must be picklable.
+        """
+        ...
+
+    def close(self) -> None:
+        """Gives up all calls that are not done."""
+        ...
+
+
 class Guarded:
     """A pool of processes that carry out calls side by side, each within limits of time and memory. A call
     that breaks its process takes no other along; the process is replaced.
@@ -38,6 +65,8 @@ class Guarded:
     def __init__(self, workers: int, preload: str, memory: int = MEMORY) -> None:
         """Starts the processes; `preload` is the module that they load at the start."""
         from pebble import ProcessPool
+
+        self.places = workers
 
         if sys.platform == "win32":
             context = multiprocessing.get_context("spawn")
@@ -49,9 +78,7 @@ class Guarded:
         )
 
     def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Has a call carried out; `limit_met` tells how it broke. Cancelling ends its process. The task, its
-        arguments and its result must be picklable.
-        """
+        """Has a call carried out (see `Engine`). Cancelling ends its process."""
         return self._pool.schedule(task, arguments, timeout=seconds)
 
     def close(self) -> None:
@@ -64,6 +91,8 @@ def limit_met(error: BaseException) -> Limit | None:
     """Returns the limit that broke a call; None if the call raised the error by itself."""
     from pebble import ProcessExpired
 
+    if isinstance(error, LimitError):
+        return error.limit
     if isinstance(error, ProcessExpired):
         return Limit.DEATH
     if isinstance(error, TimeoutError):

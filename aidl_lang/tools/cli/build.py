@@ -99,8 +99,8 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     return BuildResult(compiled, written, notes, time.perf_counter() - start)
 
 
-def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
-    """Returns the options of an export as the command line says them."""
+def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
+    """Returns the options of an export as the command line says them; timings are those of a compile."""
     from aidl_lang.export import Options
 
     return Options(
@@ -109,7 +109,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         cut=arguments.cut,
         pixels=arguments.pixels,
         thickness=arguments.thickness,
-        timings=compiled.timings if arguments.timings else None,
+        timings=compiled.timings if compiled is not None and arguments.timings else None,
         sheet=arguments.sheet,
         spacing=arguments.spacing,
         nest=arguments.nest,
