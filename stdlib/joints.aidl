@@ -120,7 +120,7 @@ fn finger_inset(kind: text, thickness: length) = if kind == "notches" then thick
 fn finger_count(length: length, finger: length, kind: text) =
     if kind == "flat" then 1 else 2 * max(1, floor(written(length) / finger / 2)) + 1
 
-// The corners of an edge between its ends: two where a part ends and the next begins.
+// The corners of an edge between its ends: two where a part ends and the next begins, each on its own level.
 fn fingers(
     start: point,
     way: point,
@@ -129,35 +129,42 @@ fn fingers(
     finger: length,
     kerf: length,
     kind: text
-) = [finger_corner(
-    start, way, length / finger_count(length, finger, kind), thickness, kerf, j, kind
-) for j in 0..<2 * finger_count(length, finger, kind) - 2]
-fn finger_corner(
-    start: point, way: point, pitch: length, thickness: length, kerf: length, j: integer, kind: text
-) = finger_point(
+) = fingers_between(
     start,
     way,
-    part: floor(j / 2),
-    is_tab: (floor(j / 2) % 2 == 0) == (kind == "tabs"),
-    is_next: j % 2,
-    pitch: pitch,
-    thickness: thickness,
-    kerf: kerf
+    turned(way, 90deg),
+    length / finger_count(length, finger, kind),
+    thickness,
+    kerf,
+    finger_count(length, finger, kind),
+    first: if kind == "tabs" then 0 else 1
 )
+fn fingers_between(
+    start: point,
+    way: point,
+    deep: point,
+    pitch: length,
+    thickness: length,
+    kerf: length,
+    count: integer,
+    first: integer
+) = [finger_point(
+    start, way, deep, pitch * (floor(j / 2) + 1), thickness, kerf, (floor(j / 2) + first) % 2, j % 2
+) for j in 0..<2 * count - 2]
 
-// A corner at the end of a part, on its own level or (is_next: 1) on that of the next part.
+// A corner at the end of a part, which is a notch (1) or a tab (0), on its own level or (is_next: 1) on that of the next.
 fn finger_point(
     start: point,
     way: point,
-    part: integer,
-    is_tab: bool,
-    is_next: integer,
-    pitch: length,
+    deep: point,
+    along: length,
     thickness: length,
-    kerf: length
-) = start + way * ((pitch * (part + 1) + kerf / 2 * (if is_tab then 1 else -1)) / 1mm) + turned(
-    way, 90deg
-) * (thickness * (if is_tab then is_next else 1 - is_next) / 1mm)
+    kerf: length,
+    is_notch: integer,
+    is_next: integer
+) = start + way * ((along + kerf / 2 * (1 - 2 * is_notch)) / 1mm) + deep * (
+    thickness * (if is_notch == 1 then 1 - is_next else is_next) / 1mm
+)
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///
