@@ -148,23 +148,9 @@ fn fingers_between(
     kerf: length,
     count: integer,
     first: integer
-) = [finger_point(
-    start, way, deep, pitch * (floor(j / 2) + 1), thickness, kerf, (floor(j / 2) + first) % 2, j % 2
-) for j in 0..<2 * count - 2]
-
-// A corner at the end of a part, which is a notch (1) or a tab (0), on its own level or (is_next: 1) on that of the next.
-fn finger_point(
-    start: point,
-    way: point,
-    deep: point,
-    along: length,
-    thickness: length,
-    kerf: length,
-    is_notch: integer,
-    is_next: integer
-) = start + way * ((along + kerf / 2 * (1 - 2 * is_notch)) / 1mm) + deep * (
-    thickness * (if is_notch == 1 then 1 - is_next else is_next) / 1mm
-)
+) = [start + way * (
+    (pitch * ((j - j % 2) / 2 + 1) + kerf / 2 * (1 - 2 * (((j - j % 2) / 2 + first) % 2))) / 1mm
+) + deep * (thickness * (((j - j % 2) / 2 + first + j) % 2) / 1mm) for j in 0..<2 * count - 2]
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///
