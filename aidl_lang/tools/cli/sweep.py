@@ -209,6 +209,7 @@ def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
 
 
 def _short(text: str, most: int = 200) -> str:
+    text = text.replace("\n", "\\n").replace("\r", "\\r")
     return text if len(text) <= most else f"{text[:most]}… ({len(text)} characters)"
 
 

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import PurePath
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
-from aidl_lang.tools.sweeping.axes import shown
-from aidl_lang.tools.sweeping.plan import Variant
+from aidl_lang.tools.sweeping.axes import Value, shown
+from aidl_lang.tools.sweeping.plan import Plan, Variant
 
 NUMBER = "n"
 """The field for the number of a variant."""
@@ -26,11 +26,16 @@ _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?")
 
 @record()
 class Pattern:
-    """The pattern of a name. `parts` are its texts and, at odd places, its fields."""
+    """The pattern of a name.
+
+    parts    its texts and, at odd places, its fields
+    written  the values that params have where a variant does not set them
+    """
 
     text: str
     suffix: str
     parts: tuple[str, ...]
+    written: Mapping[str, Value]
 
     @property
     def folder(self) -> PurePath:
@@ -46,9 +51,9 @@ class Pattern:
     def _value(self, field: str, variant: Variant) -> str:
         if field == NUMBER:
             return str(variant.number)
-        if field in variant.values:
-            return safe(shown(variant.values[field]))
-        return safe(variant.labels.get(field, "")) if field in variant.labels else "as-written"
+        if field in variant.labels:
+            return safe(variant.labels[field])
+        return safe(shown(variant.values.get(field, self.written.get(field, ""))))
 
 
 def has_fields(text: str) -> bool:
@@ -56,8 +61,9 @@ def has_fields(text: str) -> bool:
     return _FIELD.search(text) is not None
 
 
-def pattern(text: str, suffix: str, fields: Sequence[str]) -> Pattern:
-    """Reads a pattern; `fields` are the params and columns that it may name. Raises AidlError."""
+def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
+    """Reads a pattern, which names params and columns of a plan. Raises AidlError."""
+    fields = [*plan.labels, *plan.paths]
     parts = _FIELD.split(text)
     by_name = {fold(name): name for name in [*fields, NUMBER]}
     for k in range(1, len(parts), 2):
@@ -69,7 +75,7 @@ def pattern(text: str, suffix: str, fields: Sequence[str]) -> Pattern:
                 Diagnostic("E0973", f"`{text}` names `{{{parts[k]}}}`, which is not varied", hints=(*near, f"there is {there}"))
             )
         parts[k] = known
-    return Pattern(text, suffix, tuple(parts))
+    return Pattern(text, suffix, tuple(parts), {path: knob.value for path, knob in plan.knobs.items()})
 
 
 def safe(text: str) -> str:

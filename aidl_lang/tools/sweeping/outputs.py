@@ -51,7 +51,7 @@ def outputs(names: Sequence[str], plan: Plan, program: str, fallback: str | None
     for name in dict.fromkeys(names):
         suffix = PurePath(name).suffix.lower()
         if has_fields(name):
-            patterns.append(pattern(name, suffix_of(name, fallback), [*plan.labels, *plan.paths]))
+            patterns.append(pattern(name, suffix_of(name, fallback), plan))
             continue
         if not Path(name).parent.is_dir():
             raise AidlError(Diagnostic("E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"))

@@ -96,7 +96,7 @@ class Columns:
     def _value(self, path: str, variant: Variant, outcome: Outcome) -> Value | None:
         """Returns the value of a param: as it was set, or as written where the table leaves it out."""
         found = variant.values.get(path)
-        return outcome.params.get(path) if found is None else found
+        return outcome.params.get(path, self._plan.knobs[path].value) if found is None else found
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:

@@ -86,13 +86,15 @@ def _outcome(compiled: Compiled, making: Making) -> Outcome:
     measures: Measures = {}
     files: dict[str, tuple[bytes, ...]] = {}
     picture = b""
-    if compiled.drawing is not None and (compiled.ok or making.best_effort):
+    is_wanted = compiled.ok or making.best_effort
+    if compiled.drawing is not None and (compiled.status == "solved" or is_wanted):
         try:
             measures = _measured(compiled.measured())
         except NothingThereError:
             measures = {}  # strokes alone cover no area
         except AidlError as reason:
             found += reason.diagnostics
+    if compiled.drawing is not None and is_wanted:
         files, said = _files(compiled, making)
         found += said
     if compiled.drawing is not None and making.picture:
