@@ -55,18 +55,18 @@ class Columns:
 
     def __init__(self, plan: Plan, timings: bool = True) -> None:
         self._plan = plan
-        self._given = ["n", *plan.labels, *plan.paths]
+        self.given = ["n", *plan.labels, *plan.paths]
         results = ["status", "ok", *(_DRAWN.get(name, name) for name in MEASURES), "dof", "asserts"]
         results += ["failed_asserts", "changed", "errors", "warnings", "messages", "files", "command"]
         if timings:
             results.append("seconds")
-        taken = set(self._given)
+        taken = set(self.given)
         self._results = [f"result_{name}" if name in taken else name for name in results]
         self._timings = timings
 
     @property
     def names(self) -> list[str]:
-        return [*self._given, *self._results]
+        return [*self.given, *self._results]
 
     def cells(self, row: Row) -> list[Cell]:
         """Returns the cells of a row, in the order of the names."""
