@@ -170,6 +170,10 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps(_summary(session, failures), indent=2, ensure_ascii=False))
     _list(failures, arguments.output)
+    if session.stale:
+        from aidl_lang.common.prose import named
+
+        say(f"of an earlier run, and left as they are, though their variants fail now: {named(session.stale)}")
     if session.renamed:
         say(f"{counted(session.renamed, 'file')} would have shared a name, and got the number of the variant")
     if session.given_again:

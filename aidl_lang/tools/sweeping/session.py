@@ -78,6 +78,8 @@ class Session:
     given_again: int = 0
     seconds: float = 0.0
     was_stopped: bool = False
+    stale: list[str] = field(default_factory=list)
+    """Files of earlier runs that stand where failing variants have none to write."""
     unfinished: Path | None = None
     """The folder of what is done, if the sweep is not over."""
 
@@ -140,6 +142,8 @@ class Session:
         except AidlError as reason:
             told = tuple(map(fault, reason.diagnostics))
             outcome = replace(outcome, ok=False, faults=(*told, *outcome.faults))
+        if not written:
+            self.stale += drawings.stale(done.variant)
         self.failed += not outcome.ok
         self.kept += done.was_kept
         light = replace(outcome, files={})
