@@ -29,7 +29,7 @@ class Asked(NamedTuple):
     best_effort: bool
 
 
-def read(given: Mapping[str, object], compiled: Compiled) -> Asked:
+def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked:
     """Reads keywords as the command line reads its options: `kerf=0.15`, `kerf="0.15mm"`, `sheet="a3"`,
     `sheet=(600, 400)`, `dimension=True`.
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from aidl_lang.common.records import record
 from aidl_lang.tools.sweeping.axes import Value
 from aidl_lang.tools.sweeping.faults import Fault
-from aidl_lang.tools.sweeping.outcome import MEASURES, Outcome
+from aidl_lang.tools.sweeping.outcome import MEASURES, Measures, Outcome
 from aidl_lang.tools.sweeping.plan import Plan, Variant
 
 Cell: TypeAlias = float | int | str | bool | None | list[str]
@@ -32,7 +32,28 @@ class Row:
 
     @property
     def ok(self) -> bool:
+        """Whether it solved, all asserts hold, and all its files could be made."""
         return self.outcome.ok
+
+    @property
+    def number(self) -> int:
+        """From 1, in the order of the sweep."""
+        return self.variant.number
+
+    @property
+    def params(self) -> Mapping[str, Value]:
+        """What was set, by path."""
+        return self.variant.values
+
+    @property
+    def status(self) -> str:
+        """`solved`, `partial`, `failed`, `wrong`; `broken` if it met a limit."""
+        return self.outcome.status
+
+    @property
+    def measures(self) -> Measures:
+        """The measures of the whole, in mm, mm², mm³ and g."""
+        return self.outcome.measures
 
     @property
     def message(self) -> str:
