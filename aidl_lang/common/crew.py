@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Generic, TypeVar
 
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.processes import Engine, Limit, limit_met
 from aidl_lang.common.records import record
 
@@ -24,6 +25,10 @@ _RETURNS = 20
 
 class GoneError(Exception):
     """Raised in place of a result where the engine lost a call, as a cluster that was started anew does."""
+
+
+class EngineError(AidlError):
+    """Raised where the engine itself fails, so that no call can be carried out."""
 
 
 @record()
@@ -74,13 +79,15 @@ class Crew(Generic[K, T]):
         self._waiting[self._engine.submit(call.seconds, call.task, *call.arguments)] = call
 
     def came(self, timeout: float | None = None) -> list[tuple[K, T | Broke]]:
-        """Returns the calls that are done, once there are some or after `timeout` seconds."""
+        """Returns the calls that are done, once there are some or after `timeout` seconds. Raises EngineError."""
         done, _ = wait(self._waiting, timeout, FIRST_COMPLETED)
         found: list[tuple[K, T | Broke]] = []
         for future in [each for each in self._waiting if each in done]:
             call = self._waiting.pop(future)
             try:
                 found.append((call.key, future.result()))
+            except EngineError:
+                raise
             except Exception as error:  # noqa: BLE001 (handed over, whatever it is)
                 if (again := _once_more(call, error)) is None:
                     found.append((call.key, Broke(limit_met(error), error)))

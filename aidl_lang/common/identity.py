@@ -26,9 +26,9 @@ def package() -> str:
     for name in ("stdlib", "grammar"):
         folder = resource(name)
         shipped += [(path, Path(name, path.name)) for path in folder.iterdir() if path.is_file()]
-    for path, name in sorted(shipped, key=lambda each: each[1].as_posix()):
+    for path, place in sorted(shipped, key=lambda each: each[1].as_posix()):
         data = path.read_bytes()
-        digest.update(f"{name.as_posix()} {len(data)}\n".encode())
+        digest.update(f"{place.as_posix()} {len(data)}\n".encode())
         digest.update(data)
     return f"{__version__}+{digest.hexdigest()[:16]}"
 

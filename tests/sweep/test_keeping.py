@@ -61,7 +61,9 @@ class Planted:
 marker = ""
 
 
-@pytest.mark.parametrize("kind", ["pickle in the value", "pickle in a file", "pickled key", "no JSON", "other JSON", "bomb"])
+@pytest.mark.parametrize(
+    "kind", ["pickle in the value", "pickle in a file", "pickled key", "no JSON", "other JSON", "bomb"]
+)
 def test_what_somebody_plants_is_not_believed(tmp_path: Path, kind: str) -> None:
     global marker
     marker = str(tmp_path / "ran")
@@ -178,4 +180,6 @@ def test_the_key_has_all_that_an_outcome_depends_on() -> None:
         made(making=Making((".dxf",), picture=10)),
     ]
     assert len(set(keys)) == len(keys)
-    assert made(making=Making((), Options(show=frozenset(["a", "b"])))) == made(making=Making((), Options(show=frozenset(["b", "a"]))))
+    assert made(making=Making((), Options(show=frozenset(["a", "b"])))) == made(
+        making=Making((), Options(show=frozenset(["b", "a"])))
+    )

@@ -13,7 +13,11 @@ from tests.sweep.here import PLATE
 
 def test_a_sweep_is_an_iterator_and_a_table(tmp_path: Path) -> None:
     with aidl_lang.sweep(
-        PLATE, {"width": range(40, 121, 40), "style": ["square"]}, output=tmp_path / "{width}.svg", jobs=1, theme="ink"
+        PLATE,
+        {"width": range(40, 121, 40), "style": ["square"]},
+        output=tmp_path / "{width}.svg",
+        jobs=1,
+        theme="ink",
     ) as swept:
         assert (len(swept), repr(swept)) == (3, "<aidl_lang.Sweep 0 of 3 variants>")
         first = next(iter(swept))
@@ -41,7 +45,7 @@ def test_values_may_be_written_as_on_the_command_line() -> None:
         (({"widht": [1]},), "there is no param `widht`"),
         (({"width": [1]}, {"on": "tpc://x"}), "there is no engine `tpc://x`"),
         (({"width": [1]}, {"kerv": 1}), "there is no option `kerv`"),
-        (({"width": [1]}, {"output": "x.dxf"}), "all 1 variant would be written to `x.dxf`"),
+        (({"width": [1]}, {"output": "x.dxf"}), "every variant would be written to `x.dxf`"),
     ],
 )
 def test_what_cannot_be_is_refused(arguments: tuple[dict[str, object], ...], said: str) -> None:

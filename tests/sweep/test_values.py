@@ -56,7 +56,9 @@ def knobs() -> tuple[Knob, ...]:
         ("Deep", "1,2", [1, 2]),
     ],
 )
-def test_values_as_they_are_written(knobs: tuple[Knob, ...], name: str, written: str, values: list[object]) -> None:
+def test_values_as_they_are_written(
+    knobs: tuple[Knob, ...], name: str, written: str, values: list[object]
+) -> None:
     assert list(axis(name, written, knobs).values) == values
 
 
@@ -70,7 +72,11 @@ def test_values_as_they_are_written(knobs: tuple[Knob, ...], name: str, written:
         ("width", "60..", "`60..` is no range for `width`"),
         ("width", "60..200/8/2", "`60..200/8/2` is no range for `width`"),
         ("width", "60..200 step 0", "the step of `width` is not above 0"),
-        ("width", "0..1e9 step 1e-9", "`width` would take 999999999999999873 values; a sweep has 1 to 1000000"),
+        (
+            "width",
+            "0..1e9 step 1e-9",
+            "`width` would take 999999999999999873 values; a sweep has 1 to 1000000",
+        ),
         ("width", "1e999..2e999/2", "`1e999` is too large for `width`"),
         ("width", "60xy..80/2", "`60xy` of `width` has no unit that there is"),
         ("width", "60,,80", "`60,,80` leaves a value of `width` out"),
@@ -78,7 +84,9 @@ def test_values_as_they_are_written(knobs: tuple[Knob, ...], name: str, written:
         ("name", 'a,"b', '`a,"b` is no list of values for `name`: a quote has no end'),
     ],
 )
-def test_values_that_say_nothing_are_refused(knobs: tuple[Knob, ...], name: str, written: str, said: str) -> None:
+def test_values_that_say_nothing_are_refused(
+    knobs: tuple[Knob, ...], name: str, written: str, said: str
+) -> None:
     with pytest.raises(AidlError) as raised:
         axis(name, written, knobs)
     message = raised.value.diagnostic.message
@@ -112,10 +120,15 @@ def test_what_is_drawn_depends_on_the_seed_alone(knobs: tuple[Knob, ...]) -> Non
     [
         ([("width", "60"), ("Width", "80")], "`width` is set twice"),
         ([], "nothing is varied"),
-        ([("width", "1..2/1000"), ("deep", "1..2/2000")], "2000000 variants are too many; a sweep has up to 1000000"),
+        (
+            [("width", "1..2/1000"), ("deep", "1..2/2000")],
+            "2000000 variants are too many; a sweep has up to 1000000",
+        ),
     ],
 )
-def test_plans_that_cannot_be_are_refused(knobs: tuple[Knob, ...], values: list[tuple[str, str]], said: str) -> None:
+def test_plans_that_cannot_be_are_refused(
+    knobs: tuple[Knob, ...], values: list[tuple[str, str]], said: str
+) -> None:
     with pytest.raises(AidlError) as raised:
         planned(knobs, [axis(*each, knobs) for each in values])
     assert raised.value.diagnostic.message == said
@@ -131,7 +144,10 @@ def test_a_table_has_params_and_other_columns(tmp_path: Path, knobs: tuple[Knob,
     text = '\ufeffOrder no.,Name,width,hollow\r\n17,"two\r\nlines",6cm,TRUE\r\n\r\n18," x ",,0\r\n'
     rows = read_table(table(tmp_path, text), knobs)
     assert (rows.params, rows.labels) == (("name", "width", "hollow"), ("Order no.",))
-    assert rows.values == ({"name": "two\r\nlines", "width": "6cm", "hollow": True}, {"name": " x ", "hollow": False})
+    assert rows.values == (
+        {"name": "two\r\nlines", "width": "6cm", "hollow": True},
+        {"name": " x ", "hollow": False},
+    )
     assert rows.labelled == ({"Order no.": "17"}, {"Order no.": "18"})
 
 
@@ -147,7 +163,10 @@ def test_a_table_has_params_and_other_columns(tmp_path: Path, knobs: tuple[Knob,
         ("width,\n1,2\n", "a column of `{}` has no name"),
         ('width\n"1\n', "line 2 of `{}` is no CSV: unexpected end of data"),
         (b"width\n\xff\n", "`{}` is not UTF-8 text (byte 6)"),
-        ("name\n" + "x" * 1_000_001 + "\n", "line 2 of `{}` is no CSV: field larger than field limit (1000000)"),
+        (
+            "name\n" + "x" * 1_000_001 + "\n",
+            "line 2 of `{}` is no CSV: field larger than field limit (1000000)",
+        ),
     ],
 )
 def test_tables_that_are_none_are_refused(
@@ -166,6 +185,10 @@ def test_values_from_python(knobs: tuple[Knob, ...]) -> None:
     assert from_values("width", np.linspace(0, 1, 3), knobs).values == (0.0, 0.5, 1.0)
     assert from_values("name", "abc", knobs).values == ("abc",)
     assert from_values("hollow", [True, "false"], knobs).values == (True, False)
-    for wrong, said in (([], "there are no values"), ([None], "takes numbers"), (iter(int, 1), "more than 1000000")):
+    for wrong, said in (
+        ([], "there are no values"),
+        ([None], "takes numbers"),
+        (iter(int, 1), "more than 1000000"),
+    ):
         with pytest.raises(AidlError, match=said):
             from_values("width", wrong, knobs)

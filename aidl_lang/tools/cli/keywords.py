@@ -63,7 +63,9 @@ def said(arguments: argparse.Namespace) -> list[str]:
         word
         for name, value in asked.items()
         if value != defaults[name]
-        for word in _words(name, sorted(value) if isinstance(value, frozenset) else value, is_flag=defaults[name] is False)
+        for word in _words(
+            name, sorted(value) if isinstance(value, frozenset) else value, is_flag=defaults[name] is False
+        )
     ]
 
 

@@ -38,11 +38,20 @@ def register(parser: argparse.ArgumentParser) -> None:
     )
     add_program(parser)
     parser.add_argument(
-        "-D", dest="params", action="append", default=[], type=_axis, metavar="NAME=VALUES", help="vary a param"
+        "-D",
+        dest="params",
+        action="append",
+        default=[],
+        type=_axis,
+        metavar="NAME=VALUES",
+        help="vary a param",
     )
     parser.add_argument("--table", metavar="CSV", help="a variant for each row; columns are params")
     parser.add_argument(
-        "--random", type=count_to(1_000_000), metavar="N", help="draw so many variants within the ranges of params"
+        "--random",
+        type=count_to(1_000_000),
+        metavar="N",
+        help="draw so many variants within the ranges of params",
     )
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is drawn (default: 1)")
     add_outputs(
@@ -55,19 +64,35 @@ def register(parser: argparse.ArgumentParser) -> None:
     add_strict(parser)
     running = parser.add_argument_group("running")
     running.add_argument(
-        "--on", default="local", metavar="ENGINE", help="local (the default), or a scheduler of Dask: tcp://host:8786"
+        "--on",
+        default="local",
+        metavar="ENGINE",
+        help="local (the default), or a scheduler of Dask: tcp://host:8786",
     )
     running.add_argument(
-        "--jobs", type=count_to(1000), metavar="N", help="processes of this machine (default: one for each processor)"
+        "--jobs",
+        type=count_to(1000),
+        metavar="N",
+        help="processes of this machine (default: one for each processor)",
     )
     running.add_argument("--stop-on-error", action="store_true", help="stop at the first variant that fails")
-    running.add_argument("--resume", action="store_true", help="go on with the same sweep that was broken off")
-    running.add_argument("--cache", metavar="DIR", help="keep what comes of variants there, and take what is kept")
     running.add_argument(
-        "--cache-size", type=count_to(1_000_000), metavar="MB", help="most that the cache keeps (default: 4096)"
+        "--resume", action="store_true", help="go on with the same sweep that was broken off"
     )
     running.add_argument(
-        "--no-timings", dest="timings", action="store_false", help="leave the seconds out of tables, which are the same every time then"
+        "--cache", metavar="DIR", help="keep what comes of variants there, and take what is kept"
+    )
+    running.add_argument(
+        "--cache-size",
+        type=count_to(1_000_000),
+        metavar="MB",
+        help="most that the cache keeps (default: 4096)",
+    )
+    running.add_argument(
+        "--no-timings",
+        dest="timings",
+        action="store_false",
+        help="leave the seconds out of tables, which are the same every time then",
     )
     running.add_argument(
         "--progress",
@@ -173,11 +198,15 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
     if session.stale:
         from aidl_lang.common.prose import named
 
-        say(f"of an earlier run, and left as they are, though their variants fail now: {named(session.stale)}")
+        say(
+            f"of an earlier run, and left as they are, though their variants fail now: {named(session.stale)}"
+        )
     if session.renamed:
         say(f"{counted(session.renamed, 'file')} would have shared a name, and got the number of the variant")
     if session.given_again:
-        say(f"{counted(session.given_again, 'variant')} had to be begun again, as what compiled them was gone")
+        say(
+            f"{counted(session.given_again, 'variant')} had to be begun again, as what compiled them was gone"
+        )
     if session.was_stopped:
         _tell_unfinished(session)
     say(f"{arguments.file}: {line(session)}")
@@ -244,7 +273,10 @@ def _summary(session: Session, failures: Sequence[Row]) -> dict[str, Any]:
                 "params": dict(row.variant.values),
                 "labels": dict(row.variant.labels),
                 "status": row.outcome.status,
-                "messages": [{"code": f.code, "message": f.message, "label": f.label, "file": f.file, "line": f.line} for f in row.outcome.errors],
+                "messages": [
+                    {"code": f.code, "message": f.message, "label": f.label, "file": f.file, "line": f.line}
+                    for f in row.outcome.errors
+                ],
                 "command": row.command,
             }
             for row in failures

@@ -154,7 +154,10 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
         raise wrong(f"`{written}` is no range for `{knob.path}`")
     low, high = (_measure(knob, found[end]) for end in ("low", "high"))
     if low > high:
-        raise wrong(f"the range `{written}` of `{knob.path}` runs backwards", f"write `{found['high']}..{found['low']}`")
+        raise wrong(
+            f"the range `{written}` of `{knob.path}` runs backwards",
+            f"write `{found['high']}..{found['low']}`",
+        )
     if is_drawn:
         step = _measure(knob, found["step"]) if found["step"] else knob.step
         return Axis(knob.path, (), Span(low, high, step))
@@ -176,7 +179,9 @@ def _measure(knob: Knob, text: str) -> float:
     factor = 1.0
     if unit:
         if unit not in UNITS:
-            raise wrong(f"`{text}` of `{knob.path}` has no unit that there is", f"units are {', '.join(UNITS)}")
+            raise wrong(
+                f"`{text}` of `{knob.path}` has no unit that there is", f"units are {', '.join(UNITS)}"
+            )
         factor = UNITS[unit][0]
     measured = float(number) * factor
     if not math.isfinite(measured):

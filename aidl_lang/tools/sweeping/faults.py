@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.processes import Limit
 from aidl_lang.common.records import record
 
 
@@ -29,6 +30,18 @@ class Fault:
     def place(self) -> tuple[str, str | None, int | None]:
         """Returns the key by which it is recognised at another value."""
         return self.code, self.file, self.line
+
+
+BROKEN = {
+    Limit.TIME: "the program takes longer than a compile may",
+    Limit.DEATH: "the program ends the process that compiles it",
+    Limit.MEMORY: "the program needs more memory than there is for it",
+}
+
+
+def limit_fault(limit: Limit) -> Fault:
+    """Returns what there is to say of a program that met a limit."""
+    return Fault("E0603", BROKEN[limit])
 
 
 def fault(diagnostic: Diagnostic) -> Fault:

@@ -44,9 +44,7 @@ class Pattern:
 
     def named(self, variant: Variant) -> str:
         """Returns the name for a variant."""
-        return "".join(
-            self._value(part, variant) if k % 2 else part for k, part in enumerate(self.parts)
-        )
+        return "".join(self._value(part, variant) if k % 2 else part for k, part in enumerate(self.parts))
 
     def _value(self, field: str, variant: Variant) -> str:
         if field == NUMBER:
@@ -72,7 +70,11 @@ def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
             near = did_you_mean(nearest(parts[k], fields)[:1])
             there = first_few(ticked([f"{{{name}}}" for name in [*fields, NUMBER]]), 12)
             raise AidlError(
-                Diagnostic("E0973", f"`{text}` names `{{{parts[k]}}}`, which is not varied", hints=(*near, f"there is {there}"))
+                Diagnostic(
+                    "E0973",
+                    f"`{text}` names `{{{parts[k]}}}`, which is not varied",
+                    hints=(*near, f"there is {there}"),
+                )
             )
         parts[k] = known
     return Pattern(text, suffix, tuple(parts), {path: knob.value for path, knob in plan.knobs.items()})

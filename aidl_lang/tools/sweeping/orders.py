@@ -86,11 +86,15 @@ def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Kno
         seen.add(fold(name))
         knob = by_name.get(fold(name))
         if knob is None and (near := nearest(name, paths)):
-            raise _wrong(f"`{path}` has a column `{name}`, and there is no such param", *did_you_mean(near[:1]))
+            raise _wrong(
+                f"`{path}` has a column `{name}`, and there is no such param", *did_you_mean(near[:1])
+            )
         found.append(knob)
     if not any(found):
         known = first_few(ticked(paths), 12) or "none"
-        raise _wrong(f"no column of `{path}` is a param: it has {named(head)}", f"params of this program: {known}")
+        raise _wrong(
+            f"no column of `{path}` is a param: it has {named(head)}", f"params of this program: {known}"
+        )
     return found
 
 

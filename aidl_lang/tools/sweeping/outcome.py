@@ -10,7 +10,19 @@ from typing import Any
 from aidl_lang.common.records import record
 from aidl_lang.tools.sweeping.faults import Fault
 
-MEASURES = ("width", "height", "area", "perimeter", "bodies", "pieces", "holes", "wall", "gap", "volume", "mass")
+MEASURES = (
+    "width",
+    "height",
+    "area",
+    "perimeter",
+    "bodies",
+    "pieces",
+    "holes",
+    "wall",
+    "gap",
+    "volume",
+    "mass",
+)
 """The measures of the whole, in mm, mm², mm³ and g; None where there is none, or it is not known."""
 ASSERT = "E0604"
 
@@ -85,7 +97,10 @@ def from_data(data: Any) -> Outcome:
     data that is none.
     """
     faults = tuple(Fault(**each) for each in data["faults"])
-    strings = [data["status"], *(text for each in faults for text in (each.code, each.message, each.label, each.text))]
+    strings = [
+        data["status"],
+        *(text for each in faults for text in (each.code, each.message, each.label, each.text)),
+    ]
     numbers = [data["asserts"], data["seconds"], *(data["measures"][name] for name in data["measures"])]
     if not all(isinstance(each, str) for each in strings) or not all(
         each is None or isinstance(each, int | float) for each in [*numbers, data["dof"]]
@@ -99,7 +114,10 @@ def from_data(data: Any) -> Outcome:
         faults,
         {str(path): _plain(value) for path, value in data["params"].items()},
         dict(data["measures"]),
-        tuple(Change(str(each["path"]), float(each["written"]), float(each["solved"])) for each in data["changed"]),
+        tuple(
+            Change(str(each["path"]), float(each["written"]), float(each["solved"]))
+            for each in data["changed"]
+        ),
         data["asserts"],
         data["dof"],
         data["seconds"],

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePath
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.replacing import replace
 from aidl_lang.export import FORMATS, file_names, require, suffix_of
@@ -54,7 +53,11 @@ def outputs(names: Sequence[str], plan: Plan, program: str, fallback: str | None
             patterns.append(pattern(name, suffix_of(name, fallback), plan))
             continue
         if not Path(name).parent.is_dir():
-            raise AidlError(Diagnostic("E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"))
+            raise AidlError(
+                Diagnostic(
+                    "E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
+                )
+            )
         if suffix in TABLES:
             if suffix == ".parquet":
                 require("pyarrow", name, ARROW_EXTRA)
@@ -77,11 +80,13 @@ def _shared(name: str, suffix: str, plan: Plan) -> AidlError:
     if suffix in FORMATS:
         field = plan.paths[0] if len(plan.paths) == 1 else "n"
         one = path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")
-        message = f"all {counted(len(plan), 'variant')} would be written to `{name}`"
+        message = f"every variant would be written to `{name}`"
         return AidlError(Diagnostic("E0973", message, hints=(f"say what differs in the name: `{one}`",)))
     known = f"tables are {', '.join(TABLES)}, contact sheets {', '.join(SHEETS)}"
     drawings = "a drawing has a field in its name, as in `out/{n}.dxf`"
-    return AidlError(Diagnostic("E0905", f"`{name}` is neither a table nor a contact sheet", hints=(known, drawings)))
+    return AidlError(
+        Diagnostic("E0905", f"`{name}` is neither a table nor a contact sheet", hints=(known, drawings))
+    )
 
 
 class Drawings:
@@ -131,4 +136,6 @@ def write(name: str, data: bytes) -> None:
         if path.is_symlink() or not path.is_file() or path.read_bytes() != data:
             replace(path, data)
     except OSError as error:
-        raise AidlError(Diagnostic("E0904", f"`{name}` cannot be written: {(error.strerror or str(error)).lower()}")) from None
+        raise AidlError(
+            Diagnostic("E0904", f"`{name}` cannot be written: {(error.strerror or str(error)).lower()}")
+        ) from None

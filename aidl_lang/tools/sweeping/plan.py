@@ -87,7 +87,9 @@ class Plan:
 
     def _drawn(self, count: int, seed: int) -> Iterator[Variant]:
         for number in range(1, count + 1):
-            values = {axis.path: _draw(axis, random.Random(f"{seed} {axis.path} {number}")) for axis in self.axes}
+            values = {
+                axis.path: _draw(axis, random.Random(f"{seed} {axis.path} {number}")) for axis in self.axes
+            }
             yield Variant(number, values, {})
 
 
@@ -109,7 +111,10 @@ def planned(
     """Returns the plan of a sweep. Raises AidlError if there is nothing to vary, or too much."""
     if drawn is not None:
         if rows is not None:
-            raise wrong("a table says all variants, so none can be drawn at random", "leave out the table, or `--random`")
+            raise wrong(
+                "a table says all variants, so none can be drawn at random",
+                "leave out the table, or `--random`",
+            )
         axes = [*axes, *_free(knobs, {axis.path for axis in axes})]
     plan = Plan({knob.path: knob for knob in knobs}, tuple(axes), rows, drawn)
     seen: set[str] = set()
@@ -120,7 +125,9 @@ def planned(
     if not seen:
         raise wrong("nothing is varied")
     if not 1 <= len(plan) <= MOST:
-        raise wrong(f"{len(plan)} variants are too many; a sweep has up to {MOST}", "sweep a part of them at a time")
+        raise wrong(
+            f"{len(plan)} variants are too many; a sweep has up to {MOST}", "sweep a part of them at a time"
+        )
     return plan
 
 

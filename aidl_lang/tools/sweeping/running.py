@@ -9,11 +9,11 @@ from dataclasses import replace
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.processes import Engine, Limit
+from aidl_lang.common.processes import Engine
 from aidl_lang.common.records import record
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import Bundle, Gathering, digest_of, patience
-from aidl_lang.tools.sweeping.faults import Fault
+from aidl_lang.tools.sweeping.faults import Fault, limit_fault
 from aidl_lang.tools.sweeping.keeping import Store
 from aidl_lang.tools.sweeping.outcome import Outcome
 from aidl_lang.tools.sweeping.plan import Plan, Variant
@@ -23,11 +23,6 @@ _PAUSE = 0.2
 """Seconds after which the run looks whether it is still wanted."""
 _ROUNDS = 100
 """How often a variant may ask for further files."""
-BROKEN = {
-    Limit.TIME: "the program takes longer than a compile may",
-    Limit.DEATH: "the program ends the process that compiles it",
-    Limit.MEMORY: "the program needs more memory than there is for it",
-}
 
 
 @record()
@@ -133,7 +128,6 @@ class Run:
 def _broken(broke: Broke) -> Outcome:
     """Returns the outcome of a variant that met a limit, or a bug."""
     if broke.limit is not None:
-        message = BROKEN[broke.limit]
-    else:
-        message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
+        return Outcome("broken", False, (limit_fault(broke.limit),))
+    message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
     return Outcome("broken", False, (Fault("E0603", message),))

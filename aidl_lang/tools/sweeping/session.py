@@ -148,7 +148,13 @@ class Session:
         self.kept += done.was_kept
         light = replace(outcome, files={})
         names = written or drawings.names(done.variant)
-        return Row(done.variant, light, tuple(written), self.job.command(done.variant, names[0] if names else ""), done.was_kept)
+        return Row(
+            done.variant,
+            light,
+            tuple(written),
+            self.job.command(done.variant, names[0] if names else ""),
+            done.was_kept,
+        )
 
     def _tell(self, run: Run) -> None:
         progress = Progress(
@@ -170,4 +176,3 @@ class Session:
             from aidl_lang.tools.sweeping.sheet import contact_sheet
 
             write(name, contact_sheet(Path(name).suffix.lower(), self.job.bundle.name, columns, rows))
-

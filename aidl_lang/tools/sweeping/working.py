@@ -108,8 +108,15 @@ def _outcome(compiled: Compiled, making: Making) -> Outcome:
         tuple(map(fault, [*errors, *warnings][:_MOST_FAULTS])),
         {knob.path: knob.value for knob in compiled.knobs},
         measures,
-        () if model is None else tuple(Change(c.path, significant(c.written), significant(c.solved)) for c in model.changed[:_MOST_CHANGES]),
-        0 if compiled.built is None else sum(not a.shape and a.outline is None for a in compiled.built.assertions),
+        ()
+        if model is None
+        else tuple(
+            Change(c.path, significant(c.written), significant(c.solved))
+            for c in model.changed[:_MOST_CHANGES]
+        ),
+        0
+        if compiled.built is None
+        else sum(not a.shape and a.outline is None for a in compiled.built.assertions),
         None if model is None else model.degrees,
         files=files,
         picture=picture,

@@ -46,12 +46,19 @@ def page(title: str, columns: Columns, rows: Sequence[Row]) -> bytes:
 
 def _entry(columns: Columns, row: Row) -> dict[str, Any]:
     cells = dict(as_mapping(columns.names, columns.cells(row)))
-    return {"cells": cells, "ok": row.ok, "message": row.message, "picture": b64encode(row.outcome.picture).decode()}
+    return {
+        "cells": cells,
+        "ok": row.ok,
+        "message": row.message,
+        "picture": b64encode(row.outcome.picture).decode(),
+    }
 
 
 def _json(data: object) -> str:
     """Returns JSON as it may stand in a script: nothing in it ends the element or begins a comment."""
-    return json.dumps(data, ensure_ascii=True, allow_nan=False).replace("<", "\\u003c").replace(">", "\\u003e")
+    return (
+        json.dumps(data, ensure_ascii=True, allow_nan=False).replace("<", "\\u003c").replace(">", "\\u003e")
+    )
 
 
 def _hash(text: str) -> str:
