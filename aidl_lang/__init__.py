@@ -183,8 +183,8 @@ class Model:
         Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and for a
         model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
         """
-        from aidl_lang.export import file_names, suffix_of
         from aidl_lang.common.replacing import replace
+        from aidl_lang.export import file_names, suffix_of
         from aidl_lang.tools.cli.keywords import read
 
         asked = read(options, self._compiled)
@@ -306,10 +306,10 @@ def sweep(
 ) -> Sweep:
     """Compiles many variants of a program side by side: `sweep("box.aidl", {"width": range(60, 201, 20)})`.
 
-    The values of `params` make a grid; `table` is a CSV whose rows are variants, `random` draws so many. Iterate over
-    the sweep for the results as they come; `output` and the other options are those of `aidl sweep`, as keywords.
-    What is read is as for `compile`. Raises AidlError for values, outputs and engines that cannot be, and for a program
-    that is wrong as written.
+    The values of `params` make a grid; `table` is a CSV whose rows are variants, `random` draws so many.
+    Iterate over the sweep for the results as they come; `output` and the other options are those of `aidl
+    sweep`, as keywords. What is read is as for `compile`. Raises AidlError for values, outputs and engines
+    that cannot be, and for a program that is wrong as written.
     """
     from aidl_lang.tools.cli.keywords import read
     from aidl_lang.tools.sweeping.python import Sweep

@@ -1,8 +1,8 @@
 """Calls on a cluster: a scheduler of Dask and its workers, which come and go.
 
-Each worker carries a call out in a guarded process of its own, so that limits of time and memory hold as they do on
-one machine: one that hangs takes up a place for as long as it may and no longer. Nothing is assumed of a worker but the
-same package, which every call is compared with.
+Each worker carries a call out in a guarded process of its own, so that limits of time and memory hold as they
+do on one machine: one that hangs takes up a place for as long as it may and no longer. Nothing is assumed of
+a worker but the same package, which every call is compared with.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Cluster:
     """The workers of a scheduler, as an `Engine`."""
 
     def __init__(self, address: str, preload: str) -> None:
-        """Connects to a scheduler at an address such as `tcp://host:8786`; `preload` is the module that guarded
-        processes load at the start. Raises AidlError.
+        """Connects to a scheduler at an address such as `tcp://host:8786`; `preload` is the module that
+        guarded processes load at the start. Raises AidlError.
         """
         protocol, mark, rest = address.partition("://")
         if not mark or protocol not in PROTOCOLS or not rest:
@@ -190,8 +190,8 @@ def _pool(preload: str, threads: int) -> Guarded:
         if preload not in _pools:
             import multiprocessing
 
-            # A worker of Dask is a daemon, which `multiprocessing` lets have no children, lest they outlive it;
-            # guarded processes end with their parent by themselves.
+            # A worker of Dask is a daemon, which `multiprocessing` lets have no children, lest they outlive
+            # it; guarded processes end with their parent by themselves.
             multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
             _pools[preload] = Guarded(threads, preload)
         return _pools[preload]

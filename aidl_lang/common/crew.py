@@ -79,7 +79,9 @@ class Crew(Generic[K, T]):
         self._waiting[self._engine.submit(call.seconds, call.task, *call.arguments)] = call
 
     def came(self, timeout: float | None = None) -> list[tuple[K, T | Broke]]:
-        """Returns the calls that are done, once there are some or after `timeout` seconds. Raises EngineError."""
+        """Returns the calls that are done, once there are some or after `timeout` seconds. Raises
+        EngineError.
+        """
         done, _ = wait(self._waiting, timeout, FIRST_COMPLETED)
         found: list[tuple[K, T | Broke]] = []
         for future in [each for each in self._waiting if each in done]:

@@ -48,7 +48,7 @@ class Here:
         future: Future[T] = Future()
         try:
             future.set_result(task(*arguments))
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 (handed over)
             future.set_exception(error)
         return future
 

@@ -38,7 +38,17 @@ def begin(folder: Path, table: str, count: int, *more: str) -> subprocess.Popen[
     (folder / "lib.aidl").write_text(LIBRARY)
     (folder / "plate.aidl").write_text(PROGRAM)
     name = table.removesuffix(".csv")
-    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", "-D", f"width=40..120/{count // 2}", "-D", "style=*"]
+    words = [
+        sys.executable,
+        "-m",
+        "aidl_lang",
+        "sweep",
+        "plate.aidl",
+        "-D",
+        f"width=40..120/{count // 2}",
+        "-D",
+        "style=*",
+    ]
     words += ["-o", table, "-o", f"{name}/{{n}}.svg", "--no-timings", "--progress", "json", *more]
     return subprocess.Popen(words, cwd=folder, stderr=subprocess.PIPE, text=True)
 
@@ -64,6 +74,11 @@ def wait_until_done(run: subprocess.Popen[str], done: int) -> None:
         if line.startswith("{") and json.loads(line)["done"] >= done:
             return
     raise AssertionError("the sweep ended before")
+
+
+def finish(crew: Crew[str, str]) -> None:
+    while crew:
+        crew.came(60)
 
 
 def local(folder: Path, count: int) -> None:
@@ -109,7 +124,9 @@ def test_the_scheduler_may_be_started_anew(tmp_path: Path, two: LocalCluster) ->
 
 
 @pytest.mark.slow
-def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(tmp_path: Path, two: LocalCluster) -> None:
+def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
+    tmp_path: Path, two: LocalCluster
+) -> None:
     local(tmp_path, 120)
     run = begin(tmp_path, "remote.csv", 120, "--on", two.address)
     wait_until_done(run, 20)
@@ -157,8 +174,7 @@ def test_a_worker_with_another_package_is_told(two: LocalCluster, monkeypatch: p
         crew: Crew[str, str] = Crew(engine)
         crew.give("it", 10.0, obey, "well", "/nowhere")
         with pytest.raises(EngineError) as raised:
-            while crew:
-                crew.came(60)
+            finish(crew)
     finally:
         engine.close()
     told = raised.value.diagnostic
@@ -175,7 +191,9 @@ def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_stays_away_is_told(tmp_path: Path, two: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_stays_away_is_told(
+    tmp_path: Path, two: LocalCluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(cluster_module, "_RECONNECTING", 3.0)
     engine = Cluster(two.address, "aidl_lang.common.crew")
     try:
@@ -184,8 +202,7 @@ def test_a_scheduler_that_stays_away_is_told(tmp_path: Path, two: LocalCluster, 
         crew.came(5)
         two.close()
         with pytest.raises(EngineError) as raised:
-            while crew:
-                crew.came(60)
+            finish(crew)
     finally:
         engine.close()
     assert raised.value.diagnostic.message == (

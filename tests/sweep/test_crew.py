@@ -1,4 +1,6 @@
-"""Calls on an engine: one that hangs, dies or eats memory takes nothing along, and bad luck is made good once."""
+"""Calls on an engine: one that hangs, dies or eats memory takes nothing along, and bad luck is made good
+once.
+"""
 
 from __future__ import annotations
 

@@ -18,6 +18,7 @@ from aidl_lang.tools.sweeping.keeping import Store
 from aidl_lang.tools.sweeping.outcome import Change, Outcome
 from aidl_lang.tools.sweeping.working import Making
 
+MAKING = Making((".dxf",))
 OUTCOME = Outcome(
     "solved",
     True,
@@ -118,7 +119,8 @@ def test_it_stays_within_its_size(tmp_path: Path) -> None:
         store.put(f"{number}", Outcome("solved", True, files={".dxf": (data,)}), {})
     taken = sum(path.stat().st_size for path in (tmp_path / "cache").rglob("*.val"))
     assert taken < 600_000
-    assert store.get("59", nothing_read) is not None and store.get("0", nothing_read) is None
+    assert store.get("59", nothing_read) is not None
+    assert store.get("0", nothing_read) is None
 
 
 def _fill(folder: str, first: int) -> None:
@@ -163,7 +165,7 @@ def test_folders_that_are_no_cache_are_left_alone(tmp_path: Path) -> None:
 def test_the_key_has_all_that_an_outcome_depends_on() -> None:
     from aidl_lang.export import Options
 
-    def made(text: str = "a", making: Making = Making((".dxf",)), **params: float | str | bool) -> str:
+    def made(text: str = "a", making: Making = MAKING, **params: float | str | bool) -> str:
         return keeping.key(Bundle("p.aidl", text, {}), params, making)
 
     keys = [

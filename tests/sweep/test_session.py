@@ -47,7 +47,8 @@ def test_a_grid_has_a_drawing_and_a_row_for_each_variant(tmp_path: Path) -> None
     arrow = pyarrow.parquet.read_table(tmp_path / "table.parquet").to_pylist()
     assert lines == arrow
     assert [float(row["area"]) for row in found] == [line["area"] for line in lines]
-    assert session.is_complete and session.failed == 0
+    assert session.is_complete
+    assert session.failed == 0
     assert not list(tmp_path.glob("*.sweep"))
 
 

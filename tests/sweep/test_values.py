@@ -111,8 +111,10 @@ def test_what_is_drawn_depends_on_the_seed_alone(knobs: tuple[Knob, ...]) -> Non
     assert [v.values["style"] for v in few] == [v.values["style"] for v in more[:5]]
     assert few != other
     assert {v.values["n"] for v in more} == {1, 3, 5, 7, 9}
-    assert all(50 <= v.values["width"] <= 60 for v in more) and len({v.values["width"] for v in more}) == 50
-    assert {"style", "hollow"} < set(few[0].values) and not {"name", "turn"} & set(few[0].values)
+    assert all(50 <= v.values["width"] <= 60 for v in more)
+    assert len({v.values["width"] for v in more}) == 50
+    assert {"style", "hollow"} < set(few[0].values)
+    assert not {"name", "turn"} & set(few[0].values)
 
 
 @pytest.mark.parametrize(

@@ -54,8 +54,8 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
 
 
 def said(arguments: argparse.Namespace) -> list[str]:
-    """Returns the options that say how a drawing is made, as far as they are not the default, as the command line
-    has them.
+    """Returns the options that say how a drawing is made, as far as they are not the default, as the command
+    line has them.
     """
     _, defaults = _parser(add_variant, add_strict)
     asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,8 +32,8 @@ _MOST_TOLD = 20
 
 def register(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
-        "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, style='*' (all "
-        "choices). Several -D make a grid. Exit codes: 0 all variants are well, 1 some are not, 2 wrong use."
+        "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, "
+        "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, 1 some are not, 2 wrong use."
     )
     add_program(parser)
     parser.add_argument(
@@ -56,8 +55,8 @@ def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is drawn (default: 1)")
     add_outputs(
         parser,
-        "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), a table (.csv, "
-        ".jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
+        "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
+        "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
     )
     add_drawing_options(parser)
     add_variant(parser)

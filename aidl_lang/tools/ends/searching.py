@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.crew import Broke, Crew
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.processes import Guarded, count
 from aidl_lang.tools.ends.results import Sweep, Tried, Turned
 from aidl_lang.tools.ends.trying import SweepJob, tried

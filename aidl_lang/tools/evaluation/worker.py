@@ -38,7 +38,9 @@ class Worker:
     def call(self, task: Callable[..., T], *arguments: object) -> T:
         """Returns the result of a task; it and its arguments can be pickled. Raises Broken."""
         self._crew.give("it", self._seconds, task, *arguments)
-        ((_, found),) = self._crew.came()
+        while not (came := self._crew.came()):
+            pass  # it was begun once more
+        ((_, found),) = came
         if not isinstance(found, Broke):
             return cast(T, found)
         if isinstance(found.error, CancelledError):

@@ -26,7 +26,10 @@ _RANGE = re.compile(
 )
 _SLACK = 1e-9
 _BOOLEANS = {"true": True, "false": False, "1": True, "0": False}
-_EXAMPLES = "values are a list (`60,80,100`), so many of a range (`60..200/8`), or a range in steps (`60..200 step 20`)"
+_EXAMPLES = (
+    "values are a list (`60,80,100`), so many of a range (`60..200/8`), or a range in steps "
+    "(`60..200 step 20`)"
+)
 
 
 @record()
@@ -72,8 +75,8 @@ def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
 
 
 def axis(name: str, written: str, knobs: Sequence[Knob], *, is_drawn: bool = False) -> Axis:
-    """Reads the values of a param as the command line has them. `is_drawn` says that values are drawn at random
-    from a range, which needs no number of them then. Raises AidlError.
+    """Reads the values of a param as the command line has them. `is_drawn` says that values are drawn at
+    random from a range, which needs no number of them then. Raises AidlError.
     """
     knob = knob_named(name, knobs)
     if written.strip() == "*":

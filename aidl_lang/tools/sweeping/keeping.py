@@ -1,8 +1,8 @@
 """The cache of outcomes, by content: program, imports, params, options and package lead to what came of them.
 
-It is a folder that is named by whoever sweeps. Processes may share it, one that is killed leaves it whole, and
-it is bounded. All in it is JSON that is looked through before it is believed: a folder that somebody else wrote can
-give wrong outcomes, as a forged table could, but it runs nothing and touches no other file.
+It is a folder that is named by whoever sweeps. Processes may share it, one that is killed leaves it whole,
+and it is bounded. All in it is JSON that is looked through before it is believed: a folder that somebody else
+wrote can give wrong outcomes, as a forged table could, but it runs nothing and touches no other file.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ Reader = Callable[[str], str]
 
 
 class _Json(diskcache.Disk):  # type: ignore[misc]
-    """Stores bytes of compressed JSON and nothing else: no pickle is read, and no file outside the folder is read
-    or removed, whatever the database says.
+    """Stores bytes of compressed JSON and nothing else: no pickle is read, and no file outside the folder is
+    read or removed, whatever the database says.
     """
 
     def put(self, key: str) -> tuple[Any, bool]:

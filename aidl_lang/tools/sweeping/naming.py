@@ -1,5 +1,5 @@
-"""The names of the files that a sweep writes: a pattern such as `out/{width}-{style}.dxf`, with the values of a
-variant in it. Whatever a value says, its file lies where the pattern says.
+"""The names of the files that a sweep writes: a pattern such as `out/{width}-{style}.dxf`, with the values of
+a variant in it. Whatever a value says, its file lies where the pattern says.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
 
 
 def safe(text: str) -> str:
-    """Returns a value as a part of a file's name: letters, digits and a few marks, of bounded length, and never
-    one that a file system reads otherwise (`..`, `CON`, a leading dot).
+    """Returns a value as a part of a file's name: letters, digits and a few marks, of bounded length, and
+    never one that a file system reads otherwise (`..`, `CON`, a leading dot).
     """
     kept = "".join(c if _is_plain(c) else "_" for c in unicodedata.normalize("NFC", text))
     kept = re.sub(r"__+", "_", kept).strip("_. ") if kept != text else kept
@@ -97,8 +97,8 @@ def _is_plain(character: str) -> bool:
 
 
 def distinct(names: Iterable[str]) -> Iterator[str]:
-    """Yields the names of variants made different: of several that a file system may take for one, each but the
-    first gets its number.
+    """Yields the names of variants made different: of several that a file system may take for one, each but
+    the first gets its number.
     """
     taken: set[str] = set()
     for number, name in enumerate(names, 1):

@@ -129,7 +129,9 @@ class Drawings:
 
 
 def write(name: str, data: bytes) -> None:
-    """Replaces a file in one step, if its content differs; a link is replaced, not followed. Raises AidlError."""
+    """Replaces a file in one step, if its content differs; a link is replaced, not followed. Raises
+    AidlError.
+    """
     path = Path(name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -47,7 +47,8 @@ class Plan:
     """The variants of a sweep.
 
     axes    params with their values, the last of which changes quickest
-    drawn   how many variants are drawn at random, and the seed. A value depends on the seed, its param and its
+    drawn   how many variants are drawn at random, and the seed. A value depends on the seed, its param and
+            its
             number alone, so that a wider sweep begins with the same variants
     """
 

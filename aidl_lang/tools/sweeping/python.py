@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 
 class Sweep:
-    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes; a
-    second time it yields what is known, and goes on where the first was left.
+    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes;
+    a second time it yields what is known, and goes on where the first was left.
 
-    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its `outcome` has the
-    rest.
+    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its
+    `outcome` has the rest.
     """
 
     def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:

@@ -11,7 +11,7 @@ from aidl_lang.tools.sweeping.faults import Fault
 from aidl_lang.tools.sweeping.outcome import MEASURES, Measures, Outcome
 from aidl_lang.tools.sweeping.plan import Plan, Variant
 
-Cell: TypeAlias = float | int | str | bool | None | list[str]
+Cell: TypeAlias = float | int | str | bool | list[str] | None
 
 _DRAWN = {"width": "drawn_width", "height": "drawn_height"}
 """Measures that are called otherwise in a table, where params are often called so."""
@@ -70,8 +70,8 @@ def said(fault: Fault) -> str:
 
 
 class Columns:
-    """The columns of a table: the number, other fields of the orders, params, then what came of it. A result whose
-    name a param has taken is called `result_NAME`.
+    """The columns of a table: the number, other fields of the orders, params, then what came of it. A result
+    whose name a param has taken is called `result_NAME`.
     """
 
     def __init__(self, plan: Plan, timings: bool = True) -> None:

@@ -1,5 +1,5 @@
-"""The run of a sweep: what is kept is taken, the rest is computed by an engine, and each outcome is handed over
-as it comes.
+"""The run of a sweep: what is kept is taken, the rest is computed by an engine, and each outcome is handed
+over as it comes.
 """
 
 from __future__ import annotations

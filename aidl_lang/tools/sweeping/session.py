@@ -1,5 +1,5 @@
-"""A sweep from its plan to its outputs: runs it, writes drawings as they come and tables at the end, and keeps what
-is done so that it can go on.
+"""A sweep from its plan to its outputs: runs it, writes drawings as they come and tables at the end, and
+keeps what is done so that it can go on.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import Bundle, Gathering
 from aidl_lang.tools.sweeping.faults import fault
 from aidl_lang.tools.sweeping.keeping import Store
-from aidl_lang.tools.sweeping.outcome import Outcome
 from aidl_lang.tools.sweeping.outputs import Drawings, Outputs, write
 from aidl_lang.tools.sweeping.plan import Plan, Variant
 from aidl_lang.tools.sweeping.rows import Columns, Row, in_order
@@ -88,8 +87,8 @@ class Session:
         return len(self.rows) == len(self.job.plan)
 
     def __iter__(self) -> Iterator[Row]:
-        """Runs the sweep. Whatever ends it, what is done by then is kept where there are outputs; tables are written
-        once it is over.
+        """Runs the sweep. Whatever ends it, what is done by then is kept where there are outputs; tables are
+        written once it is over.
         """
         start = time.monotonic()
         job = self.job

@@ -1,4 +1,6 @@
-"""The beginnings of a sweep that the command line and Python have in common: the program, and the engine by name."""
+"""The beginnings of a sweep that the command line and Python have in common: the program, and the engine by
+name.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,8 @@ _WORKING = "aidl_lang.tools.sweeping.working"
 def opened(
     source: SourceFile, world: World | None, settings: pipeline.Settings
 ) -> tuple[Bundle, Gathering, tuple[Knob, ...]]:
-    """Returns a program as it travels, the files that it may ask for, and its params. Raises AidlError for a program
-    that is wrong as written.
+    """Returns a program as it travels, the files that it may ask for, and its params. Raises AidlError for a
+    program that is wrong as written.
     """
     from aidl_lang.common.world import MemoryWorld
 
@@ -35,8 +37,8 @@ def opened(
 
 
 def engine(name: str, jobs: int | None = None, most: int | None = None) -> Engine:
-    """Returns an engine: `local` for processes of this machine, or the address of a scheduler of Dask. `jobs` says
-    how many processes, `most` how many there is work for. Raises AidlError.
+    """Returns an engine: `local` for processes of this machine, or the address of a scheduler of Dask. `jobs`
+    says how many processes, `most` how many there is work for. Raises AidlError.
     """
     if name == LOCAL:
         wanted = jobs or count()
@@ -65,7 +67,9 @@ def _written(given: Value) -> str:
 
 
 def shlex_joined(words: Sequence[str]) -> str:
-    """Returns words as a shell reads them; one with characters that a terminal does not show is written `$'…'`."""
+    """Returns words as a shell reads them; one with characters that a terminal does not show is written
+    `$'…'`.
+    """
     return " ".join(shlex.quote(word) if word.isprintable() else _escaped(word) for word in words)
 
 

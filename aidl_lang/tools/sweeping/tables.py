@@ -56,8 +56,8 @@ def to_parquet(columns: Columns, rows: Sequence[Row]) -> bytes:
 
 
 def to_arrow(columns: Columns, rows: Sequence[Row]) -> pyarrow.Table:
-    """Returns a table as Arrow has it. A column that has numbers and texts is of texts. Raises AidlError without
-    pyarrow.
+    """Returns a table as Arrow has it. A column that has numbers and texts is of texts. Raises AidlError
+    without pyarrow.
     """
     require("pyarrow", "a table of Arrow", ARROW_EXTRA)
     import pyarrow

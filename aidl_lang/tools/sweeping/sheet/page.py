@@ -1,7 +1,7 @@
 """The contact sheet as a page: one file that asks for nothing, with the knobs as filters.
 
-Values are strangers' text: the page is filled by its script, which sets texts and never markup, and its policy lets
-no other script run.
+Values are strangers' text: the page is filled by its script, which sets texts and never markup, and its
+policy lets no other script run.
 """
 
 from __future__ import annotations
