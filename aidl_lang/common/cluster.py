@@ -50,7 +50,8 @@ class Cluster:
 
         self.address, self._preload = address, preload
         try:
-            self._client = Client(address, timeout=_CONNECTING, set_as_default=False)
+            client: Any = Client  # which has no types
+            self._client = client(address, timeout=_CONNECTING, set_as_default=False)
         except (OSError, ValueError, TypeError, RuntimeError) as error:
             hint = "a scheduler is begun by `dask scheduler`, workers by `dask worker ADDRESS`"
             message = f"no scheduler answers at `{address}`: {_short(error)}"

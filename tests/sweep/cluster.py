@@ -18,7 +18,7 @@ def free_port() -> int:
 
 
 class LocalCluster:
-    """Starts and ends schedulers and workers; each is a group of processes, so that its nanny ends with it."""
+    """Starts and ends schedulers and workers; each is a group of processes, which ends as one."""
 
     def __init__(self, folder: Path, workers: int) -> None:
         self.folder, self.port = folder, free_port()

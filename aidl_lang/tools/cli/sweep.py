@@ -33,7 +33,8 @@ _MOST_TOLD = 20
 def register(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
         "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, "
-        "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, 1 some are not, 2 wrong use."
+        "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, "
+        "1 some are not, 2 wrong use."
     )
     add_program(parser)
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""The values that a param takes in a sweep, as they are written: `60..200/8`, `60..200 step 20`, `a,b`, `*`."""
+"""The values of a param in a sweep, as they are written: `60..200/8`, `60..200 step 20`, `a,b`, `*`."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Span:
 
 @record()
 class Axis:
-    """A param with the values that it takes; `span` is the range that they are of, if it was written as one."""
+    """A param with the values that it takes; `span` is their range, if it was written as one."""
 
     path: str
     values: tuple[Value, ...]

@@ -35,7 +35,7 @@ class Outputs:
         return tuple(dict.fromkeys(each.suffix for each in self.patterns))
 
     def keep(self, program: str) -> Path | None:
-        """Returns the folder beside the outputs in which a run keeps what it has done; None without outputs."""
+        """Returns the folder beside the outputs for what a run has done; None without outputs."""
         for name in (*self.tables, *self.sheets):
             return Path(f"{name}.sweep")
         stem = PurePath(program).stem or "sweep"

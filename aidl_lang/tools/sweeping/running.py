@@ -35,7 +35,7 @@ class Done:
 
 
 class Run:
-    """Yields the variants of a plan with their outcomes, in the order in which they come. One run at a time."""
+    """Yields the variants of a plan with their outcomes, as they come. One run at a time."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The contact sheet of a sweep: a small picture of each variant, with its params and what is wrong with it."""
+"""The contact sheet of a sweep: a small picture of each variant, its params and what is wrong with it."""
 
 from __future__ import annotations
 
