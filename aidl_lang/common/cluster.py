@@ -29,8 +29,8 @@ _RECONNECTING = 60.0
 """Seconds that a scheduler may be away, as while it is started anew."""
 _KNOWN_FOR = 2.0
 """Seconds for which the number of places is believed."""
-_DEATHS = 3
-"""How many workers may end while they carry out one call."""
+_LOOKING = 0.5
+"""Seconds after which it is looked whether the scheduler is there."""
 
 
 class Cluster:
@@ -59,7 +59,9 @@ class Cluster:
         self._client._timeout = _RECONNECTING
         self._places, self._asked = 0, 0.0
         self._lock = threading.Lock()
-        self._remote: set[Any] = set()
+        self._given: dict[Any, Future[Any]] = {}
+        self._is_closed = threading.Event()
+        threading.Thread(target=self._watch, daemon=True).start()
 
     @property
     def places(self) -> int:
@@ -81,18 +83,26 @@ class Cluster:
             carried, package(), self._preload, seconds, task, arguments, pure=False, retries=0
         )
         with self._lock:
-            self._remote.add(remote)
-        remote.add_done_callback(lambda done: self._hand_over(done, local))
+            self._given[remote] = local
+        remote.add_done_callback(self._hand_over)
         return local
 
-    def _hand_over(self, remote: Any, local: Future[Any]) -> None:
+    def _watch(self) -> None:
+        """Ends all calls once the scheduler has been away for too long: the client tells nobody then."""
+        while not self._is_closed.wait(_LOOKING):
+            if self._client.status == "closed":
+                with self._lock:
+                    lost, self._given = list(self._given.values()), {}
+                for local in lost:
+                    if local.set_running_or_notify_cancel():
+                        local.set_exception(self._gone())
+
+    def _hand_over(self, remote: Any) -> None:
         """Passes what came of a call on; runs in a thread of the client."""
         with self._lock:
-            is_wanted = remote in self._remote
-            self._remote.discard(remote)
-        if not is_wanted or local.cancelled():
+            local = self._given.pop(remote, None)
+        if local is None or not local.set_running_or_notify_cancel():
             return
-        local.set_running_or_notify_cancel()
         try:
             kind, *found = remote.result(timeout=_RECONNECTING)
         except Exception as error:  # noqa: BLE001 (handed over, whatever it is)
@@ -132,9 +142,9 @@ class Cluster:
 
     def close(self) -> None:
         """Gives up all calls that are not done, and leaves the cluster as it is."""
+        self._is_closed.set()
         with self._lock:
-            remote = list(self._remote)
-            self._remote.clear()
+            remote, self._given = list(self._given), {}
         try:
             if remote and self._client.status == "running":
                 self._client.cancel(remote, force=True)

@@ -26,6 +26,14 @@ LIBRARY = 'let tall = 30mm\nlet style_of = "round"\n'
 PROGRAM = 'import "lib.aidl"\n' + PLATE.replace("height: 30mm", "height: tall")
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
+    """A cluster that nobody kills."""
+    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), 2)
+    yield cluster
+    cluster.close()
+
+
 @pytest.fixture
 def two(tmp_path: Path) -> Iterator[LocalCluster]:
     (tmp_path / "logs").mkdir()
@@ -87,9 +95,9 @@ def local(folder: Path, count: int) -> None:
     assert run.returncode == 1, said  # those wider than the sheet fail
 
 
-def test_a_sweep_on_a_cluster_equals_one_here(tmp_path: Path, two: LocalCluster) -> None:
+def test_a_sweep_on_a_cluster_equals_one_here(tmp_path: Path, shared: LocalCluster) -> None:
     local(tmp_path, 12)
-    run = begin(tmp_path, "remote.csv", 12, "--on", two.address)
+    run = begin(tmp_path, "remote.csv", 12, "--on", shared.address)
     said = run.communicate(timeout=240)[1]
     assert run.returncode == 1, said
     same(tmp_path, "local.csv", "remote.csv", 12)
@@ -148,8 +156,8 @@ def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
-def test_limits_hold_on_a_cluster(tmp_path: Path, two: LocalCluster) -> None:
-    engine = Cluster(two.address, "aidl_lang.common.crew")
+def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
+    engine = Cluster(shared.address, "aidl_lang.common.crew")
     try:
         crew: Crew[str, str] = Crew(engine)
         words = ["well", "die", "hang", "raise", "too"]
@@ -166,10 +174,10 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, two: LocalCluster) -> None:
         engine.close()
 
 
-def test_a_worker_with_another_package_is_told(two: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_with_another_package_is_told(shared: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
     mine = cluster_module.package()
     monkeypatch.setattr(cluster_module, "package", lambda: "0.0.1+feed")
-    engine = Cluster(two.address, "aidl_lang.common.crew")
+    engine = Cluster(shared.address, "aidl_lang.common.crew")
     try:
         crew: Crew[str, str] = Crew(engine)
         crew.give("it", 10.0, obey, "well", "/nowhere")

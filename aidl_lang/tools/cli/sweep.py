@@ -112,6 +112,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.file == files.STANDARD and arguments.resume:
         raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
     source = files.read(arguments.file)
+    if arguments.on != "local":
+        import logging
+
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what there is to say is said here
     try:
         job = _job(arguments, source)
         workers = engine(arguments.on, arguments.jobs, len(job.plan))
