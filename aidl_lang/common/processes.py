@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from enum import Enum
-from multiprocessing import connection
+from multiprocessing import connection, forkserver
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -20,6 +21,10 @@ T = TypeVar("T")
 
 MEMORY = 3_000_000_000
 """Bytes that a worker may use, on systems that can limit it."""
+
+
+_BETWEEN_SEARCHES = 50_000
+"""Objects that a worker makes before it looks for cycles among them."""
 
 
 class Limit(Enum):
@@ -62,17 +67,12 @@ class Guarded:
     that breaks its process takes no other along; the process is replaced.
     """
 
-    def __init__(self, workers: int, preload: str, memory: int = MEMORY) -> None:
-        """Starts the processes; `preload` is the module that they load at the start."""
+    def __init__(self, workers: int, preload: str | Sequence[str], memory: int = MEMORY) -> None:
+        """Starts the processes; `preload` has the modules that they load at the start."""
         from pebble import ProcessPool
 
         self.places = workers
-
-        if sys.platform == "win32":
-            context = multiprocessing.get_context("spawn")
-        else:  # starts a process from one that has the language loaded and no threads
-            context = multiprocessing.get_context("forkserver")
-            context.set_forkserver_preload([preload])
+        context = prepared(preload)
         self._pool: ProcessPool = ProcessPool(
             workers, initializer=_prepare, initargs=(memory,), context=context
         )
@@ -85,6 +85,19 @@ class Guarded:
         """Ends all processes, busy or not."""
         self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
+
+
+def prepared(preload: str | Sequence[str]) -> multiprocessing.context.BaseContext:
+    """Returns how processes are started that have loaded some modules. It begins to load them, which goes on
+    while others do other things.
+    """
+    if sys.platform == "win32":
+        return multiprocessing.get_context("spawn")
+    # starts a process from one that has the language loaded and no threads
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([preload] if isinstance(preload, str) else list(preload))
+    forkserver.ensure_running()
+    return context
 
 
 def limit_met(error: BaseException) -> Limit | None:
@@ -108,9 +121,11 @@ def count() -> int:
 
 
 def _prepare(memory: int) -> None:
-    """Prepares a worker: limits its memory, leaves interrupts to the main process, and makes it end with
-    that.
+    """Prepares a worker: limits its memory, leaves interrupts to the main process, makes it end with that,
+    and spares it to look for cycles among what it was started with.
     """
+    gc.freeze()
+    gc.set_threshold(_BETWEEN_SEARCHES)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_server, daemon=True).start()
     if sys.platform != "win32":

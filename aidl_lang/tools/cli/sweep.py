@@ -105,20 +105,23 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang.common.processes import prepared
     from aidl_lang.tools.cli.sweep_progress import progress
     from aidl_lang.tools.sweeping.session import Session
-    from aidl_lang.tools.sweeping.starting import engine
+    from aidl_lang.tools.sweeping.starting import LOCAL, engine, preloads
 
     if arguments.file == files.STANDARD and arguments.resume:
         raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
     source = files.read(arguments.file)
-    if arguments.on != "local":
+    if arguments.on == LOCAL:
+        prepared(preloads(arguments.output))  # they load while the program is read
+    else:
         import logging
 
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what there is to say is said here
     try:
         job = _job(arguments, source)
-        workers = engine(arguments.on, arguments.jobs, len(job.plan))
+        workers = engine(arguments.on, arguments.jobs, len(job.plan), arguments.output)
     except AidlError as reason:
         show(reason.diagnostics)
         return exit_code(reason.diagnostics)

@@ -30,6 +30,11 @@ class Outputs:
     sheets: tuple[str, ...] = ()
 
     @property
+    def names(self) -> list[str]:
+        """Returns the names of all outputs, as they were given."""
+        return [*(each.text for each in self.patterns), *self.tables, *self.sheets]
+
+    @property
     def suffixes(self) -> tuple[str, ...]:
         """Returns the formats of the drawings."""
         return tuple(dict.fromkeys(each.suffix for each in self.patterns))

@@ -108,7 +108,7 @@ class Sweep:
         return True
 
     def _rows(self) -> Iterator[Row]:
-        workers: Engine = engine_named(*self._engine, len(self._job.plan))
+        workers: Engine = engine_named(*self._engine, len(self._job.plan), self._job.outputs.names)
         self._session = Session(self._job, workers)
         try:
             yield from self._session

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from pathlib import PurePath
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
@@ -19,6 +20,7 @@ from aidl_lang.tools.sweeping.plan import Plan, Variant
 
 LOCAL = "local"
 _WORKING = "aidl_lang.tools.sweeping.working"
+_WARM = "aidl_lang.tools.sweeping.warm"
 
 
 def opened(
@@ -36,13 +38,27 @@ def opened(
     return Bundle(source.name, source.text, dict(gathering.files), settings), gathering, knobs
 
 
-def engine(name: str, jobs: int | None = None, most: int | None = None) -> Engine:
+_PACKAGES = {".dxf": "ezdxf", ".pdf": "reportlab.pdfgen.canvas", ".png": "resvg_py"}
+"""Packages that take long to load, by what is written with them."""
+
+
+def preloads(names: Sequence[str]) -> list[str]:
+    """Returns the modules that workers load at the start, for outputs of some names."""
+    suffixes = {PurePath(name).suffix.lower() for name in names}
+    if suffixes & {".html", ".pdf", ".png"}:
+        suffixes.add(".png")  # the pictures on a sheet
+    return [_WORKING, _WARM, *(package for suffix, package in _PACKAGES.items() if suffix in suffixes)]
+
+
+def engine(
+    name: str, jobs: int | None = None, most: int | None = None, outputs: Sequence[str] = ()
+) -> Engine:
     """Returns an engine: `local` for processes of this machine, or the address of a scheduler of Dask. `jobs`
-    says how many processes, `most` how many there is work for. Raises AidlError.
+    says how many processes, `most` how many there is work for, `outputs` what they write. Raises AidlError.
     """
     if name == LOCAL:
         wanted = jobs or count()
-        return Guarded(max(1, min(wanted, most or wanted)), _WORKING)
+        return Guarded(max(1, min(wanted, most or wanted)), preloads(outputs))
     from aidl_lang.common.cluster import Cluster
 
     if jobs is not None:
