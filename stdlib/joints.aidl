@@ -120,7 +120,7 @@ fn finger_inset(kind: text, thickness: length) = if kind == "notches" then thick
 fn finger_count(length: length, finger: length, kind: text) =
     if kind == "flat" then 1 else 2 * max(1, floor(written(length) / finger / 2)) + 1
 
-// The corners of an edge between its ends: two where a part ends and the next begins, each on its own level.
+// The corners of an edge between its ends: two where a part ends and the next begins, one on the level of each.
 fn fingers(
     start: point,
     way: point,
@@ -148,9 +148,12 @@ fn fingers_between(
     kerf: length,
     count: integer,
     first: integer
-) = [start + way * (
-    (pitch * ((j - j % 2) / 2 + 1) + kerf / 2 * (1 - 2 * (((j - j % 2) / 2 + first) % 2))) / 1mm
-) + deep * (thickness * (((j - j % 2) / 2 + first + j) % 2) / 1mm) for j in 0..<2 * count - 2]
+) = fingers_at(
+    [start + way * ((pitch * (part + 1) + kerf / 2 * (1 - 2 * ((part + first) % 2))) / 1mm) for part in 0..<count - 1],
+    [deep * (thickness * ((k + first) % 2) / 1mm) for k in [0, 1, 1, 0]]
+)
+fn fingers_at(ends: list, levels: list) =
+    [ends[(j - j % 2) / 2] + levels[j % 4] for j in 0..<2 * len(ends)]
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///
