@@ -301,6 +301,7 @@ def sweep(
     resume: bool = False,
     stop_on_error: bool = False,
     timings: bool = True,
+    time_limit: float | None = None,
     settings: Settings | None = None,
     **options: object,
 ) -> Sweep:
@@ -333,6 +334,7 @@ def sweep(
         resumes=resume,
         stops_on_error=stop_on_error,
         timings=timings,
+        seconds=time_limit,
     )
 
 

@@ -75,6 +75,12 @@ def register(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes of this machine (default: one for each processor)",
     )
+    running.add_argument(
+        "--time-limit",
+        type=count_to(100_000),
+        metavar="SECONDS",
+        help="for each variant (default: what a compile, its files and measures may take)",
+    )
     running.add_argument("--stop-on-error", action="store_true", help="stop at the first variant that fails")
     running.add_argument(
         "--resume", action="store_true", help="go on with the same sweep that was broken off"
@@ -175,6 +181,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
         arguments.resume,
         arguments.stop_on_error,
         arguments.timings,
+        arguments.time_limit,
     )
 
 

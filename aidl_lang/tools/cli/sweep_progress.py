@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 _OFTEN = 1.0
 """Seconds between two lines of JSON."""
+_WIDTH = 110
 _NOW = 60
 """Columns for what runs now."""
 
@@ -41,7 +43,8 @@ class _Bar:
     def __init__(self) -> None:
         from tqdm import tqdm
 
-        self._bar = tqdm(total=None, unit=" variants", file=sys.stderr, dynamic_ncols=True, leave=False)
+        width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH  # a terminal may not know its own
+        self._bar = tqdm(total=None, unit=" variants", file=sys.stderr, ncols=width, leave=False)
 
     def __call__(self, progress: Progress) -> None:
         from aidl_lang.common.render import escape

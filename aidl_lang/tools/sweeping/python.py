@@ -56,6 +56,7 @@ class Sweep:
         resumes: bool,
         stops_on_error: bool,
         timings: bool,
+        seconds: float | None,
         best_effort: bool,
         fallback: str | None,
     ) -> Sweep:
@@ -79,6 +80,7 @@ class Sweep:
             resumes=resumes,
             stops_on_error=stops_on_error,
             timings=timings,
+            seconds=seconds,
         )
         return cls(job, engine)
 

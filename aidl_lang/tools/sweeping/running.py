@@ -45,9 +45,12 @@ class Run:
         making: Making,
         engine: Engine,
         store: Store | None = None,
+        seconds: float | None = None,
     ) -> None:
+        """Begins a run; `seconds` are for one variant, where it is not to be what a compile may take."""
         self.plan, self.making, self.engine, self.store = plan, making, engine, store
         self._bundle, self._world = bundle, world
+        self._seconds = seconds or patience(bundle.settings, 2 + len(making.suffixes))
         self._crew: Crew[int, Outcome] = Crew(engine)
         self._open: dict[int, Variant] = {}
         self._rounds: dict[int, int] = {}
@@ -103,9 +106,8 @@ class Run:
         if len(self._world.files) > len(self._bundle.files):
             self._bundle = replace(self._bundle, files=dict(self._world.files))
         self._open[each.number] = each
-        seconds = patience(self._bundle.settings, 2 + len(self.making.suffixes))
         self._crew.give(
-            each.number, seconds, variant, self._bundle, each.params(self.plan.knobs), self.making
+            each.number, self._seconds, variant, self._bundle, each.params(self.plan.knobs), self.making
         )
 
     def _came(self, number: int, found: Outcome | Broke) -> Done | None:

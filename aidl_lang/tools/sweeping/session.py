@@ -34,6 +34,7 @@ class Job:
 
     command   returns the words that make a drawing of a variant alone, under a name
     cache     the folder of outcomes that stays; "" for none
+    seconds   that a variant may take; None for what a compile may
     resumes   whether what an earlier run has done is taken
     """
 
@@ -48,6 +49,7 @@ class Job:
     resumes: bool = False
     stops_on_error: bool = False
     timings: bool = True
+    seconds: float | None = None
 
 
 @record()
@@ -98,7 +100,7 @@ class Session:
                 stack.callback(store.close)
             drawings = Drawings(job.outputs, job.plan)
             self.renamed, self.unfinished = drawings.renamed, own
-            run = Run(job.plan, job.bundle, job.world, self._making, self.engine, store)
+            run = Run(job.plan, job.bundle, job.world, self._making, self.engine, store, job.seconds)
             try:
                 for done in run:
                     if done is not None:

@@ -73,7 +73,7 @@ def reproducing(program: str, plan: Plan, variant: Variant, name: str, options: 
     for path, given in variant.values.items():
         words += ["-D", f"{path}={_written(spelled(plan.knobs.get(path), given))}"]
     words += options
-    return shlex_joined([*words, "-o", name] if name else [*words, "-o", "variant.svg"])
+    return joined([*words, "-o", name] if name else [*words, "-o", "variant.svg"])
 
 
 def _written(given: Value) -> str:
@@ -82,7 +82,7 @@ def _written(given: Value) -> str:
     return repr(given) if isinstance(given, float) and not given.is_integer() else shown(given)
 
 
-def shlex_joined(words: Sequence[str]) -> str:
+def joined(words: Sequence[str]) -> str:
     """Returns words as a shell reads them; one with characters that a terminal does not show is written
     `$'…'`.
     """
