@@ -43,8 +43,11 @@ class _Bar:
     def __init__(self) -> None:
         from tqdm import tqdm
 
-        width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH  # a terminal may not know its own
-        self._bar = tqdm(total=None, unit=" variants", file=sys.stderr, ncols=width, leave=False)
+        # a terminal may not know its size, and what is larger than none is not shown
+        width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH
+        self._bar = tqdm(
+            total=None, unit=" variants", file=sys.stderr, ncols=width, nrows=_WIDTH, leave=False
+        )
 
     def __call__(self, progress: Progress) -> None:
         from aidl_lang.common.render import escape
