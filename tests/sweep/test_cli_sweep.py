@@ -17,8 +17,9 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from aidl_lang.tools.cli import main
+from aidl_lang.tools.cli import main, sweep_progress
 from aidl_lang.tools.sweeping import starting
+from aidl_lang.tools.sweeping.session import Progress
 from tests.commands import Result
 from tests.commands import aidl as aidl
 from tests.sweep.here import PLATE, Here
@@ -287,3 +288,13 @@ def test_progress_on_a_terminal_and_for_programs(tmp_path: Path) -> None:
     quiet = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "now width" not in quiet.stderr
     assert quiet.returncode == 1
+
+
+def test_a_cluster_without_workers_is_told_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sweep_progress, "_PATIENCE", 0.0)
+    with sweep_progress.progress("auto") as listen:
+        for places in (2, 0, 0, 0, 1, 0):
+            listen(Progress(10, 3, 0, 0, (), places, 0))
+    assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"

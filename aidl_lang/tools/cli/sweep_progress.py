@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 _OFTEN = 1.0
 """Seconds between two lines of JSON."""
+_REDRAWN = 0.1
+"""Seconds between two drawings of the line."""
+_PATIENCE = 10.0
+"""Seconds without workers after which that is said."""
 _WIDTH = 110
+"""Columns of a terminal that does not know its own."""
 _NOW = 60
 """Columns for what runs now."""
 
@@ -28,7 +33,7 @@ def progress(kind: str) -> Iterator[Callable[[Progress], None]]:
     if kind == "json":
         yield _JsonLines()
     elif kind == "off" or not sys.stderr.isatty():
-        yield lambda progress: None
+        yield _Quiet()
     else:
         bar = _Bar()
         try:
@@ -37,12 +42,30 @@ def progress(kind: str) -> Iterator[Callable[[Progress], None]]:
             bar.close()
 
 
+class _Quiet:
+    """Says nothing, but once that there is nobody to do the work."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+        self._was_said = False
+
+    def __call__(self, progress: Progress) -> None:
+        if progress.places:
+            self._since = None
+            return
+        self._since = self._since or time.monotonic()
+        if not self._was_said and time.monotonic() - self._since > _PATIENCE:
+            self._was_said = True
+            say("the cluster has no workers; waiting for some")
+
+
 class _Bar:
     """A line with what is done, the rate and the time left, what fails, and what runs now."""
 
     def __init__(self) -> None:
         from tqdm import tqdm
 
+        self._last = 0.0
         # a terminal may not know its size, and what is larger than none is not shown
         width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH
         self._bar = tqdm(
@@ -65,7 +88,9 @@ class _Bar:
             now = escape(labels(progress.running[0].values)).replace("\n", " ")
             parts.append(f"now {now[:_NOW]}")
         bar.set_postfix_str(", ".join(parts), refresh=False)
-        bar.refresh()
+        if time.monotonic() - self._last > _REDRAWN or progress.done == progress.count:
+            self._last = time.monotonic()
+            bar.refresh()
 
     def close(self) -> None:
         self._bar.close()
