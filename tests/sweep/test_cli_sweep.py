@@ -239,18 +239,8 @@ def test_five_hundred_signs(tmp_path: Path) -> None:
     (tmp_path / "sign.aidl").write_text(SIGN)
     names = [*orders(499), "a" * 10_000]
     write_orders(tmp_path, names)
-    words = [
-        "--table",
-        "orders.csv",
-        "-o",
-        "out/{name}.dxf",
-        "-o",
-        "table.csv",
-        "-o",
-        "table.jsonl",
-        "-o",
-        "sheet.html",
-    ]
+    words = ["--table", "orders.csv", "-o", "out/{name}.dxf", "-o", "table.csv", "-o", "sheet.html"]
+    words += ["--time-limit", "60"]  # for the name of 10,000 letters
     with open(tmp_path / "said", "wb") as said:
         done = subprocess.run(
             [sys.executable, "-m", "aidl_lang", "sweep", "sign.aidl", *words],
