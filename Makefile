@@ -9,7 +9,7 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -82,6 +82,9 @@ bench-check: $(READY) ## measure a check beside another language's
 bench-regions: $(READY) ## measure regions beside other libraries
 	$(BIN)/python benchmarks/regions.py
 
+bench-sweep: $(READY) ## measure sweeps beside a loop, a cluster on this machine and OpenSCAD
+	$(BIN)/python benchmarks/sweep.py
+
 bench-solver: $(READY) ## measure the solver against its peers
 	$(BIN)/python benchmarks/solver/run.py
 
@@ -101,7 +104,7 @@ examples: $(READY) ## draw every example into build/examples, those of the galle
 
 lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools
-	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --generate-hashes --allow-unsafe --strip-extras \
+	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
 		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
 
 clean: ## remove what was built; the virtualenv stays

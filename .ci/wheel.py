@@ -210,6 +210,8 @@ def plainly(here: Installation) -> None:
     here.expect((here.work / "slip.aidl").read_text() == PLATE, "aidl check --fix does not mend `raduis`")
     aidl("fmt", "--check", "part.aidl")
     aidl("params", "telephone.aidl")
+    outputs = ("-o", "v-{n}.svg", "-o", "table.csv", "-o", "sheet.html")
+    aidl("sweep", "telephone.aidl", "-D", "width=150,170", *outputs, says="2 variants, 2 well, none failing")
     aidl("measure", "part.aidl", says="area")
     aidl("diff", "slip.aidl", "part.aidl")
     aidl("show", "part.aidl", "--protocol", "ascii")
@@ -229,6 +231,8 @@ def without_extras(here: Installation) -> None:
         ("step", "compile", "part.aidl", "-o", "part.step", "--thickness", "3"),
         ("3mf", "compile", "part.aidl", "-o", "part.3mf", "--thickness", "3"),
         ("models", "generate", "a plate", *_asking("openai", "http://127.0.0.1:9/v1")),
+        ("parquet", "sweep", "telephone.aidl", "-D", "width=150", "-o", "table.parquet"),
+        ("cluster", "sweep", "telephone.aidl", "-D", "width=150", "--on", "tcp://127.0.0.1:9"),
         ("mcp", "mcp"),
         ("editor", "lsp"),
         ("editor", "preview", "part.aidl", "--no-open"),

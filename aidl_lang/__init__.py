@@ -13,7 +13,7 @@ canonical form. `docs/python.md` shows all of it.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from errno import ENOENT
 from pathlib import Path
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
     from aidl_lang.geometry.survey import Part
     from aidl_lang.pipeline import Compiled, Settings
+    from aidl_lang.tools.sweeping.python import Sweep
 
 __all__ = [
     "AidlError",
@@ -45,6 +46,7 @@ __all__ = [
     "compile",
     "diff",
     "format",
+    "sweep",
 ]
 
 
@@ -182,9 +184,9 @@ class Model:
         Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and for a
         model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
         """
+        from aidl_lang.common.replacing import replace
         from aidl_lang.export import suffix_of
         from aidl_lang.export.naming import contents, is_pattern
-        from aidl_lang.tools.cli import files
         from aidl_lang.tools.cli.keywords import read
 
         asked = read(options, self._compiled)
@@ -199,7 +201,7 @@ class Model:
             raise FileNotFoundError(ENOENT, "there is no such folder", str(folder))
         for name, data in made:
             Path(name).parent.mkdir(parents=True, exist_ok=True)
-            files.replace(Path(name), data)
+            replace(Path(name), data)
         return Saved(tuple(Path(name) for name, _ in made), notes)
 
     def _repr_svg_(self) -> str | None:
@@ -285,6 +287,57 @@ def compile(
     from aidl_lang import pipeline
 
     return Model(pipeline.compile(*_read(text_or_path), params, settings or pipeline.Settings()))
+
+
+def sweep(
+    text_or_path: str | Path,
+    params: Mapping[str, object] | None = None,
+    *,
+    output: str | Path | Iterable[str | Path] = (),
+    table: str | Path | None = None,
+    random: int | None = None,
+    seed: int = 1,
+    on: str = "local",
+    jobs: int | None = None,
+    cache: str | Path | None = None,
+    resume: bool = False,
+    stop_on_error: bool = False,
+    timings: bool = True,
+    time_limit: float | None = None,
+    settings: Settings | None = None,
+    **options: object,
+) -> Sweep:
+    """Compiles many variants of a program side by side: `sweep("box.aidl", {"width": range(60, 201, 20)})`.
+
+    The values of `params` make a grid; `table` is a CSV whose rows are variants, `random` draws so many.
+    Iterate over the sweep for the results as they come; `output` and the other options are those of `aidl
+    sweep`, as keywords. What is read is as for `compile`. Raises AidlError for values, outputs and engines
+    that cannot be, and for a program that is wrong as written.
+    """
+    from aidl_lang.tools.cli.keywords import read
+    from aidl_lang.tools.sweeping.python import Sweep
+
+    asked = read(options)
+    source, world = _read(text_or_path)
+    names = [output] if isinstance(output, str | Path) else list(output)
+    return Sweep.begun(
+        source,
+        world,
+        params or {},
+        asked.options,
+        settings,
+        fallback=asked.format,
+        best_effort=asked.best_effort,
+        outputs=[str(name) for name in names],
+        table=table,
+        drawn=None if random is None else (random, seed),
+        engine=(on, jobs),
+        cache=str(cache or ""),
+        resumes=resume,
+        stops_on_error=stop_on_error,
+        timings=timings,
+        seconds=time_limit,
+    )
 
 
 def diff(before: Model, after: Model) -> Comparison:

@@ -120,7 +120,7 @@ fn finger_inset(kind: text, thickness: length) = if kind == "notches" then thick
 fn finger_count(length: length, finger: length, kind: text) =
     if kind == "flat" then 1 else 2 * max(1, floor(written(length) / finger / 2)) + 1
 
-// The corners of an edge between its ends: two where a part ends and the next begins.
+// The corners of an edge between its ends: two where a part ends and the next begins, one on the level of each.
 fn fingers(
     start: point,
     way: point,
@@ -129,28 +129,31 @@ fn fingers(
     finger: length,
     kerf: length,
     kind: text
-) = finger_corners(
+) = fingers_between(
     start,
     way,
-    deep: turned(way, 90deg) * (thickness / 1mm),
-    length: length,
-    count: finger_count(length, finger, kind),
-    shift: if kind == "tabs" then 0 else 2,
-    wider: [kerf / 2, kerf / 2, -kerf / 2, -kerf / 2]
+    turned(way, 90deg),
+    length / finger_count(length, finger, kind),
+    thickness,
+    kerf,
+    finger_count(length, finger, kind),
+    first: if kind == "tabs" then 0 else 1
 )
-
-// Of four corners in turn the first is an outer one, of a tab, and they repeat; notches begin with the third.
-fn finger_corners(
+fn fingers_between(
     start: point,
     way: point,
     deep: point,
-    length: length,
+    pitch: length,
+    thickness: length,
+    kerf: length,
     count: integer,
-    shift: integer,
-    wider: list
-) = [start + way * ((length / count * (floor(j / 2) + 1) + wider[(j + shift) % 4]) / 1mm) + deep * [
-    0, 1, 1, 0
-][(j + shift) % 4] for j in 0..<2 * count - 2]
+    first: integer
+) = fingers_at(
+    [start + way * ((pitch * (part + 1) + kerf / 2 * (1 - 2 * ((part + first) % 2))) / 1mm) for part in 0..<count - 1],
+    [deep * (thickness * ((k + first) % 2) / 1mm) for k in [0, 1, 1, 0]]
+)
+fn fingers_at(ends: list, levels: list) =
+    [ends[(j - j % 2) / 2] + levels[j % 4] for j in 0..<2 * len(ends)]
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///

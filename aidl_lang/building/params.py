@@ -211,7 +211,7 @@ def _override(it: Interpreter, path: str) -> str | None:
 def _parse(given: str | float | bool, written: Value) -> Value | None:
     match written:
         case TextVal():
-            return TextVal(given.strip().strip("\"'")) if isinstance(given, str) else None
+            return TextVal(_unquoted(given.strip())) if isinstance(given, str) else None
         case bool():
             word = str(given).strip().casefold()
             return {"true": True, "false": False, "1": True, "0": False}.get(word)
@@ -230,6 +230,12 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
             return number(value, dimension) if ex.is_number(value) else None
         case _:
             return None
+
+
+def _unquoted(text: str) -> str:
+    """Returns a text without the quotes around it; one that it has on one side alone is a part of it."""
+    is_quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "\"'"
+    return text[1:-1] if is_quoted else text
 
 
 def report_unused(it: Interpreter) -> None:

@@ -38,6 +38,7 @@ _VERBS = {
     "guide": "print the language on a few pages",
     "grammar": "write the grammar for constrained decoding",
     "explain": "tell what a code means",
+    "sweep": "draw many variants, and tell what comes of each",
     "watch": "draw again on every save",
     "preview": "show a program in the browser, and change it there",
     "new": "write a starter program",

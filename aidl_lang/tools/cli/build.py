@@ -132,8 +132,8 @@ def _profile(name: str | None) -> Profile | None:
         raise UseError.of(reason.diagnostic) from None
 
 
-def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
-    """Returns the options of an export as the command line says them."""
+def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
+    """Returns the options of an export as the command line says them; timings are those of a compile."""
     from aidl_lang.export import Options
 
     return Options(
@@ -142,7 +142,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         cut=arguments.cut,
         pixels=arguments.pixels,
         thickness=arguments.thickness,
-        timings=compiled.timings if arguments.timings else None,
+        timings=compiled.timings if compiled is not None and arguments.timings else None,
         sheet=arguments.sheet,
         spacing=arguments.spacing,
         nest=arguments.nest,

@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.replacing import replace
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli.report import UseError
 
@@ -90,21 +91,6 @@ def create(name: str, data: bytes) -> None:
         raise UseError("E0906", f"`{name}` exists already; it is left as it is") from None
     except OSError as error:
         raise UseError("E0904", f"`{name}` cannot be written: {_reason(error)}") from None
-
-
-def replace(path: Path, data: bytes) -> None:
-    """Writes beside the file and moves into place, so that whoever reads it has the old or the new one."""
-    temporary = path.with_name(f".{path.name}.{os.urandom(8).hex()}")
-    try:
-        with open(temporary, "xb") as file:
-            file.write(data)
-        if path.exists():
-            os.chmod(temporary, path.stat().st_mode)
-        os.replace(temporary, path)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(temporary)
-        raise
 
 
 def decoded(data: bytes, what: str) -> str:

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, ticked
-from aidl_lang.tools.cli.options import add_drawing
+from aidl_lang.tools.cli.options import add_drawing, add_strict, add_variant
 from aidl_lang.tools.cli.report import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.compiled import Compiled
     from aidl_lang.export import Options
 
-_NOT_OF_A_FILE = ("output", "params")
-"""What the command says otherwise than by keywords: the file, and the knobs."""
+_NOT_OF_A_FILE = ("file", "output", "params")
+"""What the command says otherwise than by keywords: the program, the file, and the knobs."""
 
 
 class Asked(NamedTuple):
@@ -30,7 +30,7 @@ class Asked(NamedTuple):
     best_effort: bool
 
 
-def read(said: Mapping[str, object], compiled: Compiled) -> Asked:
+def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked:
     """Reads keywords as the command line reads its options: `kerf=0.15`, `kerf="0.15mm"`, `sheet="a3"`,
     `sheet=(600, 400)`, `dimension=True`.
 
@@ -38,15 +38,11 @@ def read(said: Mapping[str, object], compiled: Compiled) -> Asked:
     """
     from aidl_lang.tools.cli.build import options
 
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("file", nargs="?")
-    add_drawing(parser)
-    parser.add_argument("--timings", action="store_true")
-    defaults = vars(parser.parse_args([]))
-    known = sorted(name for name in defaults if name != "file" and name not in _NOT_OF_A_FILE)
+    parser, defaults = _parser()
+    known = sorted(defaults)
     words = [
         word
-        for name, value in said.items()
+        for name, value in given.items()
         if value is not None
         for word in _words(_known(name, known), value, is_flag=defaults[name] is False)
     ]
@@ -59,6 +55,36 @@ def read(said: Mapping[str, object], compiled: Compiled) -> Asked:
         return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
     except UseError as reason:
         raise AidlError(reason.diagnostic) from None
+
+
+def said(arguments: argparse.Namespace) -> list[str]:
+    """Returns the options that say how a drawing is made, as far as they are not the default, as the command
+    line has them.
+    """
+    _, defaults = _parser(add_variant, add_strict)
+    asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}
+    return [
+        word
+        for name, value in asked.items()
+        if value != defaults[name]
+        for word in _words(
+            name, sorted(value) if isinstance(value, frozenset) else value, is_flag=defaults[name] is False
+        )
+    ]
+
+
+def _parser(
+    *more: Callable[[argparse.ArgumentParser], None],
+) -> tuple[argparse.ArgumentParser, dict[str, Any]]:
+    """Returns a parser for the options of a drawing, and their defaults by name."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("file", nargs="?")
+    add_drawing(parser)
+    parser.add_argument("--timings", action="store_true")
+    for add in more:
+        add(parser)
+    defaults = vars(parser.parse_args([]))
+    return parser, {name: value for name, value in defaults.items() if name not in _NOT_OF_A_FILE}
 
 
 def _known(name: str, known: list[str]) -> str:

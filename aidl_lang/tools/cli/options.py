@@ -95,8 +95,13 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
         "where to write; the suffix tells the format; may be given several times; - is standard output "
         "(default: FILE with .svg)",
     )
-    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
     add_params(parser)
+    add_drawing_options(parser)
+
+
+def add_drawing_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options for how a drawing is written."""
+    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
     add_look(parser)
     add_pixels(parser)
     parser.add_argument(

@@ -5,31 +5,7 @@ from __future__ import annotations
 from aidl_lang.building.model import Knob
 from aidl_lang.common.records import record
 from aidl_lang.tools.ends.values import Value
-
-
-@record()
-class Fault:
-    """A diagnostic of a compile without its sources.
-
-    text   the source text at its place, in one line
-    file   the file of its place, with its line; None without a place
-    """
-
-    code: str
-    message: str
-    label: str = ""
-    text: str = ""
-    file: str | None = None
-    line: int | None = None
-
-    @property
-    def is_error(self) -> bool:
-        return self.code.startswith("E")
-
-    @property
-    def place(self) -> tuple[str, str | None, int | None]:
-        """Returns the key by which it is recognised at another value."""
-        return self.code, self.file, self.line
+from aidl_lang.tools.sweeping.faults import Fault
 
 
 @record()

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
 from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.processes import Guarded, Limit, count, limit_met
-from aidl_lang.tools.ends.results import Fault, Sweep, Tried, Turned
-from aidl_lang.tools.ends.trying import SweepJob, fault, tried
+from aidl_lang.common.processes import Guarded, count
+from aidl_lang.tools.ends.results import Sweep, Tried, Turned
+from aidl_lang.tools.ends.trying import SweepJob, tried
 from aidl_lang.tools.ends.values import Value, ends, limit
+from aidl_lang.tools.sweeping.faults import Fault, fault, limit_fault
 
 LONGEST = 300.0
 """Seconds for all of it; ends left then are counted."""
@@ -97,48 +98,40 @@ class _Run:
         self.progress, self.until = progress, until
         self.compiled = 0
         self._results: dict[int, Turned] = {}
-        self._waiting: dict[Future[Tried], int] = {}
 
     def turned(self) -> tuple[Turned, ...]:
         """Returns the results of the searches, in their order, as far as there was time."""
         workers = Guarded(min(count(), len(self.courses)), "aidl_lang.tools.ends.trying")
+        crew: Crew[int, Tried] = Crew(workers)
         try:
             self.progress(0, len(self.courses))
             for number, course in enumerate(self.courses):
-                self._ask(workers, number, next(course))
-            while self._waiting and time.monotonic() < self.until:
+                self._ask(crew, number, next(course))
+            while crew and time.monotonic() < self.until:
                 checkpoint()
-                done, _ = wait(self._waiting, _PAUSE, FIRST_COMPLETED)
-                for future in done:
-                    self._go_on(workers, self._waiting.pop(future), _came(future))
+                for number, found in crew.came(_PAUSE):
+                    self._go_on(crew, number, _came(found))
         finally:
             workers.close()
         return tuple(self._results[number] for number in sorted(self._results))
 
-    def _ask(self, workers: Guarded, number: int, asking: Asking) -> None:
+    def _ask(self, crew: Crew[int, Tried], number: int, asking: Asking) -> None:
         value, explained = asking
-        path = self.knobs[number].path
-        self._waiting[workers.submit(self.job.seconds, tried, self.job, path, value, explained)] = number
+        crew.give(number, self.job.seconds, tried, self.job, self.knobs[number].path, value, explained)
 
-    def _go_on(self, workers: Guarded, number: int, found: Tried) -> None:
+    def _go_on(self, crew: Crew[int, Tried], number: int, found: Tried) -> None:
         self.compiled += 1
         try:
-            self._ask(workers, number, self.courses[number].send(found))
+            self._ask(crew, number, self.courses[number].send(found))
         except StopIteration as done:
             self._results[number] = done.value
             self.progress(len(self._results), len(self.courses))
 
 
-def _came(future: Future[Tried]) -> Tried:
+def _came(found: Tried | Broke) -> Tried:
     """Returns the result of a process, or the way it ended."""
-    error = future.exception()
-    if error is None or (limit := limit_met(error)) is None:
-        return future.result()
-    return Tried(False, (Fault("E0603", f"the program {_WHY[limit]}"),), was_given_up=True)
-
-
-_WHY = {
-    Limit.TIME: "takes longer than a compile may",
-    Limit.DEATH: "ends the process that compiles it",
-    Limit.MEMORY: "needs more memory than there is for it",
-}
+    if isinstance(found, Tried):
+        return found
+    if found.limit is None:
+        raise found.error
+    return Tried(False, (limit_fault(found.limit),), was_given_up=True)

@@ -6,16 +6,15 @@ import time
 from dataclasses import field, replace
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic, Severity
+from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Front, Settings
-from aidl_lang.tools.ends.results import Fault, Tried
+from aidl_lang.tools.ends.results import Tried
 from aidl_lang.tools.ends.values import Value
-
-_SPARE = 10.0
-"""Seconds that a process gets beyond the limits: for starting, checking, reasons."""
+from aidl_lang.tools.sweeping.bundle import patience
+from aidl_lang.tools.sweeping.faults import fault
 
 
 @record()
@@ -30,8 +29,7 @@ class SweepJob:
     @property
     def seconds(self) -> float:
         """Returns the time that one compile may take."""
-        limits = self.settings
-        return limits.building.seconds + limits.solving.seconds + limits.drawing + _SPARE
+        return patience(self.settings)
 
 
 _known: dict[SweepJob, Front] = {}
@@ -50,17 +48,3 @@ def tried(job: SweepJob, path: str, value: Value, explained: bool) -> Tried:
     wanted = Severity.WARNING if compiled.ok else Severity.ERROR
     found = tuple(fault(d) for d in compiled.diagnostics if d.severity is wanted)
     return Tried(compiled.ok, found, time.perf_counter() - start)
-
-
-def fault(diagnostic: Diagnostic) -> Fault:
-    span = diagnostic.span
-    if span is None:
-        return Fault(diagnostic.code, diagnostic.message, diagnostic.label)
-    return Fault(
-        diagnostic.code,
-        diagnostic.message,
-        diagnostic.label,
-        span.one_line,
-        span.source.name,
-        span.line,
-    )

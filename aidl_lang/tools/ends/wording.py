@@ -8,8 +8,9 @@ from typing import Any
 from aidl_lang.building.model import Knob
 from aidl_lang.common.numbers import literal
 from aidl_lang.common.prose import first_few
-from aidl_lang.tools.ends.results import Fault, Sweep, Tried, Turned
+from aidl_lang.tools.ends.results import Sweep, Tried, Turned
 from aidl_lang.tools.ends.values import Value
+from aidl_lang.tools.sweeping.faults import Fault
 
 _ASSERT, _CORNER = "E0604", "E0518"
 _TOLD = 3

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import CancelledError
 from dataclasses import field, replace
 from itertools import count
-from typing import TypeVar
+from typing import Any, TypeVar, cast
 
-from aidl_lang.common.processes import Guarded, Limit, limit_met
+from aidl_lang.common.crew import Broke, Crew
+from aidl_lang.common.processes import Guarded, Limit
 from aidl_lang.common.records import record
 from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 
@@ -31,16 +33,21 @@ class Worker:
     def __init__(self, seconds: float = SECONDS) -> None:
         self._seconds = seconds
         self._pool = Guarded(1, "aidl_lang.tools.evaluation.measures", _MEMORY)
+        self._crew: Crew[str, Any] = Crew(self._pool)
 
     def call(self, task: Callable[..., T], *arguments: object) -> T:
         """Returns the result of a task; it and its arguments can be pickled. Raises Broken."""
-        future = self._pool.submit(self._seconds, task, *arguments)
-        error = future.exception()
-        if error is None:
-            return future.result()
-        if (limit := limit_met(error)) is not None:
-            raise Broken(_WHY[limit].format(self._seconds)) from error
-        raise Broken(f"it ended in {type(error).__name__}: {str(error)[:200]}") from error
+        self._crew.give("it", self._seconds, task, *arguments)
+        while not (came := self._crew.came()):
+            pass  # it was begun once more
+        ((_, found),) = came
+        if not isinstance(found, Broke):
+            return cast(T, found)
+        if isinstance(found.error, CancelledError):
+            raise found.error
+        if found.limit is not None:
+            raise Broken(_WHY[found.limit].format(self._seconds)) from found.error
+        raise Broken(f"it ended in {type(found.error).__name__}: {str(found.error)[:200]}") from found.error
 
     def stop(self) -> None:
         self._pool.close()

@@ -1,0 +1,115 @@
+"""Many calls at a time on one engine: those that are done are handed over as they come, and one whose process
+dies is given once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from typing import Generic, TypeVar
+
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.processes import Engine, Limit, limit_met
+from aidl_lang.common.records import record
+
+K = TypeVar("K", bound=Hashable)
+T = TypeVar("T")
+
+_LIVES = 2
+"""How often a call may be begun that ends its process: another may have taken all the memory there is."""
+_AHEAD = 2
+"""Calls that wait at the engine for each that is carried out, so that none of its places is idle."""
+_RETURNS = 20
+"""How often a call is given again because what carried it out is gone, by no fault of its own."""
+
+
+class GoneError(Exception):
+    """Raised in place of a result where the engine lost a call, as a cluster that was started anew does."""
+
+
+class EngineError(AidlError):
+    """Raised where the engine itself fails, so that no call can be carried out."""
+
+
+@record()
+class Broke:
+    """A call without a result: the limit that it met, or the error that it raised."""
+
+    limit: Limit | None
+    error: BaseException
+
+
+@record()
+class _Call(Generic[K, T]):
+    key: K
+    seconds: float
+    task: Callable[..., T]
+    arguments: tuple[object, ...]
+    deaths: int = 0
+    losses: int = 0
+
+
+class Crew(Generic[K, T]):
+    """The calls that are under way on an engine, each under a key of its own."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._waiting: dict[Future[T], _Call[K, T]] = {}
+        self.given_again = 0
+        """The calls that were begun once more."""
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    @property
+    def has_room(self) -> bool:
+        """Tells whether another call would be begun soon; who gives more only fills memory."""
+        return len(self._waiting) < _AHEAD * max(1, self._engine.places)
+
+    @property
+    def running(self) -> list[K]:
+        """The keys of the calls that are likely carried out now: those given first."""
+        return [call.key for call in list(self._waiting.values())[: self._engine.places]]
+
+    def give(self, key: K, seconds: float, task: Callable[..., T], *arguments: object) -> None:
+        """Has a call carried out within some seconds."""
+        self._begin(_Call(key, seconds, task, arguments))
+
+    def _begin(self, call: _Call[K, T]) -> None:
+        self._waiting[self._engine.submit(call.seconds, call.task, *call.arguments)] = call
+
+    def came(self, timeout: float | None = None) -> list[tuple[K, T | Broke]]:
+        """Returns the calls that are done, once there are some or after `timeout` seconds. Raises
+        EngineError.
+        """
+        done, _ = wait(self._waiting, timeout, FIRST_COMPLETED)
+        found: list[tuple[K, T | Broke]] = []
+        for future in [each for each in self._waiting if each in done]:
+            call = self._waiting.pop(future)
+            try:
+                found.append((call.key, future.result()))
+            except EngineError:
+                raise
+            except Exception as error:  # noqa: BLE001 (handed over, whatever it is)
+                if (again := _once_more(call, error)) is None:
+                    found.append((call.key, Broke(limit_met(error), error)))
+                else:
+                    self.given_again += 1
+                    self._begin(again)
+        return found
+
+    def cancel(self) -> None:
+        """Gives up all calls that are under way."""
+        for future in self._waiting:
+            future.cancel()
+        self._waiting.clear()
+
+
+def _once_more(call: _Call[K, T], error: BaseException) -> _Call[K, T] | None:
+    """Returns a call that broke as it is to be begun again; None if it is not."""
+    deaths = call.deaths + (limit_met(error) is Limit.DEATH)
+    losses = call.losses + isinstance(error, GoneError)
+    is_unlucky = (deaths > call.deaths and deaths < _LIVES) or (losses > call.losses and losses < _RETURNS)
+    if not is_unlucky:
+        return None
+    return _Call(call.key, call.seconds, call.task, call.arguments, deaths, losses)

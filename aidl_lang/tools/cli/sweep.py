@@ -1,0 +1,298 @@
+"""`aidl sweep`: many variants of a program, their drawings, and a table of what came of each."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.prose import counted
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.options import (
+    add_drawing_options,
+    add_outputs,
+    add_program,
+    add_strict,
+    add_variant,
+    count_to,
+)
+from aidl_lang.tools.cli.report import UseError, exit_code, say, show
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.sweeping.plan import Plan, Rows
+    from aidl_lang.tools.sweeping.rows import Row
+    from aidl_lang.tools.sweeping.session import Job, Session
+
+_MOST_TOLD = 20
+"""Most failures that are listed; the table has all."""
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, "
+        "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, "
+        "1 some are not, 2 wrong use."
+    )
+    add_program(parser)
+    parser.add_argument(
+        "-D",
+        dest="params",
+        action="append",
+        default=[],
+        type=_axis,
+        metavar="NAME=VALUES",
+        help="vary a param",
+    )
+    parser.add_argument("--table", metavar="CSV", help="a variant for each row; columns are params")
+    parser.add_argument(
+        "--random",
+        type=count_to(1_000_000),
+        metavar="N",
+        help="draw so many variants within the ranges of params",
+    )
+    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is drawn (default: 1)")
+    add_outputs(
+        parser,
+        "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
+        "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
+    )
+    add_drawing_options(parser)
+    add_variant(parser)
+    add_strict(parser)
+    running = parser.add_argument_group("running")
+    running.add_argument(
+        "--on",
+        default="local",
+        metavar="ENGINE",
+        help="local (the default), or a scheduler of Dask: tcp://host:8786",
+    )
+    running.add_argument(
+        "--jobs",
+        type=count_to(1000),
+        metavar="N",
+        help="processes of this machine (default: one for each processor)",
+    )
+    running.add_argument(
+        "--time-limit",
+        type=count_to(100_000),
+        metavar="SECONDS",
+        help="for each variant (default: what a compile, its files and measures may take)",
+    )
+    running.add_argument("--stop-on-error", action="store_true", help="stop at the first variant that fails")
+    running.add_argument(
+        "--resume", action="store_true", help="go on with the same sweep that was broken off"
+    )
+    running.add_argument(
+        "--cache", metavar="DIR", help="keep what comes of variants there, and take what is kept"
+    )
+    running.add_argument(
+        "--cache-size",
+        type=count_to(1_000_000),
+        metavar="MB",
+        help="most that the cache keeps (default: 4096)",
+    )
+    running.add_argument(
+        "--no-timings",
+        dest="timings",
+        action="store_false",
+        help="leave the seconds out of tables, which are the same every time then",
+    )
+    running.add_argument(
+        "--progress",
+        choices=("auto", "off", "json"),
+        default="auto",
+        help="a line on a terminal (the default), nothing, or JSON lines on standard error",
+    )
+    running.add_argument("--json", action="store_true", help="print a summary with all failures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang.common.processes import prepared
+    from aidl_lang.tools.cli.sweep_progress import progress
+    from aidl_lang.tools.sweeping.session import Session
+    from aidl_lang.tools.sweeping.starting import LOCAL, engine, preloads
+
+    if arguments.file == files.STANDARD and arguments.resume:
+        raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
+    source = files.read(arguments.file)
+    if arguments.on == LOCAL:
+        prepared(preloads(arguments.output))  # they load while the program is read
+    else:
+        import logging
+
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what there is to say is said here
+    try:
+        job = _job(arguments, source)
+        workers = engine(arguments.on, arguments.jobs, len(job.plan), arguments.output)
+    except AidlError as reason:
+        show(reason.diagnostics)
+        return exit_code(reason.diagnostics)
+    try:
+        with progress(arguments.progress) as listen:
+            session = Session(job, workers, listen)
+            for _ in session:
+                pass
+    except AidlError as reason:
+        show(reason.diagnostics)
+        _tell_unfinished(session)
+        return exit_code(reason.diagnostics)
+    except KeyboardInterrupt:
+        _tell_unfinished(session)
+        raise
+    finally:
+        workers.close()
+    _tell(session, arguments)
+    return 0 if session.is_complete and not session.failed else 1
+
+
+def _axis(text: str) -> tuple[str, str]:
+    name, equals, values = text.partition("=")
+    if not (name.strip() and equals and values.strip()):
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUES, as in width=60..200/8, not `{text}`")
+    return name.strip(), values
+
+
+def _job(arguments: argparse.Namespace, source: Any) -> Job:
+    from aidl_lang import pipeline
+    from aidl_lang.tools.cli.build import options
+    from aidl_lang.tools.cli.keywords import said
+    from aidl_lang.tools.sweeping.outputs import outputs
+    from aidl_lang.tools.sweeping.session import Job
+    from aidl_lang.tools.sweeping.starting import opened, reproducing
+    from aidl_lang.tools.sweeping.working import Making
+
+    settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
+    bundle, world, knobs = opened(source, files.world(arguments.file), settings)
+    plan = _plan(arguments, knobs)
+    words = said(arguments)
+    return Job(
+        plan,
+        bundle,
+        world,
+        Making(options=options(arguments), best_effort=arguments.best_effort),
+        outputs(arguments.output, plan, arguments.file, arguments.format),
+        lambda variant, name: reproducing(arguments.file, plan, variant, name, words),
+        arguments.cache or "",
+        arguments.cache_size * 1_000_000 if arguments.cache_size else Job.cache_size,
+        arguments.resume,
+        arguments.stop_on_error,
+        arguments.timings,
+        arguments.time_limit,
+    )
+
+
+def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
+    from aidl_lang.tools.sweeping.axes import axis
+    from aidl_lang.tools.sweeping.plan import planned
+
+    rows: Rows | None = None
+    if arguments.table:
+        from aidl_lang.tools.sweeping.orders import read_table
+
+        rows = read_table(Path(arguments.table), knobs)
+        if rows.labels:
+            from aidl_lang.common.prose import named
+
+            say(f"{arguments.table}: carried along, as no param is called so: {named(rows.labels)}")
+    is_drawn = arguments.random is not None
+    axes = [axis(name, values, knobs, is_drawn=is_drawn) for name, values in arguments.params]
+    return planned(knobs, axes, rows, (arguments.random, arguments.seed) if is_drawn else None)
+
+
+def _tell(session: Session, arguments: argparse.Namespace) -> None:
+    failures = [row for row in session.rows if not row.ok]
+    failures.sort(key=lambda row: row.variant.number)
+    if arguments.json:
+        print(json.dumps(_summary(session, failures), indent=2, ensure_ascii=False))
+    _list(failures, arguments.output)
+    if session.stale:
+        from aidl_lang.common.prose import named
+
+        say(
+            f"of an earlier run, and left as they are, though their variants fail now: {named(session.stale)}"
+        )
+    if session.renamed:
+        say(f"{counted(session.renamed, 'file')} would have shared a name, and got the number of the variant")
+    if session.given_again:
+        say(
+            f"{counted(session.given_again, 'variant')} had to be begun again, as what compiled them was gone"
+        )
+    if session.was_stopped:
+        _tell_unfinished(session)
+    say(f"{arguments.file}: {line(session)}")
+
+
+def line(session: Session) -> str:
+    """Returns the result of a sweep in a line."""
+    count, done = len(session.job.plan), len(session.rows)
+    parts = [counted(count, "variant") if done == count else f"{done} of {counted(count, 'variant')}"]
+    parts.append(f"{done - session.failed} well, {session.failed or 'none'} failing")
+    if session.kept:
+        parts.append(f"{session.kept} known before")
+    return f"{', '.join(parts)}, {session.seconds:.1f} s"
+
+
+def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
+    """Prints each failure with its messages and the command that reproduces it."""
+    from aidl_lang.common.render import escape
+    from aidl_lang.tools.sweeping.axes import labels
+
+    for row in failures[:_MOST_TOLD]:
+        say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")
+        for fault in row.outcome.errors[:3]:
+            from aidl_lang.tools.sweeping.rows import said
+
+            say(f"  {escape(said(fault))}")
+        if not row.outcome.errors:
+            say(f"  {escape(row.message)}")
+        say(f"  {escape(_short(row.command, 2000))}")
+    if (more := len(failures) - _MOST_TOLD) > 0:
+        where = "the tables have all" if outputs else "a table has all: `-o table.csv`"
+        say(f"and {counted(more, 'failure')} more; {where}")
+
+
+def _short(text: str, most: int = 200) -> str:
+    text = text.replace("\n", "\\n").replace("\r", "\\r")
+    return text if len(text) <= most else f"{text[:most]}… ({len(text)} characters)"
+
+
+def _tell_unfinished(session: Session) -> None:
+    count = len(session.job.plan)
+    if session.job.cache:
+        where = f"`{session.job.cache}` has what is done"
+    elif session.unfinished is not None:
+        where = f"`{session.unfinished}` has what is done; the same command with `--resume` goes on"
+    else:
+        where = "nothing is kept, as there are no outputs"
+    say(f"{len(session.rows)} of {counted(count, 'variant')} done; {where}")
+
+
+def _summary(session: Session, failures: Sequence[Row]) -> dict[str, Any]:
+    return {
+        "variants": len(session.job.plan),
+        "done": len(session.rows),
+        "ok": len(session.rows) - session.failed,
+        "failed": session.failed,
+        "kept": session.kept,
+        "begun_again": session.given_again,
+        "complete": session.is_complete,
+        "seconds": round(session.seconds, 3),
+        "failures": [
+            {
+                "n": row.variant.number,
+                "params": dict(row.variant.values),
+                "labels": dict(row.variant.labels),
+                "status": row.outcome.status,
+                "messages": [
+                    {"code": f.code, "message": f.message, "label": f.label, "file": f.file, "line": f.line}
+                    for f in row.outcome.errors
+                ],
+                "command": row.command,
+            }
+            for row in failures
+        ],
+    }

@@ -1,0 +1,148 @@
+"""The outputs of a sweep: drawings, one for each variant, and one table or contact sheet for all of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from pathlib import Path, PurePath
+
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.records import record
+from aidl_lang.common.replacing import replace
+from aidl_lang.export import FORMATS, file_names, require, suffix_of
+from aidl_lang.tools.sweeping.naming import Pattern, distinct, has_fields, pattern
+from aidl_lang.tools.sweeping.outcome import Outcome
+from aidl_lang.tools.sweeping.plan import Plan, Variant
+from aidl_lang.tools.sweeping.tables import ARROW_EXTRA, TABLES
+
+SHEETS = (".html", ".pdf", ".png")
+"""The formats of contact sheets."""
+MOST_PICTURES = 5000
+"""Most variants on a contact sheet."""
+
+
+@record()
+class Outputs:
+    """Where a sweep writes."""
+
+    patterns: tuple[Pattern, ...] = ()
+    tables: tuple[str, ...] = ()
+    sheets: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Returns the names of all outputs, as they were given."""
+        return [*(each.text for each in self.patterns), *self.tables, *self.sheets]
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Returns the formats of the drawings."""
+        return tuple(dict.fromkeys(each.suffix for each in self.patterns))
+
+    def keep(self, program: str) -> Path | None:
+        """Returns the folder beside the outputs for what a run has done; None without outputs."""
+        for name in (*self.tables, *self.sheets):
+            return Path(f"{name}.sweep")
+        stem = PurePath(program).stem or "sweep"
+        return next((Path(each.folder, f"{stem}.sweep") for each in self.patterns), None)
+
+
+def outputs(names: Sequence[str], plan: Plan, program: str, fallback: str | None = None) -> Outputs:
+    """Sorts the names of outputs. Raises AidlError for one that no sweep can write."""
+    patterns: list[Pattern] = []
+    tables: list[str] = []
+    sheets: list[str] = []
+    for name in dict.fromkeys(names):
+        suffix = PurePath(name).suffix.lower()
+        if has_fields(name):
+            patterns.append(pattern(name, suffix_of(name, fallback), plan))
+            continue
+        if not Path(name).parent.is_dir():
+            raise AidlError(
+                Diagnostic(
+                    "E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
+                )
+            )
+        if suffix in TABLES:
+            if suffix == ".parquet":
+                require("pyarrow", name, ARROW_EXTRA)
+            tables.append(name)
+        elif suffix in SHEETS:
+            sheets.append(name)
+        else:
+            raise _shared(name, suffix, plan)
+    for name in (*tables, *sheets):
+        if os.path.realpath(name) == os.path.realpath(program):
+            raise AidlError(Diagnostic("E0908", f"`{name}` is the program itself and is not overwritten"))
+    if sheets and len(plan) > MOST_PICTURES:
+        few = f"a contact sheet has up to {MOST_PICTURES}"
+        raise AidlError(Diagnostic("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}"))
+    return Outputs(tuple(patterns), tuple(tables), tuple(sheets))
+
+
+def _shared(name: str, suffix: str, plan: Plan) -> AidlError:
+    path = PurePath(name)
+    if suffix in FORMATS:
+        field = plan.paths[0] if len(plan.paths) == 1 else "n"
+        one = path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")
+        message = f"every variant would be written to `{name}`"
+        return AidlError(Diagnostic("E0973", message, hints=(f"say what differs in the name: `{one}`",)))
+    known = f"tables are {', '.join(TABLES)}, contact sheets {', '.join(SHEETS)}"
+    drawings = "a drawing has a field in its name, as in `out/{n}.dxf`"
+    return AidlError(
+        Diagnostic("E0905", f"`{name}` is neither a table nor a contact sheet", hints=(known, drawings))
+    )
+
+
+class Drawings:
+    """Writes the drawings of variants, each under a name of its own below the folder of its pattern."""
+
+    def __init__(self, outputs: Outputs, plan: Plan) -> None:
+        """Names the drawings of all variants; of names that are alike all but the first get a number."""
+        self.renamed = 0
+        self._patterns = outputs.patterns
+        self._names = [list(self._named(each, plan)) for each in outputs.patterns]
+        self._written: dict[str, int] = {}
+
+    def _named(self, each: Pattern, plan: Plan) -> Iterator[str]:
+        plain = [each.named(variant) for variant in plan]
+        for before, name in zip(plain, distinct(plain), strict=True):
+            self.renamed += name != before
+            yield name
+
+    def names(self, variant: Variant) -> list[str]:
+        """Returns the names of a variant's drawings, one for each pattern."""
+        return [names[variant.number - 1] for names in self._names]
+
+    def write(self, variant: Variant, outcome: Outcome) -> list[str]:
+        """Writes the drawings of a variant; returns the names of the files. Raises AidlError."""
+        written: list[str] = []
+        for each, name in zip(self._patterns, self.names(variant), strict=True):
+            contents = outcome.files.get(each.suffix, ())
+            for path, data in zip(file_names(name, len(contents)) if contents else [], contents, strict=True):
+                if self._written.setdefault(path.casefold(), variant.number) != variant.number:
+                    other = self._written[path.casefold()]
+                    message = f"`{path}` would hold variant {other} and variant {variant.number}"
+                    raise AidlError(Diagnostic("E0973", message, hints=("begin the name with `{n}`",)))
+                write(path, data)
+                written.append(path)
+        return written
+
+    def stale(self, variant: Variant) -> list[str]:
+        """Returns the files of an earlier run that stand where a variant would have written its own."""
+        return [name for name in self.names(variant) if os.path.lexists(name)]
+
+
+def write(name: str, data: bytes) -> None:
+    """Replaces a file in one step, if its content differs; a link is replaced, not followed. Raises
+    AidlError.
+    """
+    path = Path(name)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_symlink() or not path.is_file() or path.read_bytes() != data:
+            replace(path, data)
+    except OSError as error:
+        raise AidlError(
+            Diagnostic("E0904", f"`{name}` cannot be written: {(error.strerror or str(error)).lower()}")
+        ) from None

@@ -1,0 +1,90 @@
+"""What the tests of sweeps have in common: a program, and an engine that carries calls out on the spot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from typing import TypeVar
+
+from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld
+from aidl_lang.tools.sweeping.axes import axis
+from aidl_lang.tools.sweeping.orders import read_table
+from aidl_lang.tools.sweeping.outputs import outputs
+from aidl_lang.tools.sweeping.plan import planned
+from aidl_lang.tools.sweeping.session import Job, Session
+from aidl_lang.tools.sweeping.starting import opened, reproducing
+from aidl_lang.tools.sweeping.working import Making
+
+T = TypeVar("T")
+
+PLATE = """\
+/// A plate with a bore.
+param width = 60mm in 40..120 step 20
+param style = "round" in ["round", "square"]
+param bored = true
+@thickness(3mm)
+solid plate {
+    body = rectangle(center: origin, width: width, height: 30mm)
+    if style == "round" { fillet(body, 5mm) }
+    if bored { hole bore { rim = circle(center: (0, 0), radius: 5mm) } }
+    assert body.width < 110mm, "it fits the sheet"
+}
+"""
+
+
+class Here:
+    """Carries calls out at once, in this process, and counts them."""
+
+    places = 2
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
+        self.calls += 1
+        future: Future[T] = Future()
+        try:
+            future.set_result(task(*arguments))
+        except Exception as error:  # noqa: BLE001 (handed over)
+            future.set_exception(error)
+        return future
+
+    def close(self) -> None:
+        pass
+
+
+def sweep(
+    folder: Path,
+    values: Sequence[str] = ("width=40,80", "style=*"),
+    names: Sequence[str] = (),
+    engine: Here | None = None,
+    text: str = PLATE,
+    table: str | None = None,
+    **more: object,
+) -> Session:
+    """Runs a sweep in a folder to its end."""
+    program = folder / "plate.aidl"
+    program.write_text(text)
+    bundle, world, knobs = opened(SourceFile("plate.aidl", text), DiskWorld(folder), pipeline.Settings())
+    rows = None
+    if table is not None:
+        (folder / "orders.csv").write_text(table, newline="")
+        rows = read_table(folder / "orders.csv", knobs)
+    plan = planned(knobs, [axis(*each.split("=", 1), knobs) for each in values], rows)
+    wanted = outputs([str(folder / name) for name in names], plan, str(program))
+    job = Job(
+        plan,
+        bundle,
+        world,
+        Making(),
+        wanted,
+        lambda variant, name: reproducing("plate.aidl", plan, variant, name),
+        timings=False,
+        **more,
+    )
+    session = Session(job, engine or Here())
+    list(session)
+    return session

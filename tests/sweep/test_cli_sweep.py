@@ -1,0 +1,290 @@
+"""`aidl sweep` as its user has it: what it says, its exit codes, its progress, and hostile orders."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import pty
+import random
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import ezdxf
+import pytest
+
+from aidl_lang.tools.cli import main, sweep_progress
+from aidl_lang.tools.sweeping import starting
+from aidl_lang.tools.sweeping.session import Progress
+from tests.commands import Result
+from tests.commands import aidl as aidl
+from tests.sweep.here import PLATE, Here
+
+Command = Callable[..., Result]
+SIGN = """\
+param name = "Ada"
+param width = 60mm in 40..400
+@thickness(3mm)
+solid sign {
+    plate = rectangle(center: origin, width: width, height: 20mm)
+    drawing letters { word = text(name, height: 8mm) }
+    assert letters.width <= width - 6mm, "the name is too long"
+    assert letters.height <= 16mm, "the name is too high"
+}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working directory with programs in it; sweeps run in this process."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("NO_COLOR", "1")
+    (tmp_path / "plate.aidl").write_text(PLATE)
+    (tmp_path / "sign.aidl").write_text(SIGN)
+    monkeypatch.setattr(starting, "Guarded", lambda workers, preload: Here())
+    return tmp_path
+
+
+def test_failures_are_told_with_their_commands(folder: Path, aidl: Command) -> None:
+    done = aidl(
+        "sweep",
+        "plate.aidl",
+        "-D",
+        "width=80,120",
+        "-D",
+        "style=square",
+        "-o",
+        "{width}.dxf",
+        "--kerf",
+        "0.2",
+    )
+    assert (done.code, done.out) == (1, "")
+    assert done.err.splitlines()[:-1] == [
+        "failing: 2: width=120 style=square",
+        "  E0604 line 10: assertion failed: it fits the sheet (120 is not < 110)",
+        "  aidl compile plate.aidl -D width=120 -D 'style=\"square\"' --kerf=0.2 -o 120.dxf",
+    ]
+    assert re.fullmatch(r"plate.aidl: 2 variants, 1 well, 1 failing, \d+\.\d s", done.err.splitlines()[-1])
+    assert [path.name for path in folder.glob("*.dxf")] == ["80.dxf"]
+
+
+def test_a_summary_for_scripts(folder: Path, aidl: Command) -> None:
+    done = aidl("sweep", "plate.aidl", "-D", "width=80,120", "--json")
+    told = json.loads(done.out)
+    assert (done.code, told["variants"], told["ok"], told["failed"], told["complete"]) == (1, 2, 1, 1, True)
+    (failure,) = told["failures"]
+    assert (failure["n"], failure["params"], failure["messages"][0]["code"]) == (2, {"width": 120.0}, "E0604")
+    assert aidl("sweep", "plate.aidl", "-D", "width=80").code == 0
+
+
+def test_a_sweep_that_stops_says_how_it_goes_on(folder: Path, aidl: Command) -> None:
+    words = ("sweep", "plate.aidl", "-D", "width=120,80,60,40", "-o", "t.csv")
+    done = aidl(*words, "--stop-on-error")
+    assert done.code == 1
+    assert (
+        "1 of 4 variants done; `t.csv.sweep` has what is done; the same command with `--resume` goes on"
+        in done.err
+    )
+    again = aidl(*words, "--resume")
+    assert (again.code, "4 variants, 3 well, 1 failing, " in again.err, "known before" in again.err) == (
+        1,
+        True,
+        True,
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["-D", "widht=1"], 2, "error[E0911]: there is no param `widht`"),
+        (["-D", "width=60..100"], 0, ""),
+        (["-D", "width"], 2, "expected NAME=VALUES, as in width=60..200/8, not `width`"),
+        ([], 2, "error[E0971]: nothing is varied"),
+        (["--table", "none.csv"], 2, "error[E0972]: there is no file `none.csv`"),
+        (["-D", "width=60", "-o", "a.dxf"], 2, "error[E0973]: every variant would be written to `a.dxf`"),
+        (["-D", "width=60", "--on", "cloud"], 2, "error[E0976]: there is no engine `cloud`"),
+        (
+            ["-D", "width=60", "--cache", "."],
+            2,
+            "error[E0974]: `.` cannot keep outcomes: it holds other files",
+        ),
+        (["-D", "width=60", "-o", "plate.csv/x.csv"], 2, "error[E0904]"),
+    ],
+)
+def test_wrong_use(folder: Path, aidl: Command, words: list[str], code: int, said: str) -> None:
+    done = aidl("sweep", "plate.aidl", *words)
+    assert done.code == code, done.err
+    assert said in done.err
+
+
+def test_a_program_that_is_wrong_is_told_once(folder: Path, aidl: Command) -> None:
+    (folder / "wrong.aidl").write_text(PLATE.replace("width: width", "width: wdth"))
+    done = aidl("sweep", "wrong.aidl", "-D", "width=60,80")
+    assert (done.code, done.err.count("error[")) == (1, 1)
+
+
+HOSTILE = [
+    *('O\'Brien "Tiny"', '"quoted"', "'", '6"', " spaced ", "</script><script>alert(1)</script>", "a,b;c\td"),
+    *(
+        "two\nlines",
+        "a\r\nb",
+        "שלום",
+        "\u202eevil",
+        "👍🏽",
+        "../../../etc/passwd",
+        "/etc/passwd",
+        "..",
+        "con",
+    ),
+    *("=1+1", "@SUM(A1)", "-rf", "$(id)", "`id`", "%s%n", "{width}", "{{n}}", "\\", "x\u0000y", "\x1b[31m"),
+    *("\ufeff", "e\u0301"),
+]
+
+
+def orders(count: int) -> list[str]:
+    """Returns names of an order, hostile ones and plain ones."""
+    chance = random.Random(1)
+    plain = [
+        "".join(chance.choices("abcdefghijklmnopqrstuvwxyzABC -'", k=chance.randint(1, 12)))
+        for _ in range(count)
+    ]
+    return [*HOSTILE, *plain][:count]
+
+
+def told_of(folder: Path, names: list[str]) -> None:
+    """Asserts that each order is right, or told, and that nothing lies where it should not."""
+    with open(folder / "table.csv", newline="", encoding="utf-8") as file:
+        found = list(csv.DictReader(file))
+    assert [row["name"] for row in found] == names
+    for row in found:
+        if row["ok"] == "true":
+            path = Path(row["files"])
+            assert path.parent == Path("out")
+            assert ezdxf.readfile(folder / path).modelspace()
+        else:
+            assert row["messages"], row
+            assert not row["files"], row
+    inside = {path.name for path in (folder / "out").iterdir()}
+    assert inside == {Path(row["files"]).name for row in found if row["files"]}
+    beside = {path.name for path in folder.iterdir()}
+    assert (
+        beside
+        == {"plate.aidl", "sign.aidl", "orders.csv", "out", "table.csv", "table.jsonl", "sheet.html", "said"}
+        & beside
+    )
+    assert not {"etc", "passwd"} & {path.name for path in folder.parent.iterdir()}
+
+
+def write_orders(folder: Path, names: list[str]) -> None:
+    with open(folder / "orders.csv", "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([["name", "width"], *([name, "300"] for name in names)])
+
+
+def test_hostile_orders_are_right_or_told(folder: Path, aidl: Command) -> None:
+    names = orders(len(HOSTILE) + 5)
+    write_orders(folder, names)
+    done = aidl(
+        "sweep",
+        "sign.aidl",
+        "--table",
+        "orders.csv",
+        "-o",
+        "out/{name}.dxf",
+        "-o",
+        "table.csv",
+        "-o",
+        "sheet.html",
+    )
+    assert done.code == 1
+    told_of(folder, names)
+    assert "\x1b" not in done.err.replace("\x1b[K", "")
+    assert b"<script>alert" not in (folder / "sheet.html").read_bytes()
+
+
+def test_a_command_with_a_hostile_name_makes_its_file(folder: Path, aidl: Command) -> None:
+    names = ['O\'Brien "Tiny"', '"quoted"', "$(id)", "`id`", "a\\'b", " spaced "]
+    write_orders(folder, names)
+    assert (
+        aidl("sweep", "sign.aidl", "--table", "orders.csv", "-o", "out/{n}.svg", "-o", "table.jsonl").code
+        == 0
+    )
+    for line in (folder / "table.jsonl").read_text().splitlines():
+        row = json.loads(line)
+        (path,) = row["files"]
+        made = Path(path).read_bytes()
+        Path(path).unlink()
+        told = subprocess.run(
+            ["bash", "-c", f"printf '%s\\0' {row['command']}"], capture_output=True, text=True, check=True
+        ).stdout
+        assert main(told.split("\0")[1:-1]) == 0
+        assert Path(path).read_bytes() == made, row["name"]
+
+
+def test_words_with_invisible_characters_reach_a_shell() -> None:
+    words = ["a\nb", "x\u202ey", "tab\there", "it's\x1b", "back\\slash\n", "é\n", "\udcff"]
+    told = subprocess.run(
+        ["bash", "-c", f"printf '%s\\0' {starting.joined(words)}"], capture_output=True, check=True
+    ).stdout
+    assert told.split(b"\0")[:-1] == [word.encode("utf-8", "surrogateescape") for word in words]
+    assert starting.joined(words).isprintable()
+    assert shlex.split(starting.joined(["a b", "c"])) == ["a b", "c"]
+
+
+@pytest.mark.slow
+def test_five_hundred_signs(tmp_path: Path) -> None:
+    (tmp_path / "sign.aidl").write_text(SIGN)
+    names = [*orders(499), "a" * 10_000]
+    write_orders(tmp_path, names)
+    words = ["--table", "orders.csv", "-o", "out/{name}.dxf", "-o", "table.csv", "-o", "sheet.html"]
+    words += ["--time-limit", "60"]  # for the name of 10,000 letters
+    with open(tmp_path / "said", "wb") as said:
+        done = subprocess.run(
+            [sys.executable, "-m", "aidl_lang", "sweep", "sign.aidl", *words],
+            cwd=tmp_path,
+            stderr=said,
+            check=False,
+        )
+    assert done.returncode == 1
+    told_of(tmp_path, names)
+
+
+def test_progress_on_a_terminal_and_for_programs(tmp_path: Path) -> None:
+    (tmp_path / "plate.aidl").write_text(PLATE)
+    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", "-D", "width=*", "-D", "style=*"]
+    main_end, other_end = pty.openpty()
+    with subprocess.Popen(words, cwd=tmp_path, stderr=other_end, stdout=subprocess.DEVNULL) as run:
+        os.close(other_end)
+        said = b""
+        while True:
+            try:
+                part = os.read(main_end, 4096)
+            except OSError:
+                break
+            if not part:
+                break
+            said += part
+        assert run.wait() == 1
+    os.close(main_end)
+    assert re.search(r"\d+/10 .*variants/s?.*now width=\d+ style=", said.decode().replace("\r", "\n"))
+    done = subprocess.run(
+        [*words, "--progress", "json"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    last = [json.loads(line) for line in done.stderr.splitlines() if line.startswith("{")][-1]
+    assert (last["done"], last["count"], last["failed"], last["left"]) == (10, 10, 2, 0)
+    quiet = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "now width" not in quiet.stderr
+    assert quiet.returncode == 1
+
+
+def test_a_cluster_without_workers_is_told_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sweep_progress, "_PATIENCE", 0.0)
+    with sweep_progress.progress("auto") as listen:
+        for places in (2, 0, 0, 0, 1, 0):
+            listen(Progress(10, 3, 0, 0, (), places, 0))
+    assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"

@@ -1,0 +1,65 @@
+"""Calls on an engine: one that hangs, dies or eats memory takes nothing along, and bad luck is made good
+once.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from aidl_lang.common.crew import Broke, Crew
+from aidl_lang.common.processes import Guarded, Limit
+
+
+def obey(word: str, folder: str) -> str:
+    with open(Path(folder, word), "a") as file:
+        file.write("x")
+    times = len(Path(folder, word).read_text())
+    if word == "hang":
+        time.sleep(60)
+    if word == "die" or (word == "die once" and times == 1):
+        os.kill(os.getpid(), signal.SIGKILL)
+    if word == "raise":
+        raise ValueError("no such luck")
+    if word == "eat":
+        return str(len(bytearray(8 << 30)))
+    return f"{word} {times}"
+
+
+@pytest.fixture(scope="module")
+def engine() -> Iterator[Guarded]:
+    engine = Guarded(2, "aidl_lang.common.crew")
+    yield engine
+    engine.close()
+
+
+def test_what_breaks_takes_nothing_along(engine: Guarded, tmp_path: Path) -> None:
+    crew: Crew[str, str] = Crew(engine)
+    words = ["well", "die", "hang", "raise", "die once", "eat", "too"]
+    for word in words:
+        crew.give(word, 3.0, obey, word, str(tmp_path))
+    found: dict[str, str | Broke] = {}
+    while crew:
+        found |= dict(crew.came(10))
+    assert [found[word] for word in ("well", "die once", "too")] == ["well 1", "die once 2", "too 1"]
+    limits = {word: each.limit for word, each in found.items() if isinstance(each, Broke)}
+    assert limits == {"die": Limit.DEATH, "hang": Limit.TIME, "raise": None, "eat": Limit.MEMORY}
+    assert (tmp_path / "die").read_text() == "xx"
+    assert (tmp_path / "hang").read_text() == "x"
+    assert crew.given_again == 2
+
+
+def test_what_is_given_up_ends(engine: Guarded, tmp_path: Path) -> None:
+    crew: Crew[str, str] = Crew(engine)
+    assert crew.has_room
+    for k in range(4):
+        crew.give(f"hang{k}", 60.0, obey, "hang", str(tmp_path))
+    assert not crew.has_room
+    crew.cancel()
+    crew.give("after", 30.0, obey, "after", str(tmp_path))
+    assert dict(crew.came(20)) == {"after": "after 1"}

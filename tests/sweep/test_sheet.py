@@ -1,0 +1,133 @@
+"""Contact sheets, read back: the PDF and the PNG as pictures, the page in a browser."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+import pypdfium2
+import pytest
+from PIL import Image
+from playwright.sync_api import Page, sync_playwright
+
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.tools.sweeping.sheet.layout import fitted, in_one, on_paper
+from tests.preview.conftest import ARGUMENTS, CHROMIUM
+from tests.sweep.here import PLATE, sweep
+
+SIGN = PLATE.replace("param bored = true", 'param name = "Ada"').replace("if bored {", "if true {")
+NAMES = ["</script><script>document.title = 'evil'</script>", "<b>bold</b>", "שלום", 'a"b', "two\nlines"]
+
+
+def cell(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"'
+
+
+def test_a_pdf_has_all_variants(tmp_path: Path) -> None:
+    sweep(tmp_path, ["width=40..120/20", "style=*"], ["sheet.pdf"])
+    document = pypdfium2.PdfDocument(tmp_path / "sheet.pdf")
+    assert len(document) == 3
+    text = "\n".join(document[k].get_textpage().get_text_bounded() for k in range(len(document)))
+    assert text.count("plate.aidl: 40 variants, 6 failing") == 3
+    assert text.count("style round") == 20
+    assert text.count("assertion failed") == 6
+    pictures = [
+        each
+        for k in range(len(document))
+        for each in document[k].get_objects(filter=[pypdfium2.raw.FPDF_PAGEOBJ_IMAGE])
+    ]
+    assert len(pictures) == 40
+    document.close()
+
+
+def test_a_png_shows_the_drawings(tmp_path: Path) -> None:
+    sweep(tmp_path, ["width=80,120", "style=square"], ["sheet.png"])
+    with Image.open(tmp_path / "sheet.png") as image:
+        pixels = image.convert("RGB")
+    grid = in_one(2, 40.0)
+    scale = pixels.width / grid.size[0]
+    assert pixels.size == tuple(round(side * scale) for side in grid.size)
+
+    def at(x: float, y: float) -> tuple[int, ...]:
+        return pixels.getpixel((round(x * scale), round(y * scale)))
+
+    left, right = 12.0, 12.0 + 40 + 4
+    middle = 12 + 10 + 20
+    plate, bore = at(left + 12, middle), at(left + 20, middle)
+    assert plate == at(right + 12, middle) != (255, 255, 255)
+    assert bore == at(right + 20, middle) == (255, 255, 255)
+    red = at(right, middle)
+    assert red[0] > 150 > max(red[1:])
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Page]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield chromium.new_page()
+        chromium.close()
+
+
+def test_a_page_has_its_knobs_as_filters(tmp_path: Path, browser: Page) -> None:
+    said: list[str] = []
+    browser.on("console", lambda message: said.append(message.text))
+    browser.on("pageerror", lambda error: said.append(str(error)))
+    browser.on("request", lambda request: said.extend([request.url] * request.url.startswith("http")))
+    sweep(tmp_path, ["width=40..120/20", "style=*", "bored=*"], ["sheet.html"])
+    browser.goto((tmp_path / "sheet.html").as_uri())
+    count = browser.locator("#count")
+    assert count.inner_text() == "80 of 80 variants, 12 failing"
+    assert browser.locator("article:visible").count() == 80
+    browser.get_by_label("square").uncheck()
+    assert count.inner_text() == "40 of 80 variants, 6 failing"
+    browser.get_by_label("from").fill("100")
+    assert count.inner_text() == "10 of 80 variants, 6 failing"
+    browser.get_by_label("false").uncheck()
+    browser.get_by_label("only what fails").check()
+    assert browser.locator("article:visible").count() == 3
+    assert "it fits the sheet" in browser.locator("article:visible .message").first.inner_text()
+    browser.get_by_text("all of it").locator("visible=true").first.click()
+    assert browser.locator("article:visible dt").first.inner_text() == "n"
+    assert browser.evaluate("document.querySelector('article:not([hidden]) img').naturalWidth") == 320
+    assert said == []
+
+
+def test_a_page_shows_hostile_names_as_text(tmp_path: Path, browser: Page) -> None:
+    table = "name\n" + "".join(f"{cell(name)}\n" for name in NAMES)
+    sweep(tmp_path, ["style=square"], ["sheet.html"], text=SIGN, table=table)
+    browser.goto((tmp_path / "sheet.html").as_uri())
+    assert browser.title() == "plate.aidl"
+    assert browser.locator("b").count() == 0
+    shown = browser.eval_on_selector_all("article bdi", "all => all.map(each => each.textContent)")
+    assert shown[::2] == NAMES
+
+
+def test_pages_of_paper_hold_what_they_say() -> None:
+    grid = on_paper(210, 297)
+    width, height = grid.size
+    assert width <= 210
+    assert height <= 297
+    assert grid.per_page >= 12
+
+
+class Typewriter:
+    def length(self, text: str, size: float) -> float:
+        return len(text) * size
+
+
+@pytest.mark.parametrize(("text", "kept"), [("abc", "abc"), ("abcdefgh", "abcd…"), ("", "")])
+def test_texts_are_cut_to_a_width(text: str, kept: str) -> None:
+    assert fitted(Typewriter(), text, 1.0, 5.0) == kept  # type: ignore[arg-type]
+
+
+def test_too_many_variants_for_a_sheet_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(AidlError, match="6000 variants are too many for"):
+        sweep(tmp_path, ["width=40..120/6000"], ["sheet.pdf"])
+
+
+def test_pictures_are_bounded() -> None:
+    from aidl_lang.tools.sweeping.sheet.png import png
+
+    with Image.open(io.BytesIO(png("none", []))) as image:
+        assert image.width > 0
