@@ -516,11 +516,7 @@ export default grammar({
     comprehension: ($) =>
       seq(
         field("element", $.expression),
-        "for",
-        field("variables", $.variables),
-        "in",
-        field("iterable", $._iterable),
-        optional(seq("if", field("condition", $._disjunction))),
+        repeat1(seq($._for_head, optional(seq("if", field("condition", $._disjunction))))),
       ),
 
     // --- Tokens ------------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 export const words = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -853,7 +853,7 @@ export const about = {
   "scale": "Larger or smaller: as a statement it changes the sizes that were written above it, as an expression it makes a copy.",
   "linear_array": "A row of a thing: members `[0]` to `[n-1]`, a pitch apart, or a step `by`.",
   "grid": "Rows and columns of a thing: members `[column][row]`, from the lower left.",
-  "along": "Members at equal ways along a line, an arc, a circle, or a `path`, outline or list of lines and arcs.",
+  "along": "Members at equal ways along a curve: a line, an arc, a circle, an ellipse, a Bézier curve, a `spline`, `wave` or `spiral`, a `path`, an outline, or a list of such that meet.",
   "polar_array": "Members around a circle, from the direction `start`, counter-clockwise.",
   "mirror_of": "One thing is the mirror image of another: points, lines, arcs, circles, curves, boxes, or lists of them.",
   "coincident": "The points are one point, or lie on a line (endless), a circle, an arc (whole circle) or an ellipse.",
@@ -1033,6 +1033,7 @@ export const snippets = [
   {"prefix": "@stroke", "title": "the width of lines", "body": "@stroke(${1:0.3mm})$0", "place": "attribute"},
   {"prefix": "@dash", "title": "dashed lines", "body": "@dash(${1:3}, ${2:1.5})$0", "place": "attribute"},
   {"prefix": "@opacity", "title": "what shows through", "body": "@opacity(${1:0.5})$0", "place": "attribute"},
+  {"prefix": "@shade", "title": "light and shade on a fill", "body": "@shade(${1:round})$0", "place": "attribute"},
   {"prefix": "@edges", "title": "seams in a solid", "body": "@edges(${1:seams})$0", "place": "attribute"},
   {"prefix": "@halo", "title": "a clear gap around what lies in front", "body": "@halo(${1:1mm})$0", "place": "attribute"},
   {"prefix": "@clip", "title": "drawn inside an outline only", "body": "@clip(${1:outline})$0", "place": "attribute"},
@@ -1042,6 +1043,7 @@ export const snippets = [
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},
   {"prefix": "@orientation", "title": "how a part stands", "body": "@orientation(${1:front})$0", "place": "attribute"},
+  {"prefix": "@quantity", "title": "how many pieces are made of a part", "body": "@quantity(${1:4})$0", "place": "attribute"},
   {"prefix": "@elevation", "title": "how high a part lies", "body": "@elevation(${1:18mm})$0", "place": "attribute"},
   {"prefix": "@note", "title": "a note on the drawing", "body": "@note(\"${1:glue here}\")$0", "place": "attribute"},
   {"prefix": "@allow", "title": "a note or warning not to be told", "body": "@allow(\"${1:N0602}\")$0", "place": "attribute"},
