@@ -131,9 +131,9 @@ def run(arguments: argparse.Namespace) -> int:
     except AidlError as reason:
         show(reason.diagnostics)
         return exit_code(reason.diagnostics)
+    session = Session(job, workers)
     try:
-        with progress(arguments.progress) as listen:
-            session = Session(job, workers, listen)
+        with progress(arguments.progress) as session.listen:
             for _ in session:
                 pass
     except AidlError as reason:
