@@ -1,16 +1,16 @@
 /// A storm lantern: a tank, a globe with a flame between two wires, a vented chimney, and a handle.
 assembly lantern {
     param height = 240 in 180..300
-    param vents = 4 in 2..6 step 1
+    param vents = 4 in 2..6
     let w = 0.42 * height
     let tall = 0.38 * height
 
     @color("dimgray") @detached solid handle {
         construction way = arch(width: 1.12 * w, height: 1.1 * w)
-        bow = thick([way.right, way.top, way.left], 5, caps: "butt")
+        bow = thick([way.right, way.top, way.left], 5)
     }
 
-    @color("lightcyan") solid globe {
+    @color("lightcyan") @shade(ball) solid globe {
         glass = path(
             from: (0, 0),
             line_to(0.26 * w, 0),
@@ -23,10 +23,10 @@ assembly lantern {
 
     @color("orange") solid flame { tongue = drop(radius: 0.09 * w, height: 0.4 * w) }
 
-    @color(darker("firebrick"))
+    @color(darker("firebrick")) @shade(round)
     solid burner { cone = trapezoid(bottom_width: 0.5 * w, top_width: 0.2 * w, height: 0.12 * w) }
 
-    @color("firebrick") solid tank {
+    @color("firebrick") @shade(round) solid tank {
         body = trapezoid(bottom_width: w, top_width: 0.75 * w, height: 0.16 * height)
         foot = rounded_rectangle(width: 1.1 * w, height: 10, radius: 4)
         constrain foot.top_center == body.bottom_center + (0, 4)
@@ -35,7 +35,7 @@ assembly lantern {
         constrain label.name.center == body.center
     }
 
-    @color("firebrick") solid chimney {
+    @color("firebrick") @shade(round) solid chimney {
         skirt = chamfered_rectangle(width: 0.66 * w, height: 12, chamfer: 3)
         pipe = rectangle(width: 0.44 * w, height: 0.14 * height)
         lid = dome(width: 0.62 * w, height: 0.06 * height)
@@ -58,7 +58,7 @@ assembly lantern {
             up(0.5 * w),
             line_to(0.3 * w, 1.2 * w)
         )
-        rod = thick(way, 5, caps: "butt")
+        rod = thick(way, 5)
     }
     left_wire = mirror(right_wire, about: y_axis)
 

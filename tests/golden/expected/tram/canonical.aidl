@@ -1,7 +1,7 @@
 /// A city tram: doors and windows along its body, two bogies, a pantograph under its wire, and the track.
 assembly tram {
     param length = 360 in 300..440
-    param windows = 3 in 1..4 step 1
+    param windows = 3 in 1..4
     param paint = "crimson"
     let pane_width = (length - 132) / (windows + 2) - 8
 
@@ -32,7 +32,7 @@ assembly tram {
         shoe = rounded_rectangle(center: (-4, 50), width: 56, height: 5, radius: 2)
     }
 
-    @color(paint) solid body {
+    @color(paint) @shade(slope) solid body {
         hull = rounded_rectangle(width: length, height: 92, radius: 16)
         construction skirt = rectangle(width: length - 32, height: 26)
         constrain skirt.bottom_center == hull.bottom_center
@@ -44,9 +44,8 @@ assembly tram {
     }
 
     for i in 0..1 {
-        @color("lightcyan") solid door[i] {
+        @color("lightcyan") @shade("lightblue") solid door[i] {
             leaf = rounded_rectangle(width: 40, height: 74, radius: 4)
-            drawing split { gap = line(start: (0, -37), end: (0, 37)) }
         }
         constrain door[i].bottom == body.bottom + 6
     }
