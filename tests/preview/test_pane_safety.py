@@ -117,6 +117,20 @@ def test_names_in_a_drawing_are_not_those_of_the_page(pane: Pane) -> None:
     assert pane.find(f"clipPath#{target} rect").count() == 1
 
 
+def test_gradients_of_the_drawing_are_shown_and_none_from_elsewhere(pane: Pane) -> None:
+    stops = '<stop offset="0" stop-color="#ff0000"/><stop offset="1" stop-color="#0000ff"/>'
+    shade = (
+        f'<linearGradient id="shade-1" gradientUnits="userSpaceOnUse" x1="0" x2="50">{stops}</linearGradient>'
+    )
+    shown = '<path fill="url(#shade-1)" d="M0 0h9v9z"/><path fill="url(/harm#a)" d="M0 0h9v9z"/>'
+    pane.shows(svg=SVG.replace("</svg>", f"<defs>{shade}</defs>{shown}</svg>"))
+    target = pane.page.eval_on_selector(
+        ".drawing [fill^=url]", "one => one.getAttribute('fill').slice(5, -1)"
+    )
+    assert pane.find(f"linearGradient#{target} stop").count() == 2
+    assert pane.find(".drawing [fill^=url]").count() == 1
+
+
 def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
     evil = '<img src=/harm onerror="window.harmed=true"><script>window.harmed=true</script>`<b>`&amp;'
     seen = evil.replace("`", "")
