@@ -50,7 +50,7 @@ class RecordingError(Exception):
 
 @record()
 class Recorded:
-    """One conversation; `guide` tells what the model had read, `note` what a reader of the figures must know."""
+    """One conversation; `guide` tells what the model had read, `note` what readers of figures must know."""
 
     job: Job
     text: str
@@ -97,9 +97,8 @@ def _lines(file: Path) -> Iterator[tuple[str, str]]:
         if not file.is_file():
             raise RecordingError("E0993", f"`{file}` is no file and no folder", _FORM)
         if file.stat().st_size > _LARGEST:
-            raise RecordingError(
-                "E0993", f"`{file}` is larger than {_LARGEST >> 20} MB", "part it into several files of a folder"
-            )
+            large = f"`{file}` is larger than {_LARGEST >> 20} MB"
+            raise RecordingError("E0993", large, "part it into several files of a folder")
         text = file.read_text(encoding="utf-8")
     except OSError as error:
         raise _unreadable(file, error) from None
@@ -173,7 +172,8 @@ class _Reader:
         if not isinstance(said, dict):
             _refuse(where, f"{f'`{within[:-1]}`' if within else 'it'} is to be an object, as in {{…}}")
         if strange := sorted(map(str, said.keys() - known)):
-            _refuse(where, f"it has no member `{within}{strange[0][:60]}`; there are {', '.join(sorted(known))}")
+            there = ", ".join(sorted(known))
+            _refuse(where, f"it has no member `{within}{strange[0][:60]}`; there are {there}")
         self._said, self._where, self._within = said, where, within
 
     def _wrong(self, name: str, wanted: str) -> NoReturn:
@@ -331,6 +331,15 @@ def plan(recorded: Sequence[Recorded], known: Iterable[Prompt], settings: Settin
 
 
 # --- writing ----------------------------------------------------------------------------------------
+
+
+def notes(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> tuple[str, ...]:
+    """Returns what must be known of conversations, each note once, after the languages that it is about."""
+    about: dict[str, dict[str, None]] = {}
+    for r in records:
+        if note := settings.get(f"{NOTE}{r['prompt']}/{r['variant']}/{r['run']}"):
+            about.setdefault(note, {})[r["variant"]] = None
+    return tuple(f"{', '.join(variants)}: {note}" for note, variants in about.items())
 
 
 def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:
