@@ -33,19 +33,20 @@ _Z = 1.959963984540054
 
 @record()
 class Share:
-    """A proportion: `part` of `count`. `cases` are the conversations; where one has several of the things
-    counted, they are not independent.
+    """A proportion: `part` of `count`. `cases` are the conversations; where each may have `several` of the
+    things counted, these are not independent.
     """
 
     part: int
     count: int
     cases: tuple[Case, ...] = field(default=(), compare=False, repr=False)
+    several: bool = field(default=False, compare=False, repr=False)
 
     @classmethod
-    def of(cls, counts: Iterable[tuple[str, int, int]]) -> Share:
+    def of(cls, counts: Iterable[tuple[str, int, int]], *, several: bool) -> Share:
         """Returns the share of prompts, parts and counts, one for each conversation."""
         found = tuple(Case(*count) for count in counts)
-        return cls(int(sum(c.value for c in found)), int(sum(c.weight for c in found)), found)
+        return cls(int(sum(c.value for c in found)), int(sum(c.weight for c in found)), found, several)
 
     @property
     def value(self) -> float | None:
@@ -54,9 +55,7 @@ class Share:
     @property
     def interval(self) -> Interval | None:
         """Returns Wilson's interval where each conversation counts once, else that by drawing prompts."""
-        if any(case.weight not in (0, 1) for case in self.cases):
-            return interval(self.cases)
-        return self.wilson
+        return interval(self.cases) if self.several else self.wilson
 
     @property
     def wilson(self) -> Interval | None:
@@ -227,9 +226,11 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "structures": _number(valid, "structures"),
         "constraints": _number(valid, "constraints"),
         "degrees": _number(valid, "degrees"),
-        "requirements": Share.of(_counted(r, r.get("requirements", ()), "status", Status.MET) for r in valid),
+        "requirements": Share.of(
+            (_counted(r, r.get("requirements", ()), "status", Status.MET) for r in valid), several=True
+        ),
         "editability": Share.of(
-            _counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited
+            (_counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited), several=True
         ),
         "knobs": _mean(edited, lambda r: r["edits"]["knobs"]),
         "detached": _number(valid, "detached"),
@@ -242,7 +243,7 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
 
 
 def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
-    return Share.of((r["prompt"], int(holds(r)), 1) for r in records)
+    return Share.of(((r["prompt"], int(holds(r)), 1) for r in records), several=False)
 
 
 def _counted(of: Record, results: Sequence[Record], name: str, wanted: str) -> tuple[str, int, int]:
