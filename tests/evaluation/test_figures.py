@@ -132,7 +132,7 @@ def test_attempts_that_nobody_had_are_not_counted() -> None:
 
 
 def two_prompts() -> list[Record]:
-    """OpenSCAD is valid at first of both prompts, the language of one; 2 of 4 and 3 of 3 requirements hold."""
+    """OpenSCAD is valid at first of both prompts, AIDL of one; 2 of 4 and 3 of 3 requirements hold."""
     results = {"gear": ("met", "met", "failed", "failed"), "door": ("met",) * 3}
     found = []
     for prompt, statuses in results.items():
