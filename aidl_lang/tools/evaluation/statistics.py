@@ -6,6 +6,7 @@ Runs of one prompt are not independent of each other, so prompts are what is dra
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,11 @@ def interval(cases: Sequence[Case]) -> Interval | None:
     """Returns the 95 % percentile interval of a figure, by drawing prompts with replacement; where there is
     one prompt, by drawing its conversations. None for fewer than two.
     """
+    return _interval(tuple(cases))
+
+
+@lru_cache(maxsize=1 << 14)  # each format of the tables asks for it
+def _interval(cases: tuple[Case, ...]) -> Interval | None:
     prompts = list(dict.fromkeys(case.prompt for case in cases))
     if len(prompts) > 1:
         place = {prompt: number for number, prompt in enumerate(prompts)}
