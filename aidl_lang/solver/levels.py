@@ -236,7 +236,7 @@ class Levels:
             unmet = np.zeros(len(left), dtype=np.bool_)
             unmet[part[~holds]] = True
             accepted = left & ~unmet
-            accepted &= ~self._leaves_a_choice(x, free, of_unknown, part[considered & varying])
+            accepted &= ~self._leaves_a_choice(x, free, of_unknown, part[considered & varying], len(left))
             moved = free & accepted[of_unknown]
             self.x[moved] = x[moved]
             if np.array_equal(self.x, x):
@@ -250,15 +250,15 @@ class Levels:
             considered |= fresh
         return solved, hopeless
 
-    def _leaves_a_choice(self, x: Floats, free: Bools, of_unknown: Ints, part: Ints) -> Bools:
+    def _leaves_a_choice(self, x: Floats, free: Bools, of_unknown: Ints, part: Ints, parts: int) -> Bools:
         """Returns the mask of parts (p,) that moved more unknowns than they have rows and are small enough to
-        find out which unknowns can be held; `part` (k,) is the part of each row.
+        find out which unknowns can be held; `part` (k,) is the part of each row. The last parts may be
+        without unknowns.
         """
         moved = free & (np.abs(x - self.x) > STILL * self.metric.scale)
-        parts = int(of_unknown.max(initial=0)) + 1
         movers = np.bincount(of_unknown[moved], minlength=parts)
         rows = np.bincount(part, minlength=parts)
-        found: Bools = (movers > rows[: len(movers)]) & (movers <= MOST) & self._has_things
+        found: Bools = (movers > rows) & (movers <= MOST) & self._has_things
         return found
 
     def _solve_rows(

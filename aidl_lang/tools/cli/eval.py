@@ -12,12 +12,17 @@ from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.tools.evaluation.plan import Plan
+    from aidl_lang.tools.evaluation.recordings import Replay
     from aidl_lang.tools.evaluation.requirements import Prompt
     from aidl_lang.tools.evaluation.run import Done
     from aidl_lang.tools.evaluation.store import Store
+    from aidl_lang.tools.llm.messages import Provider
 
 _VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
 _OPENSCAD = "openscad"
+_RUNS = 3
+_OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_tokens", "constrain", "price")
+"""Options that a recording has no use for."""
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +39,8 @@ def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--runs",
         type=count_to(10_000),
-        default=3,
         metavar="N",
-        help="of each prompt in each variant (default: 3)",
+        help="of each prompt in each variant (default: 3; of a recording all)",
     )
     parser.add_argument(
         "--attempts",
@@ -64,14 +68,21 @@ def register(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)",
     )
-    parser.add_argument(
+    instead = parser.add_mutually_exclusive_group()
+    instead.add_argument(
         "--report", action="store_true", help="ask nothing: report on the runs that are there"
+    )
+    instead.add_argument(
+        "--replay",
+        metavar="PLACE",
+        help="ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such",
     )
     add_provider(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang.tools.evaluation.recordings import RecordingError
     from aidl_lang.tools.evaluation.report import report
     from aidl_lang.tools.evaluation.store import Store, StoreError
 
@@ -79,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
         store = Store(Path(arguments.out))
         left = _run(arguments, store)
         print(report(store, arguments.clip_weights, arguments.clip_model), end="")
-    except StoreError as reason:
+    except (StoreError, RecordingError) as reason:
         raise UseError.of(reason.diagnostic) from None
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
@@ -89,8 +100,7 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
     """Does the open jobs, and returns how many are still left."""
     from aidl_lang.tools.evaluation.run import run
 
-    asked = None if arguments.report else provider(arguments)
-    plan = _plan(arguments, asked is not None and asked.takes_seeds)
+    asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
     if asked is not None:
         store.begin(plan, asked.name)
     outcome = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
@@ -98,6 +108,32 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
         show([outcome.failure])
         say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
     return outcome.left
+
+
+def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
+    """Returns the model, none for `--report`, and what it is to be asked."""
+    from aidl_lang.tools.evaluation.timing import Timed
+
+    asked = None if arguments.report else Timed(provider(arguments))
+    return asked, _plan(arguments, asked is not None and asked.takes_seeds)
+
+
+def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
+    """Returns the replies of a recording, and the plan of its conversations. Raises RecordingError."""
+    from aidl_lang.tools.evaluation import recordings
+    from aidl_lang.tools.llm.generation import Settings
+
+    for option in _OF_MODELS:
+        if getattr(arguments, option) not in (None, ""):
+            raise UseError(
+                "E0996",
+                f"--{option.replace('_', '-')} is for a model, and --replay asks none",
+                "leave one of the two out",
+            )
+    there = recordings.load(Path(arguments.replay))
+    chosen = recordings.chosen(there, arguments.prompts or (), _variants(arguments), arguments.runs)
+    plan = recordings.plan(chosen, _known(arguments).values(), Settings(arguments.attempts))
+    return recordings.Replay("recording", {one.job: one for one in chosen}), plan
 
 
 def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
@@ -110,12 +146,23 @@ def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
     if asked.seed is None and takes_seeds:
         asked = replace(asked, seed=1)
     settings = Settings(arguments.attempts, asked)
-    return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings)
 
 
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
     from difflib import get_close_matches
 
+    known = _known(arguments)
+    for name in arguments.prompts or ():
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
+            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+    return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
+
+
+def _known(arguments: argparse.Namespace) -> dict[str, Prompt]:
+    """Returns the prompts of the folder by their names. Raises UseError."""
     from aidl_lang.tools.evaluation.requirements import PromptError, load
 
     folder = arguments.prompt_folder
@@ -125,12 +172,7 @@ def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
         raise UseError("E0947", f"the prompts cannot be read: {error}") from None
     if not known:
         raise UseError("E0947", f"there are no prompts in `{folder}`", "a prompt is a file `NAME.aidl`")
-    for name in arguments.prompts or ():
-        if name not in known:
-            near = get_close_matches(name, known, n=1)
-            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
-            raise UseError("E0947", f"there is no prompt `{name}`", hint)
-    return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
+    return known
 
 
 def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from aidl_lang.tools.evaluation import gallery, table
+from aidl_lang.tools.evaluation import gallery, recordings, table
 from aidl_lang.tools.evaluation.clip import MODEL, score_all
 from aidl_lang.tools.evaluation.store import Store
-from aidl_lang.tools.evaluation.summary import rows
+from aidl_lang.tools.evaluation.summary import WITHIN, pairs, rows
 
 
 def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
-    """Writes `evaluation.md`, `.csv`, `.json` and `index.html`, and returns the Markdown. Raises
-    StoreError.
+    """Writes `evaluation.md`, `.csv`, `.json`, `index.html` and `recording.jsonl`, and returns the Markdown.
+    Raises StoreError.
     """
     records = store.records()
     scores = score_all(store, records, weights, model)
-    variants, prompts = rows(records, scores), rows(records, scores, per_prompt=True)
-    text = table.markdown(variants, prompts)
+    settings = store.settings()
+    attempts = settings.get("attempts")
+    limit = attempts if isinstance(attempts, int) else WITHIN[-1]
+    variants, prompts = rows(records, scores, limit=limit), rows(records, scores, True, limit)
+    differences = pairs(variants)
+    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings))
     outputs = {
+        "recording.jsonl": recordings.written(records, settings),
         "evaluation.md": text,
-        "evaluation.csv": table.to_csv([*variants, *prompts]),
-        "evaluation.json": table.to_json(variants, prompts),
+        "evaluation.csv": table.to_csv([*variants, *prompts], differences),
+        "evaluation.json": table.to_json(variants, prompts, differences),
         "index.html": gallery.page(store.folder, records, variants, scores),
     }
     for name, content in outputs.items():

@@ -12,6 +12,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation import measures, store
 from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
+from aidl_lang.tools.evaluation.recordings import Replay
 from aidl_lang.tools.evaluation.store import Record, Store
 from aidl_lang.tools.evaluation.worker import SECONDS, Broken, Remote, Worker
 from aidl_lang.tools.llm.generation import Task, generate
@@ -56,7 +57,7 @@ class _Crew:
     """The data that threads share."""
 
     plan: Plan
-    provider: Provider | None
+    provider: Provider | Replay | None
     waiting: queue.SimpleQueue[tuple[Job, Record | None]] = field(default_factory=queue.SimpleQueue)
     results: queue.SimpleQueue[_Result] = field(default_factory=queue.SimpleQueue)
     is_over: threading.Event = field(default_factory=threading.Event)
@@ -64,7 +65,7 @@ class _Crew:
 
 def run(
     plan: Plan,
-    provider: Provider | None,
+    provider: Provider | Replay | None,
     kept: Store,
     threads: int = 4,
     seconds: float = SECONDS,
@@ -142,7 +143,8 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
         assert crew.provider is not None
         language = Remote(VARIANTS[job.variant], worker)
         task, settings = Task(prompt.text), crew.plan.sampled(job)
-        generation = generate(task, crew.provider, language, settings)
+        provider = crew.provider.of(job) if isinstance(crew.provider, Replay) else crew.provider
+        generation = generate(task, provider, language, settings)
         if generation.failure is not None:
             return _Result(job, store.failed(job, generation.failure), failure=generation.failure)
         record = store.recorded(job, prompt, generation)

@@ -17,6 +17,7 @@ from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
+from aidl_lang.tools.evaluation.recordings import GUIDE, RecordedPlan
 from aidl_lang.tools.evaluation.requirements import Prompt
 from aidl_lang.tools.llm.generation import Attempt, Generation
 from aidl_lang.tools.llm.language import Verdict
@@ -61,6 +62,10 @@ class Store:
                 "give these runs a folder of their own with --out, or use the settings of those there",
             )
         self.write(SETTINGS, _json(known | now))
+
+    def settings(self) -> Mapping[str, Any]:
+        """Returns the settings of the records there, empty without any. Raises StoreError."""
+        return self._read(self.folder / SETTINGS) or {}
 
     # --- records ----------------------------------------------------------------------------------
 
@@ -183,6 +188,8 @@ def _attempt(attempt: Attempt) -> Record:
         "model": attempt.reply.model,
         "finish": str(attempt.reply.finish),
         "usage": _usage(attempt.reply.usage),
+        "seconds": attempt.reply.seconds,
+        "date": attempt.reply.date,
         "program": attempt.program,
         "verdict": None if attempt.verdict is None else _verdict(attempt.verdict),
         "answer": attempt.answer,
@@ -214,9 +221,13 @@ def _settings(plan: Plan, provider: str) -> Record:
         "temperature": sampling.temperature,
         "max_tokens": sampling.max_tokens,
         "extra": dict(sampling.extra),
-        **{f"guide of {name}": digest(VARIANTS[name].guide()) for name in plan.variants},
+        **(plan.facts if isinstance(plan, RecordedPlan) else _guides(plan)),
         **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
     }
+
+
+def _guides(plan: Plan) -> Record:
+    return {f"{GUIDE}{name}": digest(VARIANTS[name].guide()) for name in plan.variants}
 
 
 def _short(value: object) -> str:

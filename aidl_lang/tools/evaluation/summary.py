@@ -1,10 +1,14 @@
-"""Figures from records: shares with their intervals and means, each with the number of its cases."""
+"""Figures from records: shares and means with their intervals, each with the number of its cases, and what
+languages differ by.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from statistics import fmean, pvariance
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from itertools import combinations
+from statistics import fmean, variance
 from typing import Any
 
 from aidl_lang.common.records import record
@@ -12,6 +16,15 @@ from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.editability import EditOutcome
 from aidl_lang.tools.evaluation.plan import VARIANTS
 from aidl_lang.tools.evaluation.requirements import Status
+from aidl_lang.tools.evaluation.statistics import (
+    Case,
+    Comparison,
+    Interval,
+    by_prompt,
+    compared,
+    holm,
+    interval,
+)
 
 Record = Mapping[str, Any]
 _Z = 1.959963984540054
@@ -20,17 +33,32 @@ _Z = 1.959963984540054
 
 @record()
 class Share:
-    """A proportion: `part` of `count`."""
+    """A proportion: `part` of `count`. `cases` are the conversations; where each may have `several` of the
+    things counted, these are not independent.
+    """
 
     part: int
     count: int
+    cases: tuple[Case, ...] = field(default=(), compare=False, repr=False)
+    several: bool = field(default=False, compare=False, repr=False)
+
+    @classmethod
+    def of(cls, counts: Iterable[tuple[str, int, int]], *, several: bool) -> Share:
+        """Returns the share of prompts, parts and counts, one for each conversation."""
+        found = tuple(Case(*count) for count in counts)
+        return cls(int(sum(c.value for c in found)), int(sum(c.weight for c in found)), found, several)
 
     @property
     def value(self) -> float | None:
         return self.part / self.count if self.count else None
 
     @property
-    def interval(self) -> tuple[float, float] | None:
+    def interval(self) -> Interval | None:
+        """Returns Wilson's interval where each conversation counts once, else that by drawing prompts."""
+        return interval(self.cases) if self.several else self.wilson
+
+    @property
+    def wilson(self) -> Interval | None:
         """Returns Wilson's score interval at 95 % (Journal of the American Statistical Association 22, 1927,
         209).
         """
@@ -44,17 +72,30 @@ class Share:
 
 @record()
 class Mean:
-    """A mean of numbers; without any, the reason, if known, why nothing was measured."""
+    """A mean of numbers with their sample variance (by n - 1); without any, the reason, if known, why nothing
+    was measured.
+    """
 
     count: int
     value: float | None = None
     variance: float | None = None
     reason: str = ""
+    cases: tuple[Case, ...] = field(default=(), compare=False, repr=False)
 
     @classmethod
-    def of(cls, numbers: Iterable[float | None], reason: str = "") -> Mean:
-        known = [n for n in numbers if n is not None]
-        return cls(len(known), fmean(known), pvariance(known)) if known else cls(0, reason=reason)
+    def of(cls, numbers: Iterable[tuple[str, float | None]], reason: str = "") -> Mean:
+        """Returns the mean of numbers, each with its prompt."""
+        cases = tuple(Case(prompt, n) for prompt, n in numbers if n is not None)
+        if not cases:
+            return cls(0, reason=reason)
+        known = [case.value for case in cases]
+        spread = variance(known) if len(known) > 1 else None
+        return cls(len(known), fmean(known), spread, cases=cases)
+
+    @property
+    def interval(self) -> Interval | None:
+        """Returns the interval by drawing prompts."""
+        return interval(self.cases)
 
 
 @record()
@@ -79,8 +120,27 @@ class Row:
     figures: Mapping[str, Figure]
 
 
+WITHIN = range(2, 6)
+COMPARED = (
+    "valid at first",
+    "valid",
+    "attempts",
+    "requirements",
+    "editability",
+    "detached",
+    "tokens in",
+    "tokens out",
+    "seconds",
+    "CLIP",
+)
+"""Figures that languages are compared by."""
+
 MEANINGS: Mapping[str, str] = {
     "valid at first": "conversations whose first reply held a valid program",
+    **{
+        f"valid within {n}": f"conversations with a valid program among their first {n} replies"
+        for n in WITHIN
+    },
     "valid": "conversations that came to a valid program within their attempts",
     "attempts": "attempts up to the first valid program, over conversations that came to one",
     "fixes": "fixes made by the machine, per conversation",
@@ -94,14 +154,17 @@ MEANINGS: Mapping[str, str] = {
     "detached": "pieces beyond the first that stand apart from all others, per valid program",
     "tokens in": "per conversation",
     "tokens out": "per conversation",
+    "seconds": "until the model's replies were there, per conversation",
     "cost": "of all conversations, in dollars",
     "CLIP": "CLIP score, per valid program",
 }
 
 
-def rows(records: Sequence[Record], scores: Scores, per_prompt: bool = False) -> list[Row]:
+def rows(
+    records: Sequence[Record], scores: Scores, per_prompt: bool = False, limit: int = WITHIN[-1]
+) -> list[Row]:
     """Returns one row for each variant, or for each prompt in each variant, in the order of the records and
-    variants.
+    variants. `limit` is the number of attempts that conversations had.
     """
     found = []
     for prompt in dict.fromkeys(r["prompt"] for r in records) if per_prompt else (None,):
@@ -109,38 +172,100 @@ def rows(records: Sequence[Record], scores: Scores, per_prompt: bool = False) ->
             own = [r for r in records if r["variant"] == variant and prompt in (None, r["prompt"])]
             if own:
                 held = [r for r in own if "failure" not in r]
-                found.append(Row(variant, prompt, len(held), len(own) - len(held), _figures(held, scores)))
+                found.append(
+                    Row(variant, prompt, len(held), len(own) - len(held), _figures(held, scores, limit))
+                )
     return found
 
 
-def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
+@record()
+class Pair:
+    """What two languages differ by in a figure."""
+
+    figure: str
+    first: str
+    second: str
+    comparison: Comparison
+
+
+def pairs(variants: Sequence[Row]) -> list[Pair]:
+    """Returns the comparisons of all pairs of languages, by figures."""
+    found = []
+    for name in COMPARED:
+        of = {row.variant: by_prompt(_cases(row.figures[name])) for row in variants}
+        own = [
+            Pair(name, first, second, comparison)
+            for first, second in combinations(of, 2)
+            if (comparison := compared(of[first], of[second])) is not None
+        ]
+        tested = [pair for pair in own if pair.comparison.p is not None]
+        adjusted = dict(zip(map(id, tested), holm([p.comparison.p or 0.0 for p in tested]), strict=True))
+        found += [
+            replace(pair, comparison=replace(pair.comparison, adjusted=adjusted.get(id(pair))))
+            for pair in own
+        ]
+    return found
+
+
+def _cases(figure: Figure) -> tuple[Case, ...]:
+    return () if isinstance(figure, Total) else figure.cases
+
+
+def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Figure]:
     valid = [r for r in held if r["ok"]]
-    asked = [result for r in valid for result in r.get("requirements", ())]
-    edits = [edit for r in valid if "edits" in r for edit in r["edits"]["edits"]]
     remembers = [r for r in held if r["variant"] != "openscad"]
+    edited = [r for r in valid if "edits" in r]
     costs = [r["usage"]["cost"] for r in held]
     return {
-        "valid at first": Share(sum(_was_valid(r["attempts"][:1]) for r in held), len(held)),
-        "valid": Share(len(valid), len(held)),
-        "attempts": Mean.of(_attempts(r) for r in valid),
-        "fixes": Mean.of(len(r["fixes"]) for r in remembers),
-        "intents lost": Mean.of(len(r["missing"]) for r in remembers),
-        "structures": _mean(valid, "structures"),
-        "constraints": _mean(valid, "constraints"),
-        "degrees": _mean(valid, "degrees"),
-        "requirements": Share(sum(result["status"] == Status.MET for result in asked), len(asked)),
-        "editability": Share(sum(edit["outcome"] == EditOutcome.KEPT for edit in edits), len(edits)),
-        "knobs": Mean.of(r["edits"]["knobs"] for r in valid if "edits" in r),
-        "detached": _mean(valid, "detached"),
-        "tokens in": Mean.of(r["usage"]["input"] for r in held),
-        "tokens out": Mean.of(r["usage"]["output"] for r in held),
+        "valid at first": _share(held, lambda r: _was_valid(r["attempts"][:1])),
+        **{f"valid within {n}": _share(held if n <= limit else (), _within(n)) for n in WITHIN},
+        "valid": _share(held, lambda r: r["ok"]),
+        "attempts": _mean(valid, _attempts),
+        "fixes": _mean(remembers, lambda r: len(r["fixes"])),
+        "intents lost": _mean(remembers, lambda r: len(r["missing"])),
+        "structures": _number(valid, "structures"),
+        "constraints": _number(valid, "constraints"),
+        "degrees": _number(valid, "degrees"),
+        "requirements": Share.of(
+            (_counted(r, r.get("requirements", ()), "status", Status.MET) for r in valid), several=True
+        ),
+        "editability": Share.of(
+            (_counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited), several=True
+        ),
+        "knobs": _mean(edited, lambda r: r["edits"]["knobs"]),
+        "detached": _number(valid, "detached"),
+        "tokens in": _mean(held, lambda r: r["usage"]["input"]),
+        "tokens out": _mean(held, lambda r: r["usage"]["output"]),
+        "seconds": _mean(held, _seconds),
         "cost": Total(sum(c is not None for c in costs), None if None in costs else sum(costs)),
-        "CLIP": Mean.of((scores.of.get(_key(r)) for r in valid), scores.reason or ""),
+        "CLIP": _mean(valid, lambda r: scores.of.get(_key(r)), scores.reason or ""),
     }
 
 
-def _mean(valid: Sequence[Record], name: str) -> Mean:
-    return Mean.of(r.get("numbers", {}).get(name) for r in valid)
+def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
+    return Share.of(((r["prompt"], int(holds(r)), 1) for r in records), several=False)
+
+
+def _counted(of: Record, results: Sequence[Record], name: str, wanted: str) -> tuple[str, int, int]:
+    return of["prompt"], sum(result[name] == wanted for result in results), len(results)
+
+
+def _mean(records: Sequence[Record], value: Callable[[Record], float | None], reason: str = "") -> Mean:
+    return Mean.of(((r["prompt"], value(r)) for r in records), reason)
+
+
+def _number(valid: Sequence[Record], name: str) -> Mean:
+    return _mean(valid, lambda r: r.get("numbers", {}).get(name))
+
+
+def _seconds(record: Record) -> float | None:
+    """Returns the seconds of all replies, None if those of one are not known."""
+    known = [attempt.get("seconds") for attempt in record["attempts"]]
+    return None if None in known else sum(known)
+
+
+def _within(number: int) -> Callable[[Record], bool]:
+    return lambda r: _was_valid(r["attempts"][:number]) or (r["ok"] and len(r["attempts"]) <= number)
 
 
 def _key(record: Record) -> str:

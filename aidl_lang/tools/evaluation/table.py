@@ -6,23 +6,33 @@ import csv
 import io
 import json
 from collections.abc import Sequence
+from math import sqrt
 
-from aidl_lang.tools.evaluation.summary import MEANINGS, Figure, Mean, Row, Share, Total
+from aidl_lang.tools.evaluation.statistics import RESAMPLES, SEED, Interval
+from aidl_lang.tools.evaluation.summary import MEANINGS, Figure, Mean, Pair, Row, Share, Total
 
 _NONE = "–"
 _BY_PROMPT = ("valid", "requirements", "editability")
 
 
-def markdown(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
-    """Returns one column for each variant, then the prompts one by one, then a key to the lines."""
+def markdown(
+    rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = (), notes: Sequence[str] = ()
+) -> str:
+    """Returns one column for each variant, what pairs of them differ by, then the prompts one by one, then a
+    key to the lines. `notes` tell what must be known of the conversations.
+    """
     head = ["", *(row.variant for row in rows)]
     lines = [["conversations", *(_conversations(row) for row in rows)]]
     lines += [[name, *(shown(row.figures[name]) for row in rows)] for name in MEANINGS]
     parts = [
         "# Evaluation",
-        "Shares stand with their 95 % interval (Wilson); in brackets what they and the means are taken over.",
+        *(f"Note on {note}." for note in notes),
+        "In square brackets 95 % intervals: Wilson's for conversations, for the rest by drawing prompts with "
+        f"replacement ({RESAMPLES:,} resamples). After ± the standard deviation; in round brackets what "
+        "figures are taken over.",
         _table([head, *lines]),
         *_reasons(rows),
+        *_differences(pairs),
         "## By prompt",
         f"In each cell: {', '.join(_BY_PROMPT)}.",
         _by_prompt(rows, prompts),
@@ -35,16 +45,45 @@ def markdown(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
 def shown(figure: Figure) -> str:
     """Returns the text of a figure in a cell."""
     match figure:
-        case Share(part, count) if figure.interval is not None:
-            low, high = figure.interval
-            return f"{100 * part / count:.0f} % [{100 * low:.0f}–{100 * high:.0f}] ({part}/{count})"
-        case Mean(count, float(value)):
-            return f"{value:,.2f} ({count})" if value < 1000 else f"{value:,.0f} ({count})"
+        case Share(part, count) if count:
+            return f"{100 * part / count:.0f} %{_between(figure.interval, 100, 0)} ({part}/{count})"
+        case Mean(count, float(value), variance):
+            digits = 2 if value < 1000 else 0
+            spread = "" if variance is None else f" ± {sqrt(variance):,.{digits}f}"
+            return f"{value:,.{digits}f}{spread}{_between(figure.interval, 1, digits)} ({count})"
         case Mean(reason=reason) if reason:
             return "not measured"
         case Total(count, value) if count:
             return "unknown" if value is None else f"{value:.4f} ({count})"
     return _NONE
+
+
+def _between(interval: Interval | None, times: float, digits: int) -> str:
+    """Returns an interval to stand behind a figure."""
+    if interval is None:
+        return ""
+    low, high = (f"{times * end:,.{digits}f}" for end in interval)
+    return f" [{low}–{high}]" if not low.startswith("-") else f" [{low} to {high}]"
+
+
+def _differences(pairs: Sequence[Pair]) -> list[str]:
+    if not pairs:
+        return []
+    head = ["", "languages", "difference", "prompts", "p", "p, Holm"]
+    lines = []
+    for pair in pairs:
+        found = pair.comparison
+        digits = 2 if abs(found.difference) < 1000 else 0
+        shown = f"{found.difference:+,.{digits}f}{_between(found.interval, 1, digits)}"
+        chances = (_NONE if p is None else f"{p:.3f}" for p in (found.p, found.adjusted))
+        lines.append([pair.figure, f"{pair.first} − {pair.second}", shown, str(found.prompts), *chances])
+    return [
+        "## Pairs of languages",
+        "The first less the second, by prompt: each prompt that has the figure in both counts once (1.00 is "
+        "100 %). Two-sided p of the paired permutation test; Holm's correction is for the pairs of one "
+        "figure. Figures of valid programs compare only prompts where both languages came to one.",
+        _table([head, *lines]),
+    ]
 
 
 def _conversations(row: Row) -> str:
@@ -83,12 +122,12 @@ def _table(lines: Sequence[Sequence[str]]) -> str:
 def data(row: Row) -> list[dict[str, object]]:
     """Returns the figures of a row, one by one, with all their data."""
     return [
-        {"prompt": row.prompt, "variant": row.variant, "figure": name, **_fields(figure)}
+        {"prompt": row.prompt, "variant": row.variant, "against": None, "figure": name, **_fields(figure)}
         for name, figure in row.figures.items()
     ]
 
 
-_FIELDS = ("value", "count", "part", "low", "high", "variance", "reason")
+_FIELDS = ("value", "count", "part", "low", "high", "variance", "reason", "p", "p_holm")
 
 
 def _fields(figure: Figure) -> dict[str, object]:
@@ -98,22 +137,42 @@ def _fields(figure: Figure) -> dict[str, object]:
             low, high = figure.interval or (None, None)
             found = {"value": figure.value, "count": count, "part": part, "low": low, "high": high}
         case Mean(count, value, variance, reason):
-            found = {"value": value, "count": count, "variance": variance, "reason": reason or None}
+            low, high = figure.interval or (None, None)
+            found = {"value": value, "count": count, "low": low, "high": high}
+            found |= {"variance": variance, "reason": reason or None}
         case Total(count, value):
             found = {"value": value, "count": count}
     return {name: found.get(name) for name in _FIELDS}
 
 
-def to_csv(rows: Sequence[Row]) -> str:
-    """Returns one line for each figure of each row."""
+def differences(pairs: Sequence[Pair]) -> list[dict[str, object]]:
+    """Returns the comparisons in the same form: `value` is the difference, `count` the prompts."""
+    found = []
+    for pair in pairs:
+        of = pair.comparison
+        low, high = of.interval or (None, None)
+        known: dict[str, object] = {"value": of.difference, "count": of.prompts, "low": low, "high": high}
+        known |= {"p": of.p, "p_holm": of.adjusted}
+        place = {"prompt": None, "variant": pair.first, "against": pair.second, "figure": pair.figure}
+        found.append({**place, **{name: known.get(name) for name in _FIELDS}})
+    return found
+
+
+def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = ()) -> str:
+    """Returns one line for each figure of each row, then one for each comparison."""
     out = io.StringIO()
-    writer = csv.DictWriter(out, ("prompt", "variant", "figure", *_FIELDS), lineterminator="\n")
+    writer = csv.DictWriter(out, ("prompt", "variant", "against", "figure", *_FIELDS), lineterminator="\n")
     writer.writeheader()
     writer.writerows(line for row in rows for line in data(row))
+    writer.writerows(differences(pairs))
     return out.getvalue()
 
 
-def to_json(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
+def to_json(rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = ()) -> str:
+    """Returns the same as data, with how intervals and probabilities were had."""
+    lines: dict[str, object]
     lines = {"variants": [line for row in rows for line in data(row)]}
     lines["prompts"] = [line for row in prompts for line in data(row)]
+    lines["pairs"] = differences(pairs)
+    lines["method"] = {"resamples": RESAMPLES, "seed": SEED, "test": "paired permutation, two-sided"}
     return json.dumps(lines, indent=1, ensure_ascii=False) + "\n"

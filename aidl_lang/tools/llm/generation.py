@@ -9,6 +9,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 from aidl_lang.tools.llm.messages import (
+    ConversationOver,
     Finish,
     Image,
     Message,
@@ -92,6 +93,8 @@ def generate(
             listen(Generation(task, tuple(attempts), attempt.verdict, tuple(run.messages)))
     except ProviderError as reason:
         failure = reason.diagnostic
+    except ConversationOver:
+        pass  # what is there is all of it
     judged = [a.verdict for a in attempts if a.verdict is not None]
     best = min(reversed(judged), key=lambda verdict: verdict.weight, default=None)
     verdict = run.conversation.finish(best) if best is not None else None

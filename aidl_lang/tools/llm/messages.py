@@ -86,6 +86,12 @@ class Reply:
     model: str
     """The model that answered, as the server names it."""
 
+    seconds: float | None = None
+    """Time until the whole reply was there."""
+
+    date: str | None = None
+    """The day of the reply, as in 2026-01-31."""
+
 
 class ProviderError(Exception):
     """Raised if no reply could be had after all retries; the diagnostic gives the reason and a remedy."""
@@ -93,6 +99,10 @@ class ProviderError(Exception):
     def __init__(self, code: str, message: str, *hints: str) -> None:
         super().__init__(message)
         self.diagnostic = Diagnostic(code, message, hints=hints)
+
+
+class ConversationOver(Exception):  # noqa: N818 (what came of it, no error of ours)
+    """Raised by a provider that has no further reply and is not to be asked again: a recording that ends."""
 
 
 class Provider(Protocol):
@@ -115,5 +125,5 @@ class Provider(Protocol):
 
         A reply that breaks off is asked for again, and its pieces are heard from the beginning.
 
-        Raises ProviderError. May be called from several threads at once.
+        Raises ProviderError or ConversationOver. May be called from several threads at once.
         """
