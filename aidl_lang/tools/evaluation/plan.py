@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from aidl_lang.checking.variants import Variant
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.openscad import OpenScad
+from aidl_lang.tools.evaluation.python_cad import PythonCad
 from aidl_lang.tools.evaluation.requirements import Prompt
+from aidl_lang.tools.evaluation.svg import Svg
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.generation import Settings
 from aidl_lang.tools.llm.language import Language
@@ -16,7 +18,11 @@ from aidl_lang.tools.llm.language import Language
 VARIANTS: dict[str, Language] = {
     **{str(variant): Aidl(variant) for variant in Variant},
     "openscad": OpenScad(),
+    "build123d": PythonCad("build123d"),
+    "cadquery": PythonCad("cadquery"),
+    "svg": Svg(),
 }
+"""All languages by name. To add one, see `rendering.RenderedLanguage`."""
 
 
 @dataclass(frozen=True, order=True)

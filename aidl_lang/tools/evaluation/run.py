@@ -158,7 +158,7 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
     except Broken as reason:
         measured["unmeasured"]["drawing"] = str(reason)
     try:
-        edits = worker.call(measures.edit, job.variant, record["program"])
+        edits = worker.call(measures.edit, job.variant, record["program"], prompt)
         measured["edits"] = asdict(edits)
     except Broken as reason:
         measured["unmeasured"]["editability"] = str(reason)

@@ -1,0 +1,141 @@
+"""Runs untrusted Python programs that draw, by an interpreter that has their library; see `sandbox/lock.py`."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from aidl_lang.common.colors import css_color
+from aidl_lang.geometry.curves import Line, Piece
+from aidl_lang.tools.evaluation import rendering
+from aidl_lang.tools.evaluation.regions import Regions, of_outlines
+from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered
+
+_HOST = Path(__file__).with_name("sandbox") / "host.py"
+_START = 60
+"""Seconds in which a library must have been loaded."""
+_LARGEST = 1e9
+
+
+def interpreter(library: str) -> str:
+    """Returns the interpreter that has a library: that of `AIDL_LIBRARY_PYTHON`, or else this one."""
+    return os.environ.get(f"AIDL_{library.upper()}_PYTHON") or sys.executable
+
+
+@cache
+def missing(library: str, python: str) -> str | None:
+    """Returns the reason why an interpreter cannot run programs of a library safely; None if it can."""
+    variable = f"AIDL_{library.upper()}_PYTHON"
+    if sys.platform == "win32":
+        return "programs in Python cannot be locked in on Windows"
+    probe = (
+        f"import sys; sys.path.insert(0, {str(_HOST.parent)!r}); import lock; import {library}; "
+        "print(lock.has_filter())"
+    )
+    try:
+        done = subprocess.run(
+            [python, "-I", "-c", probe],
+            capture_output=True,
+            text=True,
+            timeout=_START,
+            stdin=subprocess.DEVNULL,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"`{python}` (of {variable}) cannot be run: {error}"
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
+        return f"{library} is not there ({said[:200]}): name an interpreter that has it by {variable}"
+    if done.stdout.strip() != "True":
+        return "programs in Python are run on Linux alone, on x86-64 or ARM64: elsewhere they cannot be locked in"
+    return None
+
+
+def run(library: str, programs: Sequence[str], seconds: float | None = None) -> list[Rendered]:
+    """Runs programs one after the other, each within the limits of `rendering`."""
+    seconds = rendering.SECONDS if seconds is None else seconds
+    request = {
+        "library": library,
+        "programs": [program.encode("utf-8", "replace").decode() for program in programs],
+        "seconds": seconds,
+        "memory": rendering.MEMORY,
+        "output": rendering.OUTPUT,
+    }
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(
+            [interpreter(library), "-I", "-B", str(_HOST)],
+            cwd=folder,
+            env={"HOME": folder, "PATH": "/usr/bin:/bin", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            stdin=subprocess.PIPE,
+            stdout=said,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        try:
+            process.communicate(json.dumps(request).encode(), timeout=_START + seconds * len(programs))
+        except subprocess.TimeoutExpired:
+            pass
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        said.seek(0)
+        try:
+            found = json.loads(said.read())
+        except ValueError:
+            found = [{"kind": "death"}] * len(programs)
+    return [_rendered(each, seconds) for each in found]
+
+
+def _rendered(said: Mapping[str, Any], seconds: float) -> Rendered:
+    """Returns what came of a program; it is strangers' data, and may be anything."""
+    why = {
+        "time": f"error: the program took longer than {seconds:g} s",
+        "memory": f"error: the program took more than {rendering.MEMORY >> 30} GB of memory",
+        "death": "error: the program ended its process: it took too much memory, or crashed the library",
+    }
+    if (kind := said.get("kind")) in why:
+        return Rendered(errors=(why[cast(str, kind)],))
+    errors = said.get("errors")
+    if isinstance(errors, list) and errors:
+        return Rendered(errors=tuple(str(error)[:1000] for error in errors[:20]))
+    try:
+        drawn = _regions(said)
+    except (KeyError, TypeError, ValueError):
+        return Rendered(errors=("error: a coordinate is not a finite number, or too large",))
+    return Rendered(drawn) if drawn else Rendered(errors=(f"{NOTHING}: hand it to `show_object(…)`",))
+
+
+def _regions(said: Mapping[str, Any]) -> Regions:
+    parts = [
+        ([_points(outline) for outline in part["outlines"] if len(outline) > 2], _color(part["color"]))
+        for part in said["parts"]
+    ]
+    lines = tuple(_line(_points(line)) for line in said["lines"] if len(line) > 1)
+    return Regions(of_outlines(parts).parts, lines)
+
+
+def _points(outline: object) -> np.ndarray[Any, np.dtype[np.float64]]:
+    points = np.array(outline, float)
+    if points.ndim != 2 or points.shape[1] != 2 or not (np.abs(points) < _LARGEST).all():
+        raise ValueError
+    return points
+
+
+def _line(points: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[Piece, ...]:
+    corners = [(float(x), float(y)) for x, y in points]
+    return tuple(Line(a, b) for a, b in zip(corners, corners[1:], strict=False) if a != b)
+
+
+def _color(color: object) -> str | None:
+    return css_color((color,)) if isinstance(color, str) else None
