@@ -38,7 +38,25 @@ chess rook
 panelled door with a handle
 tractor
 gear with mounting holes
-cabinet with drawers"""
+cabinet with drawers
+fountain pen
+steam locomotive
+windmill
+film camera
+office chair
+claw hammer
+sunglasses
+castle
+space rocket
+birdhouse
+floppy disk
+wall socket plate
+game controller
+umbrella
+barbell
+toaster
+street lamp
+padlock"""
 PROMPTS: dict[str, Prompt] = {prompt.name: prompt for prompt in load()}
 
 

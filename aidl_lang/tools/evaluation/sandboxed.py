@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, cast
@@ -17,8 +17,10 @@ import numpy as np
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.geometry.curves import Line, Piece
-from aidl_lang.tools.evaluation import rendering
-from aidl_lang.tools.evaluation.regions import Regions, of_outlines
+from aidl_lang.geometry.sections import Polygon
+from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.tools.evaluation import rendering, shapes
+from aidl_lang.tools.evaluation.regions import Part, Regions
 from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered
 
 _HOST = Path(__file__).with_name("sandbox") / "host.py"
@@ -117,22 +119,31 @@ def _rendered(said: Mapping[str, Any], seconds: float) -> Rendered:
 
 
 def _regions(said: Mapping[str, Any]) -> Regions:
-    parts = [
-        ([_points(outline) for outline in part["outlines"] if len(outline) > 2], _color(part["color"]))
-        for part in said["parts"]
-    ]
+    parts = list[Part]()
+    for part in said["parts"]:
+        outlines = [o for face in part["faces"] for o in _directed(face)]
+        if region := shapes.region(outlines, "NonZero"):
+            parts.append(Part(region, _color(part["color"])))
     lines = tuple(_line(_points(line)) for line in said["lines"] if len(line) > 1)
-    return Regions(of_outlines(parts).parts, lines)
+    return Regions(tuple(parts), lines)
 
 
-def _points(outline: object) -> np.ndarray[Any, np.dtype[np.float64]]:
-    points = np.array(outline, float)
-    if points.ndim != 2 or points.shape[1] != 2 or not (np.abs(points) < _LARGEST).all():
+def _directed(face: Sequence[object]) -> Iterator[Polygon]:
+    """Yields the outlines of a face, the outer one counter-clockwise and its holes clockwise."""
+    for number, outline in enumerate(map(_points, face)):
+        if len(outline) > 2:
+            is_reversed = (polygon_area(outline) > 0) == bool(number)
+            yield outline[::-1] if is_reversed else outline
+
+
+def _points(outline: object) -> Polygon:
+    points = np.array(outline, float).reshape(-1, 2)
+    if not (np.abs(points) < _LARGEST).all():
         raise ValueError
     return points
 
 
-def _line(points: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[Piece, ...]:
+def _line(points: Polygon) -> tuple[Piece, ...]:
     corners = [(float(x), float(y)) for x, y in points]
     return tuple(Line(a, b) for a, b in zip(corners, corners[1:], strict=False) if a != b)
 

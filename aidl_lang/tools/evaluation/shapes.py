@@ -51,6 +51,8 @@ def _disc(center: Polygon, radius: float) -> Polygon:
 
 
 def _region(section: Section) -> Region:
+    if section.is_empty():
+        return Region()
     return Region(tuple(_face(part.to_polygons()) for part in section.decompose()))
 
 

@@ -37,20 +37,26 @@ def warm_up(library: str) -> None:
 
 
 def collected(shown: list[tuple[Any, Any]]) -> dict[str, Any]:
-    """Returns parts, each a colour with closed outlines, and lines. Raises NotFlat."""
+    """Returns parts, one for each shape that is shown: a colour, and faces by their closed outlines, the outer one
+    first. What has no face makes lines. Raises NotFlat.
+    """
     parts: list[dict[str, Any]] = []
     lines: list[list[Point]] = []
+    count = 0
     for thing, color in shown:
         for shape, own in _shapes(thing):
             named = _color(color if color is not None else own)
             faces = list(_all(shape, "Faces", "faces"))
             if list(_all(shape, "Solids", "solids")):
                 raise NotFlat("the drawing must be flat, and this shows a solid: show faces or sketches")
-            for face in faces:
-                parts.append({"color": named, "outlines": [_loop(wire) for wire in _wires(face)]})
-            if not faces:
+            if faces:
+                parts.append(
+                    {"color": named, "faces": [[_loop(wire) for wire in _wires(face)] for face in faces]}
+                )
+            else:
                 lines += [_flat(_points(edge)) for edge in _all(shape, "Edges", "edges")]
-            if len(parts) + len(lines) > _MOST:
+            count += len(faces) or 1
+            if count > _MOST:
                 raise NotFlat(f"more than {_MOST} faces and lines are shown")
     return {"errors": [], "parts": parts, "lines": lines}
 
@@ -68,8 +74,7 @@ def _shapes(thing: Any, color: Any = None) -> Iterator[tuple[Any, Any]]:
         for one in thing.vals():
             yield from _shapes(one, color)
     elif kind == "Sketch" and hasattr(thing, "_faces"):
-        for one in thing._faces.Faces() if hasattr(thing._faces, "Faces") else thing._faces:
-            yield one, color
+        yield thing._faces, color
     elif kind == "Assembly" and hasattr(thing, "traverse"):
         for shape, _, location, own in thing:
             yield shape.located(location) if location is not None else shape, own or color
