@@ -2,7 +2,7 @@
 assembly house {
     solid whole { todo }
     var symmetry = 1
-    var fields = 1
+    var fullness = 1
     var width_at_quarter = 1
     var width_at_top = 1
     var pieces = 1
@@ -40,6 +40,6 @@ assembly house {
 
     // of any language's drawing
     assert width_at_top <= 0.6 * width_at_quarter, "it narrows at the top"
-    assert fields >= 4, "four fields or more are seen"
+    assert fullness <= 0.95, "the silhouette is no mere rectangle"
     assert symmetry >= 0.75, "the silhouette is nearly the same on both sides"
 }

@@ -22,7 +22,7 @@ assembly game_controller {
     }
 
     assert len(button) >= 2, "there are several buttons"
-    assert body.width >= 1.1 * body.height, "it is wider than tall"
+    assert body.width >= 1.1 * body.height, "the body is wider than tall"
     for b in button { assert overlapping(b, body), "the buttons are on the body" }
     assert pad.center_x <= body.center_x, "the cross is on the left"
     for s in stick { assert overlapping(s, body), "the sticks are on the body" }

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from aidl_lang.tools.evaluation.run import Done
     from aidl_lang.tools.evaluation.store import Store
 
-_VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
-_OPENSCAD = "openscad"
+_AIDL = ("full", "no-hierarchy", "no-constraints")
+_VARIANTS = (*_AIDL, "openscad", "build123d", "cadquery", "svg")
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,12 @@ def register(parser: argparse.ArgumentParser) -> None:
         "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
     )
     parser.add_argument(
-        "--variants", nargs="+", choices=_VARIANTS, default=list(_VARIANTS), help="default: all"
+        "--variants",
+        nargs="+",
+        choices=_VARIANTS,
+        default=list(_VARIANTS[:4]),
+        metavar="NAME",
+        help=f"some of {', '.join(_VARIANTS)} (default: the first four)",
     )
     parser.add_argument(
         "--runs",
@@ -54,6 +59,24 @@ def register(parser: argparse.ArgumentParser) -> None:
         default=60,
         metavar="SECONDS",
         help="for judging a program, for drawing and for editing it (default: 60)",
+    )
+    parser.add_argument(
+        "--guide", choices=("full", "none"), default="full", help="what a model is told of a language"
+    )
+    parser.add_argument(
+        "--no-fixes", action="store_false", dest="mends", help="the machine mends nothing (AIDL)"
+    )
+    parser.add_argument(
+        "--no-recovery",
+        action="store_false",
+        dest="recovers",
+        help="what a program lost of earlier ones is neither asked for nor put back (AIDL)",
+    )
+    parser.add_argument(
+        "--no-plans",
+        action="store_false",
+        dest="plans",
+        help="a program with empty structures is taken as it is, not as a plan (AIDL)",
     )
     parser.add_argument(
         "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
@@ -103,14 +126,15 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
 def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
     from dataclasses import replace
 
-    from aidl_lang.tools.evaluation.plan import Plan
+    from aidl_lang.tools.evaluation.plan import Plan, Switches
     from aidl_lang.tools.llm.generation import Settings
 
     asked = sampling(arguments)
     if asked.seed is None and takes_seeds:
         asked = replace(asked, seed=1)
     settings = Settings(arguments.attempts, asked)
-    return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings)
+    switches = Switches(arguments.guide == "full", arguments.mends, arguments.recovers, arguments.plans)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings, switches)
 
 
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
@@ -134,19 +158,31 @@ def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
 
 
 def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
-    from aidl_lang.tools.evaluation.openscad import OpenScad
+    """Returns the languages that can be had, and says which of those asked for cannot."""
+    from aidl_lang.tools.evaluation.plan import VARIANTS
+    from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 
     wanted = [name for name in _VARIANTS if name in arguments.variants]
-    if _OPENSCAD in wanted and not OpenScad().is_installed:
-        wanted.remove(_OPENSCAD)
+    for name in list(wanted):
+        language = VARIANTS[name]
+        if not isinstance(language, RenderedLanguage):
+            continue
+        why = language.missing()
+        if why is not None:
+            code, said = "E0949", f"`{name}` cannot be run: {why}"
+            left, hint = f"{name} is left out: {why}", f"leave out `--variants {name}`"
+        elif arguments.constrain:
+            code, said = "E0950", f"--constrain has no grammar for `{name}`"
+            left, hint = (
+                f"{name} is left out: --constrain has the grammar of AIDL alone",
+                "leave --constrain out",
+            )
+        else:
+            continue
+        wanted.remove(name)
         if not wanted:
-            raise UseError("E0949", "`openscad` is not installed", "leave out `--variants openscad`")
-        say("openscad is left out: it is not installed")
-    if _OPENSCAD in wanted and arguments.constrain:
-        wanted.remove(_OPENSCAD)
-        if not wanted:
-            raise UseError("E0950", "--constrain has no grammar for `openscad`", "leave --constrain out")
-        say("openscad is left out: --constrain has the grammar of AIDL alone")
+            raise UseError(code, said, hint)
+        say(left)
     return tuple(wanted)
 
 

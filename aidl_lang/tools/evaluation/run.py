@@ -11,7 +11,7 @@ from dataclasses import asdict, field
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation import measures, store
-from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
+from aidl_lang.tools.evaluation.plan import Job, Plan
 from aidl_lang.tools.evaluation.store import Record, Store
 from aidl_lang.tools.evaluation.worker import SECONDS, Broken, Remote, Worker
 from aidl_lang.tools.llm.generation import Task, generate
@@ -47,6 +47,7 @@ class _Result:
     job: Job
     record: Record
     png: bytes | None = None
+    neutral: bytes | None = None
     failure: Diagnostic | None = None
     bug: BaseException | None = None
 
@@ -111,7 +112,7 @@ def _gather(
         number += 1
         if result.bug is not None:
             raise result.bug
-        kept.keep(result.job, result.record, result.png)
+        kept.keep(result.job, result.record, result.png, result.neutral)
         if result.failure is None:
             done, in_a_row = done + 1, 0
         else:
@@ -140,7 +141,7 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
     prompt = crew.plan.prompt(job)
     if record is None:
         assert crew.provider is not None
-        language = Remote(VARIANTS[job.variant], worker)
+        language = Remote(crew.plan.language(job.variant), worker)
         task, settings = Task(prompt.text), crew.plan.sampled(job)
         generation = generate(task, crew.provider, language, settings)
         if generation.failure is not None:
@@ -149,10 +150,10 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
     if not record["ok"]:
         return _Result(job, record)
     measured = {**record, "measured": store.measured_with(prompt), "unmeasured": {}}
-    png = None
+    png = neutral = None
     try:
         drawn = worker.call(measures.draw, job.variant, record["program"], prompt)
-        png = drawn.png
+        png, neutral = drawn.png, drawn.neutral
         measured["numbers"] = dict(drawn.numbers)
         measured["requirements"] = [asdict(result) for result in drawn.requirements]
     except Broken as reason:
@@ -162,4 +163,4 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
         measured["edits"] = asdict(edits)
     except Broken as reason:
         measured["unmeasured"]["editability"] = str(reason)
-    return _Result(job, measured, png)
+    return _Result(job, measured, png, neutral)

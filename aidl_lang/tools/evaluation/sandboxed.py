@@ -77,7 +77,12 @@ def run(library: str, programs: Sequence[str], seconds: float | None = None) -> 
         process = subprocess.Popen(
             [interpreter(library), "-I", "-B", str(_HOST)],
             cwd=folder,
-            env={"HOME": folder, "PATH": "/usr/bin:/bin", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            env={
+                "HOME": folder,
+                "PATH": "/usr/bin:/bin",
+                "OMP_NUM_THREADS": "1",
+                "OPENBLAS_NUM_THREADS": "1",
+            },
             stdin=subprocess.PIPE,
             stdout=said,
             stderr=subprocess.DEVNULL,
@@ -94,7 +99,7 @@ def run(library: str, programs: Sequence[str], seconds: float | None = None) -> 
         said.seek(0)
         try:
             found = json.loads(said.read())
-        except ValueError:
+        except (ValueError, RecursionError):
             found = [{"kind": "death"}] * len(programs)
     return [_rendered(each, seconds) for each in found]
 
@@ -113,7 +118,7 @@ def _rendered(said: Mapping[str, Any], seconds: float) -> Rendered:
         return Rendered(errors=tuple(str(error)[:1000] for error in errors[:20]))
     try:
         drawn = _regions(said)
-    except (KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
         return Rendered(errors=("error: a coordinate is not a finite number, or too large",))
     return Rendered(drawn) if drawn else Rendered(errors=(f"{NOTHING}: hand it to `show_object(…)`",))
 

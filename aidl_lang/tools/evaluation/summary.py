@@ -11,6 +11,7 @@ from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.editability import EditOutcome
 from aidl_lang.tools.evaluation.plan import VARIANTS
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 from aidl_lang.tools.evaluation.requirements import Status
 
 Record = Mapping[str, Any]
@@ -88,7 +89,9 @@ MEANINGS: Mapping[str, str] = {
     "structures": "per valid program; modules in OpenSCAD",
     "constraints": "per valid program",
     "degrees": "degrees of freedom left, per valid program",
-    "requirements": "requirements of the prompts that hold, of those examined in valid programs",
+    "requirements": "requirements on named parts that hold, of those examined in valid programs of AIDL",
+    "geometry": "requirements on geometry alone that hold, the same in all languages",
+    "edits hold": "edits of knobs after which a program is valid and the requirements on geometry met before hold",
     "editability": "edits of knobs that solve with everything kept, of those tried in valid programs",
     "knobs": "named numbers to edit, per valid program",
     "detached": "pieces beyond the first that stand apart from all others, per valid program",
@@ -115,9 +118,10 @@ def rows(records: Sequence[Record], scores: Scores, per_prompt: bool = False) ->
 
 def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
     valid = [r for r in held if r["ok"]]
-    asked = [result for r in valid for result in r.get("requirements", ())]
+    results = [result for r in valid for result in r.get("requirements", ())]
+    asked, geometric = ([x for x in results if bool(x.get("is_geometric")) == kind] for kind in (False, True))
     edits = [edit for r in valid if "edits" in r for edit in r["edits"]["edits"]]
-    remembers = [r for r in held if r["variant"] != "openscad"]
+    remembers = [r for r in held if not isinstance(VARIANTS[r["variant"]], RenderedLanguage)]
     costs = [r["usage"]["cost"] for r in held]
     return {
         "valid at first": Share(sum(_was_valid(r["attempts"][:1]) for r in held), len(held)),
@@ -129,6 +133,8 @@ def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
         "constraints": _mean(valid, "constraints"),
         "degrees": _mean(valid, "degrees"),
         "requirements": Share(sum(result["status"] == Status.MET for result in asked), len(asked)),
+        "geometry": Share(sum(result["status"] == Status.MET for result in geometric), len(geometric)),
+        "edits hold": Share(sum(bool(edit.get("holds")) for edit in edits), len(edits)),
         "editability": Share(sum(edit["outcome"] == EditOutcome.KEPT for edit in edits), len(edits)),
         "knobs": Mean.of(r["edits"]["knobs"] for r in valid if "edits" in r),
         "detached": _mean(valid, "detached"),

@@ -36,7 +36,11 @@ class Svg:
     fences: tuple[str, ...] = ("svg", "xml")
 
     def missing(self) -> str | None:
-        return None if find_spec("svgelements") else "svgelements is not installed (pip install 'aidl-lang[svg]')"
+        return (
+            None
+            if find_spec("svgelements")
+            else "svgelements is not installed (pip install 'aidl-lang[svg]')"
+        )
 
     def guide(self) -> str:
         return rendering.guide(self.name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -21,9 +22,9 @@ class NotFlat(Exception):  # noqa: N818 (what came of a program, no error of our
 
 def warm_up(library: str) -> None:
     """Has the library load what it loads at the first use."""
-    import importlib
-
     package = importlib.import_module(library)
+    if library not in ("build123d", "cadquery"):
+        return
     for name in ("OCP.BOPAlgo", "OCP.BRepAlgoAPI"):
         for kind in vars(importlib.import_module(name)).values():
             if "SetRunParallel" in getattr(kind, "__dict__", ()):
@@ -124,7 +125,9 @@ def _loop(wire: Any) -> list[Point]:
     found = left.pop(0)
     while left:
         end = found[-1]
-        best = min(range(len(left)), key=lambda k: min(math.dist(end, left[k][0]), math.dist(end, left[k][-1])))
+        best = min(
+            range(len(left)), key=lambda k: min(math.dist(end, left[k][0]), math.dist(end, left[k][-1]))
+        )
         points = left.pop(best)
         found += (points if math.dist(end, points[0]) <= math.dist(end, points[-1]) else points[::-1])[1:]
     return found

@@ -40,7 +40,7 @@ def main() -> None:
         print(json.dumps([{"errors": [allowed], "kind": "missing"}] * len(request["programs"])))
         return
     found = [_run(request, program, allowed) for program in request["programs"]]
-    print(json.dumps(found, allow_nan=False))
+    print(json.dumps(found))
 
 
 def _load(library: str) -> frozenset[str] | str:
@@ -71,7 +71,7 @@ def _run(request: dict[str, Any], program: str, allowed: frozenset[str]) -> dict
         result.seek(0)
         try:
             said = json.loads(result.read(request["output"]))
-        except ValueError:
+        except (ValueError, RecursionError):
             said = None
     if isinstance(said, dict):
         return said
