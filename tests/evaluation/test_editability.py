@@ -11,7 +11,6 @@ from aidl_lang.tools.evaluation.openscad import OpenScad
 from aidl_lang.tools.evaluation.requirements import read
 from aidl_lang.tools.llm.aidl import Aidl
 
-
 PROMPT = read(
     SourceFile(
         "1-plate.aidl",
@@ -40,7 +39,7 @@ def knob(value: float | str | bool, **rest: object) -> Knob:
         (knob(-10.0), [-7.5, -9, -11, -12.5], 0),
         (knob(100.0, low=80.0, high=115.0), [80, 90, 110, 115], 2),
         (knob(100.0, low=100.0, high=110.0), [110], 3),  # 75 and 90 give 100 itself, 125 gives 110 again
-        (knob(40.0, low=20.0, high=50.0, step=10.0), [30, 50], 4),  # 30, 36, 44, 50 → 30, 40, 40, 50
+        (knob(40.0, low=20.0, high=50.0, step=10.0), [30, 50], 2),  # 30, 36, 44, 50 → 30, 40, 40, 50
         (knob(45.0, low=20.0, high=55.0, step=20.0), [40], 4),  # 33.75, 40.5, 49.5, 56.25 → 40, 40, 40, 40
         (knob(5.0, unit=""), [4, 6], 4),  # 3.75, 4.5, 5.5, 6.25 → the even ones nearest
         (knob(0.5, unit=""), [0.375, 0.45, 0.55, 0.625], 0),

@@ -77,10 +77,10 @@ def test_help_can_be_switched_off() -> None:
     assert Aidl().conversation().judge(plan).is_partial
     taken = Aidl(plans=False).conversation().judge(plan)
     assert (taken.ok, taken.is_partial) == (True, False)
-    first = "solid a { b = circle(radius: 3) constrain b.radius == 3 }"
-    last = "solid a { b = circle(radius: 3) }"
+    first = "assembly a { solid b { c = circle(radius: 3) } solid d { e = circle(radius: 4) } }"
+    last = "assembly a { solid b { c = circle(radius: 3) } }"
     for language, restored in ((Aidl(), True), (Aidl(recovers=False), False)):
         conversation = language.conversation()
         conversation.judge(first)
         verdict = conversation.finish(conversation.judge(last))
-        assert ("constrain" in verdict.program) == restored
+        assert ("solid d" in verdict.program) == restored

@@ -77,7 +77,10 @@ NOT_ALLOWED = "is not allowed: no files, no network, no other processes"
 )
 def test_a_program_is_told_what_is_wrong(program: str, error: str) -> None:
     if program == "import os":
-        program, error = "import os\nos.listdir('/')", f"error (line 2): PermissionError: `os.listdir` {NOT_ALLOWED}"
+        program, error = (
+            "import os\nos.listdir('/')",
+            f"error (line 2): PermissionError: `os.listdir` {NOT_ALLOWED}",
+        )
     assert refused(program).startswith(error)
 
 
@@ -133,7 +136,7 @@ for name, attempt in tries.items():
     done = subprocess.run([sys.executable, "-I", "-c", script], capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert done.stdout.splitlines() == [
-        f"{name} 1" for name in "open write socket fork exec remove kill pipe chmod".split()
+        f"{name} 1" for name in ["open", "write", "socket", "fork", "exec", "remove", "kill", "pipe", "chmod"]
     ]
     assert victim.read_text() == "here"
 
@@ -164,7 +167,10 @@ def test_memory_and_output_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     assert hungry == "error: the program took more than 1 GB of memory"
     monkeypatch.setattr(rendering, "OUTPUT", 1 << 14)
     many = SHAPES + "for i in range(999): show_object(Face(box(i, 0, 1, 1)))"
-    assert refused(many) == "error: the program ended its process: it took too much memory, or crashed the library"
+    assert (
+        refused(many)
+        == "error: the program ended its process: it took too much memory, or crashed the library"
+    )
 
 
 def test_a_crash_is_told() -> None:
@@ -174,7 +180,10 @@ def test_a_crash_is_told() -> None:
 
 def test_a_program_cannot_hand_over_what_is_no_drawing() -> None:
     said = '{"errors": [], "parts": [{"color": 3, "faces": [[[[1e999]]]]}], "lines": 7}'
-    assert refused(f"import os\nos.write(1, {said.encode()!r})\nos._exit(0)") == "error: a coordinate is not a finite number, or too large"
+    assert (
+        refused(f"import os\nos.write(1, {said.encode()!r})\nos._exit(0)")
+        == "error: a coordinate is not a finite number, or too large"
+    )
 
 
 def test_faces_are_read_with_their_holes_and_colours() -> None:
@@ -196,7 +205,10 @@ def test_faces_are_read_with_their_holes_and_colours() -> None:
 @pytest.mark.parametrize(
     ("shown", "error"),
     [
-        ("Face(Wire((0, 0, 0), (9, 0, 0), (9, 0, 5), (0, 0, 5)))", "error: the drawing must lie in the plane"),
+        (
+            "Face(Wire((0, 0, 0), (9, 0, 0), (9, 0, 5), (0, 0, 5)))",
+            "error: the drawing must lie in the plane",
+        ),
         ("Face(box(0, 0, float('nan'), 1))", "error: a coordinate is not a finite number"),
         ("Face(box(0, 0, 1e300, 1))", "error: a coordinate is not a finite number, or too large"),
     ],
@@ -225,7 +237,9 @@ def test_knobs_are_the_numbers_at_the_top_that_are_given_once() -> None:
 
 
 def test_knobs_are_turned_where_they_are_written() -> None:
-    program = SHAPES + "länge, breite = 0, 0\nbreite_1 = 10\nb = -2\nshow_object(Face(box(0, 0, breite_1, -b)))"
+    program = (
+        SHAPES + "länge, breite = 0, 0\nbreite_1 = 10\nb = -2\nshow_object(Face(box(0, 0, breite_1, -b)))"
+    )
     found = FAKE.run(program, [{}, {"breite_1": 12.0}, {"breite_1": 7.5, "b": -4.0}])
     assert [area(r.regions.parts[0].region) for r in found] == [20, 24, 30]
 

@@ -68,7 +68,8 @@ def test_what_cannot_be_read_is_told(text: str, error: str) -> None:
 def test_what_is_left_out_is_told() -> None:
     drawn = render(drawing('<rect width="1" height="1"/><text>hi</text><image href="/etc/passwd"/>'))
     assert drawn.warnings == tuple(
-        f"warning: `{name}` is left out: only filled and stroked shapes are drawn" for name in ("text", "image")
+        f"warning: `{name}` is left out: only filled and stroked shapes are drawn"
+        for name in ("text", "image")
     )
 
 

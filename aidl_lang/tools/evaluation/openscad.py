@@ -86,8 +86,8 @@ def knobs(program: str) -> dict[str, float]:
 
 
 def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
-    """Runs a program, with other values for some of its variables, and returns all it draws as one part. It is
-    kept from reading files.
+    """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
+    is kept from reading files.
 
     The limits on time, memory and output are set in the process that is started: call this where no other
     thread runs.

@@ -19,7 +19,7 @@ _NEUTRAL, _EDGE = "#c9ced6", "#2b2f36"
 
 
 def neutral(drawn: Regions) -> bytes:
-    """Returns a PNG in the one style: the same fill for all parts, outer and inner edges alike, no colours."""
+    """Returns a PNG in the one style: one fill for all parts, outer and inner edges alike, no colours."""
     return _png(drawn, [_NEUTRAL] * len(drawn.parts), [_EDGE] * len(drawn.parts))
 
 

@@ -56,7 +56,8 @@ class Guideless:
     def guide(self) -> str:
         name = _NAMES.get(self.name, "AIDL")
         fence = self.fences[0]
-        return f"You write programs in {name} that draw flat parts. Answer with the whole program in one ```{fence} block.\n"
+        block = f"Answer with the whole program in one ```{fence} block."
+        return f"You write programs in {name} that draw flat parts. {block}\n"
 
     def reads(self, text: str) -> bool:
         return self.language.reads(text)

@@ -1,7 +1,7 @@
 """The interface of the languages beside AIDL: what they are written in, how they run, and what comes out.
 
 A language gives its guide, the numbers of a program that can be turned, and runs a program with some of them
-turned: errors worded for a model, or regions. All else (judging, measuring, editing, drawing) is the same for all.
+turned: errors worded for a model, or regions. All else (judging, measuring, editing, drawing) is the same.
 """
 
 from __future__ import annotations

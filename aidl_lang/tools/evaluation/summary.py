@@ -99,6 +99,7 @@ MEANINGS: Mapping[str, str] = {
     "tokens out": "per conversation",
     "cost": "of all conversations, in dollars",
     "CLIP": "CLIP score, per valid program",
+    "CLIP neutral": "CLIP score of the picture in the one style of all languages, per valid program",
 }
 
 
@@ -142,6 +143,7 @@ def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
         "tokens out": Mean.of(r["usage"]["output"] for r in held),
         "cost": Total(sum(c is not None for c in costs), None if None in costs else sum(costs)),
         "CLIP": Mean.of((scores.of.get(_key(r)) for r in valid), scores.reason or ""),
+        "CLIP neutral": Mean.of((scores.neutral.get(_key(r)) for r in valid), scores.reason or ""),
     }
 
 

@@ -38,8 +38,8 @@ def warm_up(library: str) -> None:
 
 
 def collected(shown: list[tuple[Any, Any]]) -> dict[str, Any]:
-    """Returns parts, one for each shape that is shown: a colour, and faces by their closed outlines, the outer one
-    first. What has no face makes lines. Raises NotFlat.
+    """Returns parts, one for each shape that is shown: a colour, and faces by their closed outlines, the
+    outer one first. What has no face makes lines. Raises NotFlat.
     """
     parts: list[dict[str, Any]] = []
     lines: list[list[Point]] = []

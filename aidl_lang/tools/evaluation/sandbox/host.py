@@ -27,7 +27,7 @@ _MODULES = (
     "math cmath random itertools functools operator collections collections.abc dataclasses typing enum copy "
     "string re fractions decimal statistics bisect heapq numbers abc types warnings contextlib textwrap "
     "linecache tokenize encodings.idna colorsys time datetime numpy numpy.linalg json"
-).split()
+).split()  # noqa: SIM905 (a list of words)
 _FILE = "<program>"
 _LONGEST = 300
 
@@ -37,10 +37,10 @@ def main() -> None:
     lock.leave_network()
     allowed = _load(request["library"])
     if isinstance(allowed, str):
-        print(json.dumps([{"errors": [allowed], "kind": "missing"}] * len(request["programs"])))
+        json.dump([{"errors": [allowed], "kind": "missing"}] * len(request["programs"]), sys.stdout)
         return
     found = [_run(request, program, allowed) for program in request["programs"]]
-    print(json.dumps(found))
+    json.dump(found, sys.stdout)
 
 
 def _load(library: str) -> frozenset[str] | str:
@@ -149,12 +149,13 @@ def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, 
         return shape
 
     names: dict[str, Any] = {"__name__": "__main__", "show_object": show_object, "show": show_object}
-    sys.meta_path.insert(0, _Imports(allowed))  # type: ignore[arg-type]
+    sys.meta_path.insert(0, _Imports(allowed))
     try:
         exec(compile(program, _FILE, "exec"), names)
         if not shown and (result := names.get("result")) is not None:
             shown.append((result, None))
-        return drawn.collected(shown)
+        found: dict[str, Any] = drawn.collected(shown)
+        return found
     except MemoryError:
         raise
     except drawn.NotFlat as reason:

@@ -60,7 +60,7 @@ def leave_network() -> bool:
     if not sys.platform.startswith("linux"):
         return False
     unshare = ctypes.CDLL(None, use_errno=True).unshare
-    return unshare(_NEWNET) == 0 or unshare(_NEWUSER | _NEWNET) == 0
+    return bool(unshare(_NEWNET) == 0 or unshare(_NEWUSER | _NEWNET) == 0)
 
 
 def has_filter() -> bool:
