@@ -1,4 +1,4 @@
-"""Runs untrusted Python programs that draw, by an interpreter that has their library; see `sandbox/lock.py`."""
+"""Runs untrusted Python that draws, by an interpreter that has the library; see `sandbox/lock.py`."""
 
 from __future__ import annotations
 

@@ -23,11 +23,11 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import drawn
 import lock
 
-_MODULES = (
+_MODULES = (  # noqa: SIM905 (a list of words)
     "math cmath random itertools functools operator collections collections.abc dataclasses typing enum copy "
     "string re fractions decimal statistics bisect heapq numbers abc types warnings contextlib textwrap "
     "linecache tokenize encodings.idna colorsys time datetime numpy numpy.linalg json"
-).split()  # noqa: SIM905 (a list of words)
+).split()
 _FILE = "<program>"
 _LONGEST = 300
 
@@ -160,7 +160,7 @@ def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, 
         raise
     except drawn.NotFlat as reason:
         return {"errors": [f"error: {reason}"]}
-    except BaseException as error:  # a program may raise anything
+    except BaseException as error:  # noqa: BLE001 (a program may raise anything)
         return {"errors": [_told(error)]}
 
 

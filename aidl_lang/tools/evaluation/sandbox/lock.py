@@ -56,7 +56,7 @@ _TAKEN = ("os.putenv", "os.unsetenv", "open_code")
 
 
 def leave_network() -> bool:
-    """Leaves the network for an empty one; false where the system does not allow it. Before any thread runs."""
+    """Leaves the network for an empty one, before any thread runs; false where that is not allowed."""
     if not sys.platform.startswith("linux"):
         return False
     unshare = ctypes.CDLL(None, use_errno=True).unshare
