@@ -90,7 +90,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     outputs = targets(arguments)
     world = files.world(arguments.file)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
-    settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
+    settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
     compiled = pipeline.compile(source, world, params, settings, show, memory)
     written: tuple[str, ...] = ()
     notes: tuple[Diagnostic, ...] = ()

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from aidl_lang.tools.evaluation.run import Done
     from aidl_lang.tools.evaluation.store import Store
 
-_AIDL = ("full", "no-hierarchy", "no-constraints")
-_VARIANTS = (*_AIDL, "openscad", "build123d", "cadquery", "svg")
+_USUAL = ("full", "no-hierarchy", "no-constraints", "openscad")
+_VARIANTS = (*_USUAL, "paper", "build123d", "cadquery", "svg")
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +32,7 @@ def register(parser: argparse.ArgumentParser) -> None:
         "--variants",
         nargs="+",
         choices=_VARIANTS,
-        default=list(_VARIANTS[:4]),
+        default=list(_USUAL),
         metavar="NAME",
         help=f"some of {', '.join(_VARIANTS)} (default: the first four)",
     )

@@ -56,7 +56,7 @@ class Edits:
 def compiled(language: Language, source: SourceFile, params: Mapping[str, Value] | None = None) -> Compiled:
     """Compiles a program in its subset of the language."""
     assert isinstance(language, Aidl)
-    return pipeline.compile(source, params=params, settings=pipeline.Settings(variant=language.variant))
+    return pipeline.compile(source, params=params, settings=pipeline.Settings.of(language.variant))
 
 
 def of_aidl(language: Language, source: SourceFile, prompt: Prompt) -> Edits:

@@ -91,7 +91,7 @@ class AidlConversation:
     asked: Counter[tuple[str, ...]] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        self.settings = pipeline.Settings(variant=self.language.variant)
+        self.settings = pipeline.Settings.of(self.language.variant)
         self.world = self.language.world and Programs(self.language.world)
         self.ledger = Ledger(self.world, self.settings)
 
