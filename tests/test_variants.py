@@ -51,6 +51,7 @@ WHERE = (
     "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
     "`center: plate.top_left + (5, -5)`"
 )
+CAME_LATER = "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain"
 STATED = f"{AS_WRITTEN} and has no constraints"
 
 
@@ -71,6 +72,18 @@ def told(d: Diagnostic) -> Told:
 # --- What is forbidden ----------------------------------------------------------------------------
 
 FOUND: dict[str, tuple[Variant, str, list[Told]]] = {
+    "a shape that came after the paper": (
+        Variant.PAPER,
+        "solid a { s = star(outer_radius: 9, inner_radius: 4, points: 5) }",
+        [
+            (
+                "E0986",
+                "star",
+                "`paper` has what the paper on AIDL describes, and `star` came later",
+                (CAME_LATER,),
+            )
+        ],
+    ),
     "hole": (
         FLAT,
         "solid plate {\n body = circle(radius: 9)\n hole bore { rim = circle(radius: 3) }\n}",
@@ -336,10 +349,6 @@ def test_one_structure_is_the_same_with_and_without_hierarchy(single: Part, unit
 
 # --- The paper's ----------------------------------------------------------------------------------
 
-CAME_LATER = (
-    "draw with `line`, `arc`, `circle`, `rectangle`, `polygon`, cut with `hole`, and relate by constraints"
-)
-
 
 @pytest.mark.parametrize(
     ("statement", "place"),
@@ -350,7 +359,7 @@ CAME_LATER = (
         ("a = circle(radius: 3) assert a.radius == 3", "assert a.radius == 3"),
         ("a = circle(radius: 3) prefer a.radius == 4", "prefer a.radius == 4"),
         ("a = circle(radius: 3) b = circle(radius: 4) constrain row(a, b)", "row"),
-        ('@color("red") a = circle(radius: 3)', '@color("red")'),
+        ('@color("red") solid b { a = circle(radius: 3) }', '@color("red")'),
         ("a = circle(radius: lerp(3, 4, 0.5))", "lerp"),
     ],
 )
@@ -361,10 +370,8 @@ def test_what_came_after_the_paper_is_reported(statement: str, place: str) -> No
     word = {"assert": "assert", "prefer": "prefer", "@color": "@color"}
     name = next((w for start, w in word.items() if place.startswith(start)), place)
     message = f"`paper` has what the paper on AIDL describes, and `{name}` came later"
-    assert [(d.message, d.hints) for d in found if d.span and d.span.text == place][0] == (
-        message,
-        (CAME_LATER,),
-    )
+    first = next(d for d in found if d.span and d.span.text == place)
+    assert (first.message, first.hints) == (message, (CAME_LATER,))
 
 
 def test_what_the_paper_has_is_taken() -> None:
@@ -374,9 +381,13 @@ def test_what_the_paper_has_is_taken() -> None:
         assembly a {
             param w = 40
             solid b(x = 0) { r = rectangle(center: (x, 0), width: w, height: half(w)) }
-            solid d { e = circle(center: (0, 50), radius: 5) hole f { g = circle(center: (0, 50), radius: 2) } }
+            solid d {
+                e = circle(center: (0, 50), radius: 5)
+                hole f { g = circle(center: (0, 50), radius: 2) }
+            }
             left = b(x: -30)
-            constrain { on(d, left) d.center_x == left.center_x abs(left.width) <= max(w, 3) concentric(d.e, d.f.g) }
+            constrain { on(d, left) d.center_x == left.center_x }
+            constrain { abs(left.width) <= max(w, 3) concentric(d.e, d.f.g) }
         }
     """
     chosen = pipeline.Settings.of(Variant.PAPER)
@@ -445,7 +456,7 @@ def programs(variant: Variant) -> list[str]:
     return re.findall(r"```aidl\n(.*?)```", guide(variant), flags=re.DOTALL)
 
 
-@pytest.mark.parametrize("variant", (*SUBSETS, Variant.PAPER))
+@pytest.mark.parametrize("variant", [*SUBSETS, Variant.PAPER])
 def test_programs_of_a_guide_are_of_its_variant(variant: Variant) -> None:
     assert len(programs(variant)) >= 3
     for text in programs(variant):

@@ -2,8 +2,8 @@
 
 `no-hierarchy` has one structure, and all geometry and all constraints are in it. A hole in it is cut by an
 operation on outlines (`cut`), which any structure has. `no-constraints` has nothing to solve for: everything
-stands as it is written. `paper` has the primitives, constraints and operators of the paper on AIDL, and its solver. All leave
-the insides of the library's own shapes alone.
+stands as it is written. `paper` has the primitives, constraints and operators of the paper on AIDL, and its
+solver. All leave the insides of the library's own shapes alone.
 """
 
 from __future__ import annotations
@@ -48,71 +48,15 @@ class Restriction:
 
 
 PAPER_NAMES = frozenset(
-    [
-        "point",
-        "line",
-        "arc",
-        "circle",
-        "rectangle",
-        "triangle",
-        "rounded_rectangle",
-        "polygon",
-        "above",
-        "below",
-        "left_of",
-        "right_of",
-        "inside",
-        "centered_in",
-        "centered_horizontally",
-        "centered_vertically",
-        "touching",
-        "taller",
-        "shorter",
-        "wider",
-        "narrower",
-        "same_width",
-        "same_height",
-        "same_size",
-        "horizontal",
-        "vertical",
-        "length",
-        "radius",
-        "diameter",
-        "fixed",
-        "coincident",
-        "concentric",
-        "tangent",
-        "equal",
-        "equal_length",
-        "equal_radius",
-        "symmetric",
-        "parallel",
-        "perpendicular",
-        "collinear",
-        "midpoint",
-        "on_segment",
-        "distance",
-        "horizontal_distance",
-        "vertical_distance",
-        "angle",
-        "sin",
-        "cos",
-        "asin",
-        "acos",
-        "sqrt",
-        "abs",
-        "norm",
-        "min",
-        "max",
-        "len",
-        "range",
-        "enumerate",
-        "zip",
-        "reversed",
-        "sum",
-        "str",
-        "vector",
-    ]
+    (  # noqa: SIM905 (a list of words)
+        "point line arc circle rectangle triangle rounded_rectangle polygon "
+        "above below left_of right_of inside centered_in centered_horizontally centered_vertically touching "
+        "taller shorter wider narrower same_width same_height same_size "
+        "horizontal vertical length radius diameter fixed coincident concentric tangent equal equal_length "
+        "equal_radius symmetric parallel perpendicular collinear midpoint on_segment distance "
+        "horizontal_distance vertical_distance angle "
+        "sin cos asin acos sqrt abs norm min max len range enumerate zip reversed sum str vector"
+    ).split()
 )
 """What programs may call in `paper`: its primitives, its constraints by the names they have here, its
 operators, and what Python gave it besides.
@@ -183,7 +127,7 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
         Construct.BEYOND: Restriction(
             "E0986",
             "`paper` has what the paper on AIDL describes, and `{name}` came later",
-            "draw with `line`, `arc`, `circle`, `rectangle`, `polygon`, cut with `hole`, and relate by constraints",
+            "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain",
         ),
     },
 }

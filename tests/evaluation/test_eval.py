@@ -146,7 +146,8 @@ def test_without_openscad_its_variant_is_left_out(
     monkeypatch.setenv("PATH", str(evaluation.folder))
     refused = evaluation("--variants", "openscad", "--runs", "1")
     assert refused.err == (
-        "error[E0949]: `openscad` cannot be run: it is not installed\n  = hint: leave out `--variants openscad`\n"
+        "error[E0949]: `openscad` cannot be run: it is not installed\n"
+        "  = hint: leave out `--variants openscad`\n"
     )
     skipped = evaluation("--report", "--runs", "1")
     assert "openscad is left out: it is not installed\n" in skipped.err

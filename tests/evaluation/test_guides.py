@@ -62,7 +62,8 @@ def test_no_guide_draws_what_is_asked_for(name: str) -> None:
 def test_without_a_guide_only_the_language_is_named() -> None:
     plan = Plan((), ("full", "svg"), 1, generation.Settings(), Switches(guide=False))
     assert plan.language("full").guide() == (
-        "You write programs in AIDL that draw flat parts. Answer with the whole program in one ```aidl block.\n"
+        "You write programs in AIDL that draw flat parts. "
+        "Answer with the whole program in one ```aidl block.\n"
     )
     assert plan.language("svg").guide().startswith("You write programs in SVG that draw flat parts.")
     assert plan.language("full").conversation().judge("solid a { c = circle(radius: 3) }").ok

@@ -142,7 +142,8 @@ def test_what_stands_side_by_side_is_a_part_of_its_own() -> None:
 
 
 def test_a_tree_is_opened_down_to_its_shapes() -> None:
-    tree = "group() {\n\tgroup();\n\tcolor([1, 0, 0, 1]) {\n\t\tsquare(size = [1, 1]);\n\t\tcircle(r = 1);\n\t}\n}\n"
+    shapes = "\t\tsquare(size = [1, 1]);\n\t\tcircle(r = 1);\n"
+    tree = f"group() {{\n\tgroup();\n\tcolor([1, 0, 0, 1]) {{\n{shapes}\t}}\n}}\n"
     assert [(p.text, p.color) for p in parts(tree)] == [
         ("square(size = [1, 1]);", "#ff0000"),
         ("circle(r = 1);", "#ff0000"),

@@ -78,8 +78,9 @@ def test_a_conversation_goes_as_in_other_languages() -> None:
     wrong = conversation.judge("<html/>")
     assert (wrong.ok, wrong.stage) == (False, "render")
     assert wrong.feedback == (
-        "error: the outermost element must be `svg`\n\nMend this without leaving out any part of the drawing, "
-        "and answer with the whole program in one block that opens with ```svg."
+        "error: the outermost element must be `svg`\n\n"
+        "Mend this without leaving out any part of the drawing, and "
+        "answer with the whole program in one block that opens with ```svg."
     )
     assert conversation.judge(drawing('<rect width="1" height="1"/>')).feedback == ""
     assert Svg().knobs(drawing("")) == {}

@@ -10,6 +10,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, cast
 
@@ -59,7 +60,7 @@ def missing(library: str, python: str) -> str | None:
         said = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
         return f"{library} is not there ({said[:200]}): name an interpreter that has it by {variable}"
     if done.stdout.strip() != "True":
-        return "programs in Python are run on Linux alone, on x86-64 or ARM64: elsewhere they cannot be locked in"
+        return "programs in Python are run on Linux alone, on x86-64 or ARM64, where they can be locked in"
     return None
 
 
@@ -150,7 +151,7 @@ def _points(outline: object) -> Polygon:
 
 def _line(points: Polygon) -> tuple[Piece, ...]:
     corners = [(float(x), float(y)) for x, y in points]
-    return tuple(Line(a, b) for a, b in zip(corners, corners[1:], strict=False) if a != b)
+    return tuple(Line(a, b) for a, b in pairwise(corners) if a != b)
 
 
 def _color(color: object) -> str | None:

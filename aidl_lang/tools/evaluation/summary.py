@@ -91,7 +91,7 @@ MEANINGS: Mapping[str, str] = {
     "degrees": "degrees of freedom left, per valid program",
     "requirements": "requirements on named parts that hold, of those examined in valid programs of AIDL",
     "geometry": "requirements on geometry alone that hold, the same in all languages",
-    "edits hold": "edits of knobs after which a program is valid and the requirements on geometry met before hold",
+    "edits hold": "edits of knobs after which requirements on geometry that were met before still are",
     "editability": "edits of knobs that solve with everything kept, of those tried in valid programs",
     "knobs": "named numbers to edit, per valid program",
     "detached": "pieces beyond the first that stand apart from all others, per valid program",
