@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
+from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.tools.cli.report import UseError, say, show
 
@@ -90,6 +91,12 @@ def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--report", action="store_true", help="ask nothing: report on the runs that are there"
     )
+    parser.add_argument(
+        "--solver",
+        nargs="+",
+        metavar="FILE",
+        help="ask nothing: solve these programs by other stages as well, and say what moved",
+    )
     add_provider(parser)
     parser.set_defaults(run=run)
 
@@ -98,6 +105,8 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.tools.evaluation.report import report
     from aidl_lang.tools.evaluation.store import Store, StoreError
 
+    if arguments.solver:
+        return _compare_stages(arguments.solver)
     try:
         store = Store(Path(arguments.out))
         left = _run(arguments, store)
@@ -106,6 +115,16 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError.of(reason.diagnostic) from None
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
+
+
+def _compare_stages(names: list[str]) -> int:
+    """Solves programs by all stages and prints the tables; 1 if one of them is wrong."""
+    from aidl_lang.tools.evaluation import ablation
+
+    programs = [(files.read(name), files.world(name)) for name in names]
+    solves = [solved for source, world in programs for solved in ablation.compare(source, world)]
+    print(ablation.markdown(solves), end="")
+    return 1 if any(solved.status == "wrong" for solved in solves) else 0
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
