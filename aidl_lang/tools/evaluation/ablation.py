@@ -1,4 +1,4 @@
-"""What the stages of the solver are worth: programs solved by each way of freeing unknowns, without a model."""
+"""What the stages of the solver are worth: programs solved by each way of freeing unknowns. Asks no model."""
 
 from __future__ import annotations
 
