@@ -330,3 +330,14 @@ def test_a_file_that_is_no_prompt_says_why(text: str, message: str) -> None:
     with pytest.raises(PromptError) as caught:
         read(SourceFile("a.aidl", text))
     assert str(caught.value).startswith(message)
+
+
+def test_an_array_of_what_has_no_name_is_no_endless_copy() -> None:
+    text = """
+        assembly cart {
+            solid wheel {
+                rim = circle(radius: 15)
+                hole spokes { cut = polar_array(circle(radius: 2.5), n: 5, radius: 9) }
+            }
+        }"""
+    assert unmet(WHEELS, text)["a body of 200 mm²"] == "no body was found"
