@@ -5,6 +5,7 @@ guide speaks of nothing else.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TypeAlias
@@ -14,13 +15,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
+from aidl_lang.building.lower import lower
 from aidl_lang.checking import builtins
 from aidl_lang.checking.variants import FORBIDDEN, Variant
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, MemoryWorld
+from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled
+from aidl_lang.solver import solve
+from aidl_lang.solver.settings import Settings as SolverSettings
+from aidl_lang.solver.settings import Stages
+from aidl_lang.solver.solution import Status
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.guide import guide
@@ -44,11 +51,12 @@ WHERE = (
     "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
     "`center: plate.top_left + (5, -5)`"
 )
+CAME_LATER = "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain"
 STATED = f"{AS_WRITTEN} and has no constraints"
 
 
 def compiled(text: str, variant: Variant, files: dict[str, str] | None = None) -> Compiled:
-    chosen = pipeline.Settings(variant=variant)
+    chosen = pipeline.Settings.of(variant)
     return pipeline.compile(SourceFile("part.aidl", text), MemoryWorld(files or {}), settings=chosen)
 
 
@@ -64,6 +72,18 @@ def told(d: Diagnostic) -> Told:
 # --- What is forbidden ----------------------------------------------------------------------------
 
 FOUND: dict[str, tuple[Variant, str, list[Told]]] = {
+    "a shape that came after the paper": (
+        Variant.PAPER,
+        "solid a { s = star(outer_radius: 9, inner_radius: 4, points: 5) }",
+        [
+            (
+                "E0986",
+                "star",
+                "`paper` has what the paper on AIDL describes, and `star` came later",
+                (CAME_LATER,),
+            )
+        ],
+    ),
     "hole": (
         FLAT,
         "solid plate {\n body = circle(radius: 9)\n hole bore { rim = circle(radius: 3) }\n}",
@@ -327,6 +347,99 @@ def test_one_structure_is_the_same_with_and_without_hierarchy(single: Part, unit
     assert [d.code for d in nested if d.is_error] == ["E0403"]
 
 
+# --- The paper's ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("statement", "place"),
+    [
+        ("s = star(outer_radius: 9, inner_radius: 4, points: 5)", "star"),
+        ("p = path(from: (0, 0), line_to(1, 0), close())", "path"),
+        ("a = circle(radius: 3) b = mirror(a, about: y_axis)", "mirror"),
+        ("a = circle(radius: 3) assert a.radius == 3", "assert a.radius == 3"),
+        ("a = circle(radius: 3) prefer a.radius == 4", "prefer a.radius == 4"),
+        ("a = circle(radius: 3) b = circle(radius: 4) constrain row(a, b)", "row"),
+        ('@color("red") solid b { a = circle(radius: 3) }', '@color("red")'),
+        ("a = circle(radius: lerp(3, 4, 0.5))", "lerp"),
+    ],
+)
+def test_what_came_after_the_paper_is_reported(statement: str, place: str) -> None:
+    found = [d for d in checked(f"solid s {{ {statement} }}", Variant.PAPER) if d.is_error]
+    assert {d.code for d in found} == {"E0986"}
+    assert place in [d.span.text for d in found if d.span]
+    word = {"assert": "assert", "prefer": "prefer", "@color": "@color"}
+    name = next((w for start, w in word.items() if place.startswith(start)), place)
+    message = f"`paper` has what the paper on AIDL describes, and `{name}` came later"
+    first = next(d for d in found if d.span and d.span.text == place)
+    assert (first.message, first.hints) == (message, (CAME_LATER,))
+
+
+def test_what_the_paper_has_is_taken() -> None:
+    text = """
+        fn half(x) = x / 2
+        constraint on(a: box, b: box) { a.bottom == b.top }
+        assembly a {
+            param w = 40
+            solid b(x = 0) { r = rectangle(center: (x, 0), width: w, height: half(w)) }
+            solid d {
+                e = circle(center: (0, 50), radius: 5)
+                hole f { g = circle(center: (0, 50), radius: 2) }
+            }
+            left = b(x: -30)
+            constrain { on(d, left) d.center_x == left.center_x }
+            constrain { abs(left.width) <= max(w, 3) concentric(d.e, d.f.g) }
+        }
+    """
+    chosen = pipeline.Settings.of(Variant.PAPER)
+    found = pipeline.compile(SourceFile("part.aidl", text), settings=chosen)
+    assert found.ok, "\n".join(map(render, found.diagnostics))
+
+
+MOVES_OR_GROWS = """
+    assembly a {
+        solid b { r = rectangle(center: origin, width: 40, height: 20) }
+        constrain b.r.width == 50
+    }
+"""
+
+
+@pytest.mark.parametrize(("stages", "changed"), [(Stages.FULL, 1), (Stages.PAPER, 1), (Stages.FLAT, 1)])
+def test_other_stages_meet_the_same_constraints(stages: Stages, changed: int) -> None:
+    settings = pipeline.Settings()
+    settings = replace(settings, solving=replace(settings.solving, stages=stages))
+    found = pipeline.compile(SourceFile("part.aidl", MOVES_OR_GROWS), settings=settings)
+    assert found.ok
+    assert found.model is not None
+    assert len(found.model.changed) == changed
+    assert found.drawing is not None
+    assert found.drawing.box == pytest.approx((-25, -10, 25, 10))
+
+
+def stages_of(stages: Stages) -> list[str]:
+    text = """
+        assembly a {
+            solid b { c = circle(center: (0, 0), radius: 5) }
+            solid d { e = circle(center: (30, 3), radius: 5) }
+            constrain { d.left == b.right d.bottom == b.bottom }
+        }
+    """
+    program, _ = pipeline.front(SourceFile("part.aidl", text))
+    solution = solve(lower(interpret(program).model).problem, SolverSettings(stages=stages))
+    assert solution.status is Status.SOLVED
+    return [stage.stage for stage in solution.stages]
+
+
+def test_the_stages_are_those_asked_for() -> None:
+    assert stages_of(Stages.FLAT) == ["own"]
+    assert stages_of(Stages.PAPER)[-1] == "translations 1"
+    assert stages_of(Stages.FULL)[-1] in ("placed", "own")
+
+
+def test_the_paper_s_solver_goes_with_its_language() -> None:
+    assert pipeline.Settings.of(Variant.PAPER).solving.stages is Stages.PAPER
+    assert pipeline.Settings.of(Variant.NO_HIERARCHY).solving.stages is Stages.FULL
+
+
 # --- The guides -----------------------------------------------------------------------------------
 
 UNSAID = {
@@ -343,7 +456,7 @@ def programs(variant: Variant) -> list[str]:
     return re.findall(r"```aidl\n(.*?)```", guide(variant), flags=re.DOTALL)
 
 
-@pytest.mark.parametrize("variant", SUBSETS)
+@pytest.mark.parametrize("variant", [*SUBSETS, Variant.PAPER])
 def test_programs_of_a_guide_are_of_its_variant(variant: Variant) -> None:
     assert len(programs(variant)) >= 3
     for text in programs(variant):
@@ -414,7 +527,7 @@ def test_guide_of_a_variant_is_printed(capsys: pytest.CaptureFixture[str]) -> No
     [
         (
             ["check", "a.aidl", "--variant", "none"],
-            "there is no `none`; there are full, no-hierarchy, no-constraints",
+            "there is no `none`; there are full, no-hierarchy, no-constraints, paper",
         ),
         (["guide", "--full", "--variant", "no-hierarchy"], "not allowed with argument --full"),
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TypeAlias
 
 from aidl_lang import parser
@@ -18,6 +19,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.solver.settings import Settings as SolverSettings
+from aidl_lang.solver.settings import Stages
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 
@@ -39,6 +41,14 @@ class Settings:
     variant: Variant = Variant.FULL
     strict: bool = False
     drawing: float = 20.0
+
+    @staticmethod
+    def of(variant: Variant, *, strict: bool = False) -> Settings:
+        """Returns the settings of a variant of the language: the paper's has the paper's solver, too."""
+        settings = Settings(variant=variant, strict=strict)
+        if variant is not Variant.PAPER:
+            return settings
+        return replace(settings, solving=replace(settings.solving, stages=Stages.PAPER))
 
 
 Front: TypeAlias = tuple[Program, list[Diagnostic]]

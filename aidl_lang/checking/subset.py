@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from aidl_lang.checking.builtins import EDITS, FINISHES
+from aidl_lang.checking.builtins import EDITS, FINISHES, SIGNATURES
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.types import AnyType, StructureType, TruthType, Type
-from aidl_lang.checking.variants import FORBIDDEN, Construct, Variant, instead, speaks_of_absent
+from aidl_lang.checking.variants import FORBIDDEN, PAPER_NAMES, Construct, Variant, instead, speaks_of_absent
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold
 from aidl_lang.common.source import Span
@@ -80,14 +80,13 @@ class _Walker:
         """Reports a statement of constraints as a whole. Returns whether it is one."""
         match node:
             case ast.Constrain() | ast.Prefer():
-                self._report(Construct.CONSTRAINT, node.span)
+                return self._report(Construct.CONSTRAINT, node.span)
             case ast.ExpressionStatement(value) if self._constrains(value):
-                self._report(Construct.CONSTRAINT, node.span)
+                return self._report(Construct.CONSTRAINT, node.span)
             case ast.ConstraintDefinition(name=name):
-                self._report(Construct.DEFINITION, node.span, name.text)
+                return self._report(Construct.DEFINITION, node.span, name.text)
             case _:
                 return False
-        return True
 
     def _constrains(self, value: ast.Expression) -> bool:
         """Tells whether a bare expression is a constraint; a call that no overload fits is judged by its
@@ -103,6 +102,8 @@ class _Walker:
         return isinstance(kind, TruthType) or may_be or name == "fixed"
 
     def _look_at(self, node: ast.Node) -> None:
+        if Construct.BEYOND in self.rules:
+            self._beyond(node)
         match node:
             case ast.Structure(name=name) if node is not self.root:
                 construct = Construct.HOLE if node.kind == "hole" else Construct.STRUCTURE
@@ -129,6 +130,23 @@ class _Walker:
             case _:
                 pass
 
+    def _beyond(self, node: ast.Node) -> None:
+        """Reports what the paper on AIDL has not: calls of the library, attributes, wishes, assertions."""
+        match node:
+            case ast.Call(callee=callee):
+                name = self.infer.resolution.canonical.get(callee, callee.text)
+                candidates = self.infer.resolution.candidates.get(node, ())
+                is_ours = name in SIGNATURES or any(s.standard for s in candidates)
+                if is_ours and name not in PAPER_NAMES and all(s.standard for s in candidates):
+                    self._report(Construct.BEYOND, callee.span, callee.text)
+            case ast.Attribute(name=name) if name.text not in ("orientation", "allow"):
+                self._report(Construct.BEYOND, node.span, f"@{name.text}")
+            case ast.Prefer() | ast.Assert():
+                word = "prefer" if isinstance(node, ast.Prefer) else "assert"
+                self._report(Construct.BEYOND, node.span, word)
+            case _:
+                pass
+
     def _smooth(self, call: ast.Call) -> None:
         """Reports `smooth: true` on a step of a path, which lets the solver turn it."""
         candidates = self.infer.resolution.candidates.get(call, ())
@@ -146,7 +164,9 @@ class _Walker:
     def _may_call(self, node: ast.Call, kind: type[ast.Callable]) -> bool:
         return any(s.kind is kind for s in self.infer.resolution.candidates.get(node, ()))
 
-    def _report(self, construct: Construct, span: Span, name: str = "", fix: Fix | None = None) -> None:
+    def _report(self, construct: Construct, span: Span, name: str = "", fix: Fix | None = None) -> bool:
+        """Reports a construct that the variant lacks; false if it has it."""
         if (rule := self.rules.get(construct)) is not None:
             message, hint = (text.replace("{name}", name) for text in (rule.message, rule.hint))
             self.diagnostics.append(Diagnostic(rule.code, message, span, hints=(hint,), fix=fix))
+        return construct in self.rules

@@ -1,8 +1,9 @@
-"""Subsets of the language, which show what hierarchy and what constraints are worth.
+"""Subsets of the language, which show what hierarchy and what constraints are worth, and what was added.
 
 `no-hierarchy` has one structure, and all geometry and all constraints are in it. A hole in it is cut by an
 operation on outlines (`cut`), which any structure has. `no-constraints` has nothing to solve for: everything
-stands as it is written. Both leave the insides of the library's own shapes alone.
+stands as it is written. `paper` has the primitives, constraints and operators of the paper on AIDL, and its
+solver. All leave the insides of the library's own shapes alone.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ class Variant(StrEnum):
     FULL = "full"
     NO_HIERARCHY = "no-hierarchy"
     NO_CONSTRAINTS = "no-constraints"
+    PAPER = "paper"
 
 
 class Construct(StrEnum):
@@ -33,6 +35,7 @@ class Construct(StrEnum):
     DEFINITION = "constraint of one's own"
     RELATION = "relation that is checked"
     SMOOTH = "smooth step"
+    BEYOND = "what came after the paper"
 
 
 @record()
@@ -43,6 +46,21 @@ class Restriction:
     message: str
     hint: str
 
+
+PAPER_NAMES = frozenset(
+    (  # noqa: SIM905 (a list of words)
+        "point line arc circle rectangle triangle rounded_rectangle polygon "
+        "above below left_of right_of inside centered_in centered_horizontally centered_vertically touching "
+        "taller shorter wider narrower same_width same_height same_size "
+        "horizontal vertical length radius diameter fixed coincident concentric tangent equal equal_length "
+        "equal_radius symmetric parallel perpendicular collinear midpoint on_segment distance "
+        "horizontal_distance vertical_distance angle "
+        "sin cos asin acos sqrt abs norm min max len range enumerate zip reversed sum str vector"
+    ).split()
+)
+"""What programs may call in `paper`: its primitives, its constraints by the names they have here, its
+operators, and what Python gave it besides.
+"""
 
 _ONE = "`no-hierarchy` has one structure"
 _AS_WRITTEN = "`no-constraints` draws everything as it is written"
@@ -103,6 +121,13 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
             "E0409",
             f"{_AS_WRITTEN}, and `{{name}}` would move a step of the path",
             "give the points of a smooth outline, or use `tangent_arc_to` and `arc_by`, which go on smoothly",
+        ),
+    },
+    Variant.PAPER: {
+        Construct.BEYOND: Restriction(
+            "E0986",
+            "`paper` has what the paper on AIDL describes, and `{name}` came later",
+            "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain",
         ),
     },
 }

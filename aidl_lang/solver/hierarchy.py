@@ -22,8 +22,9 @@ from aidl_lang.solver.naming import riding_depths
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
+from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import GroupFailure, StageReport
-from aidl_lang.solver.tiers import Scope, Tier, stage_name
+from aidl_lang.solver.tiers import OWN, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ class Hierarchy:
 
     def run(self, recollection: Recollection | None = None) -> None:
         """Solves the groups depth by depth, from below; recalls those that no change has reached."""
-        many = len(self.problem.rows.expression) >= MANY
+        many = len(self.problem.rows.expression) >= MANY and self.settings.stages is Stages.FULL
         turn = self._solve_together if many else self._solve_in_turn
         for depth in range(int(self._group_depths.max(initial=0)), -1, -1):
             known = np.zeros(len(self.problem.parent), dtype=np.bool_)
@@ -217,6 +218,15 @@ class Hierarchy:
         """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
         depth = self._depth_of_group[group]
         level = self._depth[unknown] - depth
+        match self.settings.stages:
+            case Stages.FLAT:
+                return OWN
+            case Stages.PAPER if self._frame[unknown]:
+                return (3, 1 + level)
+            case Stages.PAPER:
+                return (4, level) if level else OWN
+            case _:
+                pass
         if self._kept[unknown]:
             if self._spanned[unknown] and unknown in placed:
                 return (4, level) if level else (1, 2)
@@ -225,7 +235,8 @@ class Hierarchy:
             return (5, level)
         if level == 0:
             return (1, placed[unknown]) if unknown in placed else (2, int(self._standing[unknown]))
-        return (3, level) if self._frame[unknown] else (4, level)
+        is_translated = self._frame[unknown] and self.settings.stages is not Stages.LEVEL
+        return (3, level) if is_translated else (4, level)
 
     @cached_property
     def all_hard(self) -> bool:

@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 from aidl_lang.common.records import record
+
+
+class Stages(Enum):
+    """The stages at which unknowns become free (see `tiers`). All but the first are for comparison."""
+
+    FULL = "full"
+    PAPER = "paper"
+    """Own geometry; then, level by level, translations; then, level by level, all else. No size is kept."""
+    LEVEL = "level"
+    """Translations of what lies deeper have no preference to its geometry."""
+    FLAT = "flat"
+    """One system of all constraints, in which everything is free at once."""
 
 
 @record()
@@ -12,6 +26,7 @@ class Settings:
     tolerance   residual at which a row counts as satisfied, relative to its scale
     iterations  Newton steps per attempt
     branches    re-choices of `min`/`max` branches per stage
+    stages      what becomes free when
     seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
     """
 
@@ -19,4 +34,5 @@ class Settings:
     iterations: int = 60
     branches: int = 12
     seconds: float = 20.0
+    stages: Stages = Stages.FULL
     explain: bool = True

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.memory import Memory, Recollection
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Problem
-from aidl_lang.solver.settings import Settings
+from aidl_lang.solver.settings import Settings, Stages
 from aidl_lang.solver.solution import Solution, Status
 
 
@@ -18,6 +20,8 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
 
     With a `memory`, which is brought up to date, only what has changed since its last solve is solved.
     """
+    if settings.stages is Stages.FLAT:
+        problem = replace(problem, holder=np.zeros_like(problem.holder))
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     recollection = None if memory is None else Recollection(memory, problem, settings)
     with np.errstate(all="ignore"):  # what overflows is found not to hold

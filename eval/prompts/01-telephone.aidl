@@ -1,6 +1,8 @@
 /// old-school telephone
 assembly telephone {
     solid whole { todo }
+    var symmetry = 1
+    var rounds = 1
     var pieces = 1
 
     @note("base, body, housing / case / casing / cabinet / chassis / box, stand")
@@ -28,4 +30,8 @@ assembly telephone {
     assert len(finger) >= 8, "the dial has its finger holes"
     for f in finger { assert inside(f, dial), "the finger holes are in the dial" }
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert rounds >= 8, "eight round things or more are of one size"
+    assert symmetry >= 0.7, "the silhouette is nearly the same on both sides"
 }

@@ -1,6 +1,9 @@
 /// lighthouse
 assembly lighthouse {
     solid whole { todo }
+    var fields = 1
+    var width_at_bottom = 1
+    var width_at_three_quarters = 1
     var pieces = 1
     var symmetry = 1
 
@@ -26,4 +29,9 @@ assembly lighthouse {
         "the roof is over the middle of the tower"
     assert symmetry >= 0.8, "left and right are alike"
     assert pieces <= 1, "the parts stand on each other"
+
+    // of any language's drawing
+    assert width_at_three_quarters <= 0.8 * width_at_bottom, "it narrows upwards"
+    assert whole.height >= 1.1 * whole.width, "it is taller than wide"
+    assert fields >= 4, "four fields or more are seen"
 }

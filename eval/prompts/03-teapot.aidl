@@ -1,6 +1,9 @@
 /// teapot
 assembly teapot {
     solid whole { todo }
+    var fields = 1
+    var width_at_middle = 1
+    var width_at_top = 1
     var pieces = 1
 
     @note("pot, body, vessel / belly / bowl, kettle")
@@ -22,4 +25,9 @@ assembly teapot {
     assert spout.left <= pot.left - 0.05 * pot.width or spout.right >= pot.right + 0.05 * pot.width,
         "the spout reaches out of the pot"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert whole.width >= 1.05 * whole.height, "it is wider than tall"
+    assert width_at_top <= 0.6 * width_at_middle, "it is much narrower at the top"
+    assert fields >= 3, "three fields or more are seen"
 }

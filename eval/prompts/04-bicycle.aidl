@@ -1,6 +1,8 @@
 /// bicycle
 assembly bicycle {
     solid whole { todo }
+    var rounds = 1
+    var fullness = 1
     var pieces = 1
 
     param wheel_count = 2 in 1..20
@@ -33,4 +35,9 @@ assembly bicycle {
         "the saddle is between the hubs"
     for w in wheel { assert overlapping(frame, w), "the frame reaches both wheels" }
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert rounds >= 2, "two round things or more are of one size"
+    assert whole.width >= 1.2 * whole.height and whole.width <= 2.6 * whole.height, "it is longer than high, by less than 2.6"
+    assert fullness <= 0.6, "one sees through it"
 }

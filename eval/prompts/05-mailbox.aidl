@@ -1,6 +1,8 @@
 /// mailbox
 assembly mailbox {
     solid whole { todo }
+    var fields = 1
+    var fullness = 1
     var pieces = 1
 
     @note("box / mailbox / letterbox, body, housing / container / case / shell")
@@ -34,4 +36,8 @@ assembly mailbox {
     }
     for s in slot { assert inside(s, box), "the slot or door is in the box" }
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert fields >= 3, "three fields or more are seen"
+    assert fullness <= 0.98, "the silhouette is no mere rectangle"
 }

@@ -1,6 +1,9 @@
 /// table lamp
 assembly table_lamp {
     solid whole { todo }
+    var width_at_bottom = 1
+    var width_at_middle = 1
+    var width_at_three_quarters = 1
     var pieces = 1
     var symmetry = 1
 
@@ -19,4 +22,8 @@ assembly table_lamp {
     assert abs(shade.center_x - base.center_x) <= 0.1 * whole.width, "the shade is over the base"
     assert symmetry >= 0.8, "left and right are alike"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert width_at_middle <= 0.8 * max(width_at_three_quarters, width_at_bottom), "it has a waist"
+    assert symmetry >= 0.6, "the silhouette is nearly the same on both sides"
 }

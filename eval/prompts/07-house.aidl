@@ -1,6 +1,10 @@
 /// house with a chimney
 assembly house {
     solid whole { todo }
+    var symmetry = 1
+    var fullness = 1
+    var width_at_quarter = 1
+    var width_at_top = 1
     var pieces = 1
 
     @note("wall, body, building / facade, house")
@@ -33,4 +37,9 @@ assembly house {
             "the windows are in the house and clear of the door"
     }
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert width_at_top <= 0.6 * width_at_quarter, "it narrows at the top"
+    assert fullness <= 0.95, "the silhouette is no mere rectangle"
+    assert symmetry >= 0.75, "the silhouette is nearly the same on both sides"
 }

@@ -1,6 +1,8 @@
 /// coffee mug
 assembly coffee_mug {
     solid whole { todo }
+    var symmetry = 1
+    var fullness = 1
     var pieces = 1
     var openings = 1
 
@@ -19,4 +21,9 @@ assembly coffee_mug {
     assert handle.width <= cup.width, "the handle is narrower than the mug"
     assert openings >= 1, "the handle leaves room for fingers"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert openings >= 1, "the handle leaves an opening"
+    assert fullness >= 0.5, "it is mostly material"
+    assert symmetry <= 0.98, "the handle is on one side"
 }

@@ -1,6 +1,10 @@
 /// sailing boat
 assembly sailing_boat {
     solid whole { todo }
+    var fields = 1
+    var width_at_bottom = 1
+    var width_at_quarter = 1
+    var width_at_top = 1
     var pieces = 1
 
     @note("hull, body, boat")
@@ -25,4 +29,8 @@ assembly sailing_boat {
         assert s.top <= mast.top + 0.05 * mast.height, "the sails do not rise above the mast"
     }
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert width_at_top <= 0.4 * max(width_at_bottom, width_at_quarter), "it ends in a narrow top"
+    assert fields >= 3, "three fields or more are seen"
 }

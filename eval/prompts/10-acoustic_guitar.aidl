@@ -1,6 +1,8 @@
 /// acoustic guitar
 assembly acoustic_guitar {
     solid whole { todo }
+    var rounds = 1
+    var fields = 1
     var pieces = 1
 
     @note("body, soundbox / sound box, top; of bout, waist")
@@ -28,4 +30,9 @@ assembly acoustic_guitar {
     assert abs(sound_hole.width - sound_hole.height) <= 0.1 * sound_hole.width,
         "the sound hole is round"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert max(whole.width, whole.height) >= 1.8 * min(whole.width, whole.height), "it is long and slim"
+    assert rounds >= 1, "something is round"
+    assert fields >= 3, "three fields or more are seen"
 }

@@ -1,6 +1,8 @@
 /// robot face
 assembly robot_face {
     solid whole { todo }
+    var alike = 1
+    var fields = 1
     var symmetry = 1
 
     @note("head, face, skull / plate")
@@ -38,4 +40,9 @@ assembly robot_face {
             "the ears are alike and level"
     }
     assert symmetry >= 0.8, "left and right are alike"
+
+    // of any language's drawing
+    assert symmetry >= 0.85, "the silhouette is nearly the same on both sides"
+    assert alike >= 2, "two outlines or more are alike"
+    assert fields >= 4, "four fields or more are seen"
 }

@@ -1,6 +1,7 @@
 /// pair of scissors
 assembly scissors {
     solid whole { todo }
+    var fullness = 1
     var pieces = 1
     var openings = 1
 
@@ -35,4 +36,8 @@ assembly scissors {
     }
     assert openings >= 2, "fingers fit into the handles"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert openings >= 2, "two openings or more are for fingers"
+    assert fullness <= 0.7, "it is slim"
 }

@@ -1,6 +1,7 @@
 /// wall clock
 assembly wall_clock {
     solid whole { todo }
+    var fields = 1
 
     @note("face / dial, disc / disk / plate, case / body / frame / rim")
     solid face { todo }
@@ -28,4 +29,8 @@ assembly wall_clock {
         "the hands are of different length"
     assert len(mark) >= 4, "the hours are marked"
     for m in mark { assert inside(m, face), "the marks are within the face" }
+
+    // of any language's drawing
+    assert whole.width <= 1.3 * whole.height, "it is not much wider than tall"
+    assert fields >= 4, "four fields or more are seen"
 }

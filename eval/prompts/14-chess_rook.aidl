@@ -1,6 +1,8 @@
 /// chess rook
 assembly chess_rook {
     solid whole { todo }
+    var width_at_bottom = 1
+    var width_at_middle = 1
     var pieces = 1
     var symmetry = 1
     var battlements = 1
@@ -26,4 +28,7 @@ assembly chess_rook {
     }
     for t in top { assert t.center_y >= whole.center_y, "the battlements are at the top" }
     assert pieces <= 1, "the parts stand on each other"
+
+    // of any language's drawing
+    assert width_at_middle <= 0.95 * width_at_bottom, "it stands on a broad foot"
 }

@@ -1,6 +1,8 @@
 /// panelled door with a handle
 assembly door {
     solid whole { todo }
+    var alike = 1
+    var fullness = 1
 
     @note("leaf / slab, door, door panel, body / board")
     solid door { todo }
@@ -26,4 +28,9 @@ assembly door {
         "the handle is at the height of a hand"
     assert handle.height <= 0.3 * door.height and handle.width <= 0.4 * door.width,
         "the handle is small beside the door"
+
+    // of any language's drawing
+    assert whole.height >= 1.5 * whole.width, "it is much taller than wide"
+    assert alike >= 2, "two outlines or more are alike"
+    assert fullness >= 0.7, "it is mostly material"
 }

@@ -1,6 +1,8 @@
 /// tractor
 assembly tractor {
     solid whole { todo }
+    var rounds = 1
+    var fields = 1
     var pieces = 1
 
     param wheel_count = 2 in 1..20
@@ -25,4 +27,8 @@ assembly tractor {
         "the wheels stand on one level"
     assert cab.top >= body.top and cab.center_y >= body.center_y, "the cab rises over the body"
     assert pieces <= 1, "the parts hold together"
+
+    // of any language's drawing
+    assert rounds >= 1, "something is round"
+    assert fields >= 5, "five fields or more are seen"
 }

@@ -1,6 +1,7 @@
 /// gear with mounting holes
 assembly gear {
     solid whole { todo }
+    var rounds = 1
     var pieces = 1
     var openings = 1
     var teeth = 1
@@ -21,4 +22,8 @@ assembly gear {
         assert abs(h.width - hole[0].width) <= 0.05 * h.width, "the mounting holes are of one size"
     }
     assert pieces == 1, "it is one piece"
+
+    // of any language's drawing
+    assert whole.width <= 1.1 * whole.height and whole.height <= 1.1 * whole.width, "it is as wide as tall"
+    assert rounds >= 3, "three round holes or more are of one size"
 }

@@ -1,6 +1,9 @@
 /// cabinet with drawers
 assembly cabinet {
     solid whole { todo }
+    var alike = 1
+    var fields = 1
+    var fullness = 1
 
     @note(
         "cabinet / carcass / carcase / corpus, case / body / chest, frame / outer / shell / box; of side, board, panel, shelf"
@@ -41,4 +44,9 @@ assembly cabinet {
         "the drawers fill a good part of the front"
     assert len(handle) == 0 or len(handle) >= len(drawer), "each drawer has its handle"
     for h in handle { assert inside(h, cabinet), "the handles are on the front" }
+
+    // of any language's drawing
+    assert fullness >= 0.7, "it is mostly material"
+    assert alike >= 2, "two outlines or more are alike"
+    assert fields >= 3, "three fields or more are seen"
 }

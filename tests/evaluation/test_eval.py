@@ -146,7 +146,8 @@ def test_without_openscad_its_variant_is_left_out(
     monkeypatch.setenv("PATH", str(evaluation.folder))
     refused = evaluation("--variants", "openscad", "--runs", "1")
     assert refused.err == (
-        "error[E0949]: `openscad` is not installed\n  = hint: leave out `--variants openscad`\n"
+        "error[E0949]: `openscad` cannot be run: it is not installed\n"
+        "  = hint: leave out `--variants openscad`\n"
     )
     skipped = evaluation("--report", "--runs", "1")
     assert "openscad is left out: it is not installed\n" in skipped.err
@@ -204,7 +205,9 @@ def test_openscad_runs_beside(evaluation: Evaluation) -> None:
     assert evaluation("--prompts", "telephone", "--variants", "openscad", "--runs", "1").code == 0
     record = evaluation.record("telephone", "openscad", 1)
     assert record["numbers"] == {"structures": 1, "detached": 1}
-    assert record["requirements"] == []
+    geometry = {r["text"]: r["status"] for r in record["requirements"]}
+    assert geometry["the parts hold together"] == "failed"
+    assert all(r["is_geometric"] for r in record["requirements"])
     figures = evaluation.figures("openscad")
     assert [figures[n]["count"] for n in ("requirements", "intents lost", "constraints", "editability")] == [
         0,

@@ -42,7 +42,10 @@ RECORDS = [
         fixes=["a comma"],
         numbers={"structures": 4, "constraints": 6, "detached": 1},
         requirements=[{"status": s} for s in ("met", "failed", "unmeasurable", "met")],
-        edits={"knobs": 2, "edits": [{"outcome": "kept"}, {"outcome": "changed"}, {"outcome": "kept"}]},
+        edits={
+            "knobs": 2,
+            "edits": [{"outcome": "kept", "holds": True}, {"outcome": "changed"}, {"outcome": "kept"}],
+        },
     ),
     record("full", 2, [True], numbers={"structures": 2, "constraints": 0, "degrees": 3, "detached": 0}),
     record("full", 3, [False, False]),
@@ -83,6 +86,8 @@ def test_figures_of_a_variant() -> None:
         "constraints": Mean(2, 3.0, 18.0),
         "degrees": Mean(1, 3.0),
         "requirements": Share(2, 4),
+        "geometry": Share(0, 0),
+        "edits hold": Share(1, 3),
         "editability": Share(2, 3),
         "knobs": Mean(1, 2.0),
         "detached": Mean(2, 0.5, 0.5),
@@ -91,6 +96,7 @@ def test_figures_of_a_variant() -> None:
         "seconds": Mean(0),
         "cost": Total(0, None),
         "CLIP": Mean(1, 31.5),
+        "CLIP neutral": Mean(0),
     }
     assert openscad.figures["intents lost"] == openscad.figures["constraints"] == Mean(0)
 
@@ -112,7 +118,7 @@ def test_csv_and_json_tell_the_same() -> None:
     variants, prompts = rows(RECORDS, Scores({})), rows(RECORDS, Scores({}), per_prompt=True)
     lines = list(csv.DictReader(io.StringIO(table.to_csv([*variants, *prompts]))))
     data = json.loads(table.to_json(variants, prompts))
-    assert len(lines) == len(data["variants"]) + len(data["prompts"]) == 2 * 2 * 21
+    assert len(lines) == len(data["variants"]) + len(data["prompts"]) == 2 * 2 * 24
     valid = next(
         line
         for line in lines

@@ -10,10 +10,11 @@ import pytest
 from PIL import Image
 
 from aidl_lang.geometry.measures import area, region_bounds
-from aidl_lang.tools.evaluation import openscad, shapes
-from aidl_lang.tools.evaluation.openscad import OpenScad, knobs, render, structures
+from aidl_lang.tools.evaluation import pictures, rendering
+from aidl_lang.tools.evaluation.openscad import OpenScad, knobs, parts, render, structures
+from aidl_lang.tools.evaluation.shapes import PIXELS
 
-needs_openscad = pytest.mark.skipif(not OpenScad().is_installed, reason="openscad is not installed")
+needs_openscad = pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
 
 PLATE = """\
 width = 80; // not height = 3;
@@ -34,15 +35,15 @@ def test_knobs_are_the_plain_numbers_of_the_top_level() -> None:
 
 @needs_openscad
 def test_a_program_is_drawn_with_its_holes() -> None:
-    drawn = shapes.region(render(PLATE).outlines)
+    drawn = render(PLATE).regions.whole
     assert region_bounds(drawn) == pytest.approx((0, 0, 80, 40))
     assert area(drawn) == pytest.approx(80 * 40 - 200)  # a square of diagonal 20 is cut out
     assert [len(face.holes) for face in drawn.faces] == [1]
-    wider = shapes.region(render(PLATE, {"width": 100.0}).outlines)
+    wider = render(PLATE, {"width": 100.0}).regions.whole
     assert region_bounds(wider)[2] == pytest.approx(100)
-    with Image.open(io.BytesIO(shapes.png(drawn))) as picture:
+    with Image.open(io.BytesIO(pictures.colored(render(PLATE).regions))) as picture:
         pixels = np.asarray(picture.convert("RGB"))
-    assert max(picture.size) == shapes.PIXELS
+    assert max(picture.size) == PIXELS
     assert tuple(pixels[2, 2]) == (255, 255, 255)
     middle, hole = (
         pixels[picture.height // 2, picture.width * 3 // 4],
@@ -99,7 +100,7 @@ def test_a_comment_about_files_is_no_offence() -> None:
     ["for (i = [0 : 1e5]) for (j = [0 : 1e5]) square(i + j);", "function f(n) = f(n + 1) + 1; echo(f(0));"],
 )
 def test_a_program_without_end_is_stopped(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(openscad, "_SECONDS", 2)
+    monkeypatch.setattr(rendering, "SECONDS", 2)
     assert not render(program).ok
 
 
@@ -119,4 +120,32 @@ def test_the_model_is_told_and_a_remark_is_made_once() -> None:
 
 def test_without_openscad_it_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert not OpenScad().is_installed
+    assert OpenScad().missing() == "it is not installed"
+
+
+PARTED = """
+module two() { color("red") square(10); translate([8, 0]) { circle(3); circle(1); } }
+translate([0, 5]) two();
+difference() { square(4); square(1); }
+"""
+
+
+@needs_openscad
+def test_what_stands_side_by_side_is_a_part_of_its_own() -> None:
+    (drawn,) = OpenScad().run(PARTED)
+    areas = [area(part.region) for part in drawn.regions.parts]
+    assert areas[0] == pytest.approx(100)
+    assert areas[3] == pytest.approx(15)
+    assert [part.color for part in drawn.regions.parts] == ["#ff0000", None, None, None]
+    (whole,) = OpenScad().run(PARTED, parted=False)
+    assert area(whole.regions.whole) == pytest.approx(area(drawn.regions.whole), rel=1e-4)
+
+
+def test_a_tree_is_opened_down_to_its_shapes() -> None:
+    shapes = "\t\tsquare(size = [1, 1]);\n\t\tcircle(r = 1);\n"
+    tree = f"group() {{\n\tgroup();\n\tcolor([1, 0, 0, 1]) {{\n{shapes}\t}}\n}}\n"
+    assert [(p.text, p.color) for p in parts(tree)] == [
+        ("square(size = [1, 1]);", "#ff0000"),
+        ("circle(r = 1);", "#ff0000"),
+    ]
+    assert parts("") == []

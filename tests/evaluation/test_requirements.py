@@ -38,7 +38,25 @@ chess rook
 panelled door with a handle
 tractor
 gear with mounting holes
-cabinet with drawers"""
+cabinet with drawers
+fountain pen
+steam locomotive
+windmill
+film camera
+office chair
+claw hammer
+sunglasses
+castle
+space rocket
+birdhouse
+floppy disk
+wall socket plate
+game controller
+umbrella
+barbell
+toaster
+street lamp
+padlock"""
 PROMPTS: dict[str, Prompt] = {prompt.name: prompt for prompt in load()}
 
 
@@ -312,3 +330,14 @@ def test_a_file_that_is_no_prompt_says_why(text: str, message: str) -> None:
     with pytest.raises(PromptError) as caught:
         read(SourceFile("a.aidl", text))
     assert str(caught.value).startswith(message)
+
+
+def test_an_array_of_what_has_no_name_is_no_endless_copy() -> None:
+    text = """
+        assembly cart {
+            solid wheel {
+                rim = circle(radius: 15)
+                hole spokes { cut = polar_array(circle(radius: 2.5), n: 5, radius: 9) }
+            }
+        }"""
+    assert unmet(WHEELS, text)["a body of 200 mm²"] == "no body was found"

@@ -119,7 +119,8 @@ class Tools:
         self,
         section: Annotated[str | None, "The heading of one section, as Constraints; all without it."] = None,
         variant: Annotated[
-            Literal["full", "no-hierarchy", "no-constraints"], "The guide to a subset of the language."
+            Literal["full", "no-hierarchy", "no-constraints", "paper"],
+            "The guide to a subset of the language.",
         ] = "full",
     ) -> Page:
         """The AIDL language on a few pages. Read it before you write the first program."""

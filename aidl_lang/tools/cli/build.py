@@ -99,7 +99,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     disk = files.world(arguments.file)
     world = NotedWorld(disk)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
-    settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
+    settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
     compiled = pipeline.compile(source, world, params, settings, show, memory)
     read = frozenset((disk.root / path).resolve() for path in world.asked)
     written: tuple[str, ...] = ()

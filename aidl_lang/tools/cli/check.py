@@ -89,7 +89,7 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
     """Checks one file; an unreadable file is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
 
-    settings = pipeline.Settings(variant=arguments.variant)
+    settings = pipeline.Settings.of(arguments.variant)
     try:
         source, world = files.read(name), files.world(name)
         if not arguments.fix:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
+from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.tools.cli.report import UseError, say, show
 
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from aidl_lang.tools.evaluation.store import Store
     from aidl_lang.tools.llm.messages import Provider
 
-_VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
-_OPENSCAD = "openscad"
+_USUAL = ("full", "no-hierarchy", "no-constraints", "openscad")
+_VARIANTS = (*_USUAL, "paper", "build123d", "cadquery", "svg")
 _RUNS = 3
 _OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_tokens", "constrain", "price")
 """Options that a recording has no use for."""
@@ -34,7 +35,12 @@ def register(parser: argparse.ArgumentParser) -> None:
         "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
     )
     parser.add_argument(
-        "--variants", nargs="+", choices=_VARIANTS, default=list(_VARIANTS), help="default: all"
+        "--variants",
+        nargs="+",
+        choices=_VARIANTS,
+        default=list(_USUAL),
+        metavar="NAME",
+        help=f"some of {', '.join(_VARIANTS)} (default: the first four)",
     )
     parser.add_argument(
         "--runs",
@@ -60,6 +66,24 @@ def register(parser: argparse.ArgumentParser) -> None:
         help="for judging a program, for drawing and for editing it (default: 60)",
     )
     parser.add_argument(
+        "--guide", choices=("full", "none"), default="full", help="what a model is told of a language"
+    )
+    parser.add_argument(
+        "--no-fixes", action="store_false", dest="mends", help="the machine mends nothing (AIDL)"
+    )
+    parser.add_argument(
+        "--no-recovery",
+        action="store_false",
+        dest="recovers",
+        help="what a program lost of earlier ones is neither asked for nor put back (AIDL)",
+    )
+    parser.add_argument(
+        "--no-plans",
+        action="store_false",
+        dest="plans",
+        help="a program with empty structures is taken as it is, not as a plan (AIDL)",
+    )
+    parser.add_argument(
         "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
     )
     parser.add_argument(
@@ -77,6 +101,12 @@ def register(parser: argparse.ArgumentParser) -> None:
         metavar="PLACE",
         help="ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such",
     )
+    instead.add_argument(
+        "--solver",
+        nargs="+",
+        metavar="FILE",
+        help="ask nothing: solve these programs by other stages as well, and say what moved",
+    )
     add_provider(parser)
     parser.set_defaults(run=run)
 
@@ -86,6 +116,8 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.tools.evaluation.report import report
     from aidl_lang.tools.evaluation.store import Store, StoreError
 
+    if arguments.solver:
+        return _compare_stages(arguments.solver)
     try:
         store = Store(Path(arguments.out))
         left = _run(arguments, store)
@@ -94,6 +126,16 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError.of(reason.diagnostic) from None
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
+
+
+def _compare_stages(names: list[str]) -> int:
+    """Solves programs by all stages and prints the tables; 1 if one of them is wrong."""
+    from aidl_lang.tools.evaluation import ablation
+
+    programs = [(files.read(name), files.world(name)) for name in names]
+    solves = [solved for source, world in programs for solved in ablation.compare(source, world)]
+    print(ablation.markdown(solves), end="")
+    return 1 if any(solved.status == "wrong" for solved in solves) else 0
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
@@ -139,14 +181,15 @@ def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
 def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
     from dataclasses import replace
 
-    from aidl_lang.tools.evaluation.plan import Plan
+    from aidl_lang.tools.evaluation.plan import Plan, Switches
     from aidl_lang.tools.llm.generation import Settings
 
     asked = sampling(arguments)
     if asked.seed is None and takes_seeds:
         asked = replace(asked, seed=1)
     settings = Settings(arguments.attempts, asked)
-    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings)
+    switches = Switches(arguments.guide == "full", arguments.mends, arguments.recovers, arguments.plans)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
 
 
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
@@ -176,19 +219,31 @@ def _known(arguments: argparse.Namespace) -> dict[str, Prompt]:
 
 
 def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
-    from aidl_lang.tools.evaluation.openscad import OpenScad
+    """Returns the languages that can be had, and says which of those asked for cannot."""
+    from aidl_lang.tools.evaluation.plan import VARIANTS
+    from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 
     wanted = [name for name in _VARIANTS if name in arguments.variants]
-    if _OPENSCAD in wanted and not OpenScad().is_installed:
-        wanted.remove(_OPENSCAD)
+    for name in list(wanted):
+        language = VARIANTS[name]
+        if not isinstance(language, RenderedLanguage):
+            continue
+        why = language.missing()
+        if why is not None:
+            code, said = "E0949", f"`{name}` cannot be run: {why}"
+            left, hint = f"{name} is left out: {why}", f"leave out `--variants {name}`"
+        elif arguments.constrain:
+            code, said = "E0950", f"--constrain has no grammar for `{name}`"
+            left, hint = (
+                f"{name} is left out: --constrain has the grammar of AIDL alone",
+                "leave --constrain out",
+            )
+        else:
+            continue
+        wanted.remove(name)
         if not wanted:
-            raise UseError("E0949", "`openscad` is not installed", "leave out `--variants openscad`")
-        say("openscad is left out: it is not installed")
-    if _OPENSCAD in wanted and arguments.constrain:
-        wanted.remove(_OPENSCAD)
-        if not wanted:
-            raise UseError("E0950", "--constrain has no grammar for `openscad`", "leave --constrain out")
-        say("openscad is left out: --constrain has the grammar of AIDL alone")
+            raise UseError(code, said, hint)
+        say(left)
     return tuple(wanted)
 
 

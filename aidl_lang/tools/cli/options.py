@@ -29,7 +29,7 @@ def add_variant(parser: argparse._ActionsContainer) -> None:
         type=_variant,
         default="full",
         metavar="NAME",
-        help="the language, or a subset of it: full (the default), no-hierarchy, no-constraints",
+        help="the language, or a subset of it: full (the default), no-hierarchy, no-constraints, paper",
     )
 
 

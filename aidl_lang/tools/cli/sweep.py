@@ -165,7 +165,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang.tools.sweeping.starting import opened, reproducing
     from aidl_lang.tools.sweeping.working import Making
 
-    settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
+    settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
     bundle, world, knobs = opened(source, files.world(arguments.file), settings)
     plan = _plan(arguments, knobs)
     words = said(arguments)

@@ -13,13 +13,14 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import field
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from aidl_lang.common.records import record
-from aidl_lang.tools.evaluation.store import Store, digest, picture_path
+from aidl_lang.tools.evaluation.store import Store, digest, neutral_path, picture_path
 
 MODEL = "ViT-B-32-quickgelu"
 PRETRAINED = "openai"
@@ -35,6 +36,8 @@ class Scores:
 
     of: Mapping[str, float]
     reason: str | None = None
+    neutral: Mapping[str, float] = field(default_factory=dict)
+    """The same of the pictures in the style that all languages share."""
 
 
 class Unavailable(Exception):  # noqa: N818 (that nothing is measured is no error)
@@ -100,17 +103,17 @@ def score_all(
         return Scores({}, str(reason))
     name = f"{model}, {Path(weights).name if weights else PRETRAINED}"
     kept = _kept(store.folder / "clip.json", name)
-    found, now = dict[str, float](), dict[str, float]()
+    found, neutral, now = dict[str, float](), dict[str, float](), dict[str, float]()
     for each in records:
         key = f"{each['prompt']}/{each['variant']}/{each['run']}"
-        picture = store.folder / picture_path(key)
-        if not each.get("ok") or not picture.is_file():
-            continue
-        png, text = picture.read_bytes(), words(each["text"])
-        content = digest(f"{text}\n{png.hex()}")
-        now[content] = found[key] = kept[content] if content in kept else score(png, text)
+        for path, scores in ((picture_path(key), found), (neutral_path(key), neutral)):
+            picture = store.folder / path
+            if each.get("ok") and picture.is_file():
+                png, text = picture.read_bytes(), words(each["text"])
+                content = digest(f"{text}\n{png.hex()}")
+                now[content] = scores[key] = kept[content] if content in kept else score(png, text)
     store.write("clip.json", (json.dumps({"model": name, "scores": now}, indent=1) + "\n").encode())
-    return Scores(found)
+    return Scores(found, None, neutral)
 
 
 def _kept(path: Path, name: str) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 
 from aidl_lang import pipeline
@@ -11,9 +11,13 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.ends.values import Value, allowed, rounded
-from aidl_lang.tools.evaluation import openscad
+from aidl_lang.tools.evaluation.regions import Regions, of_drawing
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage
+from aidl_lang.tools.evaluation.requirements import Prompt, Status, examine_regions
+from aidl_lang.tools.llm.aidl import Aidl
+from aidl_lang.tools.llm.language import Language
 
-SHARES = (-0.3, -0.1, 0.1, 0.3)
+SHARES = (-0.25, -0.1, 0.1, 0.25)
 """Changes of a number, as shares of its value."""
 _KNOBS = 25
 """Most knobs of a program that are tried."""
@@ -35,6 +39,8 @@ class Edit:
     knob: str
     value: Value
     outcome: EditOutcome
+    holds: bool = False
+    """The program still is valid, and draws what meets each requirement on geometry that was met before."""
 
 
 @record()
@@ -47,33 +53,62 @@ class Edits:
     skipped: int = 0
 
 
-def of_aidl(source: SourceFile) -> Edits:
+def compiled(language: Language, source: SourceFile, params: Mapping[str, Value] | None = None) -> Compiled:
+    """Compiles a program in its subset of the language."""
+    assert isinstance(language, Aidl)
+    return pipeline.compile(source, params=params, settings=pipeline.Settings.of(language.variant))
+
+
+def of_aidl(language: Language, source: SourceFile, prompt: Prompt) -> Edits:
     """Edits the `param`s of a valid program."""
-    before = pipeline.compile(source)
-    changed = _changed(before)
+    before = compiled(language, source)
+    changed, met = _changed(before), _met(prompt, _drawn(before))
     edits, narrowed, skipped = list[Edit](), 0, max(0, len(before.knobs) - _KNOBS)
     for knob in before.knobs[:_KNOBS]:
         values, cut = turned(knob)
         narrowed += cut
         skipped += not values
         for value in values:
-            after = pipeline.compile(source, params={knob.path: value})
-            edits.append(Edit(knob.path, value, _outcome(after, changed)))
+            after = compiled(language, source, {knob.path: value})
+            outcome = _outcome(after, changed)
+            is_valid = outcome in (EditOutcome.KEPT, EditOutcome.CHANGED)
+            holds = is_valid and met <= _met(prompt, _drawn(after))
+            edits.append(Edit(knob.path, value, outcome, holds))
     return Edits(len(before.knobs), tuple(edits), narrowed, skipped)
 
 
-def of_openscad(program: str) -> Edits:
-    """Edits the top-level variables that are numbers."""
-    knobs = openscad.knobs(program)
-    edits = [
-        Edit(
-            name, value, EditOutcome.KEPT if openscad.render(program, {name: value}).ok else EditOutcome.EMPTY
-        )
+def of_rendered(language: RenderedLanguage, program: str, prompt: Prompt) -> Edits:
+    """Edits the numbers of a valid program in another language."""
+    knobs = language.knobs(program)
+    tried = [
+        (name, value)
         for name, written in list(knobs.items())[:_KNOBS]
         for value in dict.fromkeys(_whole(aim, written) for aim in _numbers(written))
         if value != written
     ]
+    before, *after = language.run(program, [{}, *({name: value} for name, value in tried)])
+    met = _met(prompt, before.regions)
+    edits = [
+        Edit(
+            name,
+            value,
+            EditOutcome.KEPT if rendered.ok else EditOutcome.EMPTY,
+            rendered.ok and met <= _met(prompt, rendered.regions),
+        )
+        for (name, value), rendered in zip(tried, after, strict=True)
+    ]
     return Edits(len(knobs), tuple(edits), 0, max(0, len(knobs) - _KNOBS))
+
+
+def _drawn(compiled: Compiled) -> Regions:
+    assert compiled.model is not None
+    assert compiled.drawing is not None
+    return of_drawing(compiled.model, compiled.drawing)
+
+
+def _met(prompt: Prompt, drawn: Regions) -> frozenset[str]:
+    """Returns the requirements on geometry that a drawing meets."""
+    return frozenset(r.text for r in examine_regions(prompt, drawn) if r.status is Status.MET)
 
 
 def turned(knob: Knob) -> tuple[list[Value], int]:

@@ -5,61 +5,70 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 
-from aidl_lang import pipeline
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.export import Options
-from aidl_lang.geometry.boolean import united
-from aidl_lang.geometry.region import Region
-from aidl_lang.tools.evaluation import editability, openscad, shapes
+from aidl_lang.tools.evaluation import editability, pictures, shapes
 from aidl_lang.tools.evaluation.editability import Edits
-from aidl_lang.tools.evaluation.requirements import Prompt, Result, examine
+from aidl_lang.tools.evaluation.plan import VARIANTS
+from aidl_lang.tools.evaluation.regions import Regions, of_drawing
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage
+from aidl_lang.tools.evaluation.requirements import Prompt, Result, examine, examine_regions
 from aidl_lang.tools.evaluation.whole import pieces
 from aidl_lang.tools.llm.aidl import counted
-
-OPENSCAD = "openscad"
+from aidl_lang.tools.llm.language import Language
 
 
 @record()
 class DrawnProgram:
-    """`numbers` holds measures of the language's programs only; `requirements` is empty if none are
-    examined.
+    """`png` is in the language's own style, `neutral` in the one style of all; `numbers` holds what is
+    counted in the program.
     """
 
     png: bytes
+    neutral: bytes
     numbers: Mapping[str, float] = field(default_factory=dict)
     requirements: tuple[Result, ...] = ()
 
 
 def draw(variant: str, program: str, prompt: Prompt) -> DrawnProgram:
     """Draws and measures a valid program."""
-    return _draw_openscad(program) if variant == OPENSCAD else _draw_aidl(program, prompt)
+    language = VARIANTS[variant]
+    if isinstance(language, RenderedLanguage):
+        return _draw(language, program, prompt)
+    return _draw_aidl(language, program, prompt)
 
 
-def _draw_aidl(program: str, prompt: Prompt) -> DrawnProgram:
+def _draw_aidl(language: Language, program: str, prompt: Prompt) -> DrawnProgram:
     source = SourceFile("part.aidl", program)
-    compiled = pipeline.compile(source)
+    compiled = editability.compiled(language, source)
     model, drawing = compiled.model, compiled.drawing
     if model is None or drawing is None:
         raise ValueError("the program was judged valid, and is not")
-    numbers = counted(model) | {"detached": _detached(united(*(body.region for body in drawing.bodies)))}
+    drawn = of_drawing(model, drawing)
+    numbers = counted(model) | _counted(drawn)
     png = compiled.export(".png", Options(pixels=shapes.PIXELS))
-    return DrawnProgram(png, numbers, examine(prompt, source, compiled))
+    return DrawnProgram(png, pictures.neutral(drawn), numbers, examine(prompt, source, compiled))
 
 
-def _draw_openscad(program: str) -> DrawnProgram:
-    drawn = shapes.region(openscad.render(program).outlines)
-    numbers = {"structures": float(openscad.structures(program)), "detached": _detached(drawn)}
-    return DrawnProgram(shapes.png(drawn), numbers)
+def _draw(language: RenderedLanguage, program: str, prompt: Prompt) -> DrawnProgram:
+    (rendered,) = language.run(program)
+    if not rendered.ok:
+        raise ValueError(f"the program was judged valid, and is not: {rendered.errors[0]}")
+    drawn = rendered.regions
+    numbers = {"structures": float(language.structures(program)), **_counted(drawn)}
+    requirements = examine_regions(prompt, drawn)
+    return DrawnProgram(pictures.colored(drawn), pictures.neutral(drawn), numbers, requirements)
 
 
-def _detached(drawn: Region) -> float:
+def _counted(drawn: Regions) -> dict[str, float]:
     """Counts the pieces beyond the first."""
-    return max(0.0, pieces(drawn) - 1)
+    return {"detached": max(0.0, pieces(drawn.whole) - 1)}
 
 
-def edit(variant: str, program: str) -> Edits:
+def edit(variant: str, program: str, prompt: Prompt) -> Edits:
     """Tries edits of a valid program's knobs."""
-    if variant == OPENSCAD:
-        return editability.of_openscad(program)
-    return editability.of_aidl(SourceFile("part.aidl", program))
+    language = VARIANTS[variant]
+    if isinstance(language, RenderedLanguage):
+        return editability.of_rendered(language, program, prompt)
+    return editability.of_aidl(language, SourceFile("part.aidl", program), prompt)

@@ -7,39 +7,23 @@ import resource
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Mapping
-from dataclasses import field
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from aidl_lang.common.colors import hexadecimal
 from aidl_lang.common.records import record
-from aidl_lang.tools.llm.language import Verdict
-
-Polygon = NDArray[np.float64]
-"""Corners in order, shape (n, 2), mm, y up."""
+from aidl_lang.tools.evaluation import rendering
+from aidl_lang.tools.evaluation.regions import Part, Regions, of_outlines
+from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered, RenderedConversation
 
 COMMAND = "openscad"
-_SECONDS = 30
-_MEMORY, _OUTPUT = 2 << 30, 32 << 20
-_SHOWN = 8
-"""Most messages that the model is shown."""
-
-_GUIDE = """\
-You write OpenSCAD programs that draw flat parts. Lengths are millimetres, x runs to the right, y upwards.
-
-- The drawing is flat: use `circle`, `square`, `polygon`, `text`, moved by `translate`, `rotate`, `scale`,
-  `mirror`, joined by `union`, `difference`, `intersection`, `hull`, `minkowski` and `offset`. No solids.
-- Give what somebody may want to change a name at the top of the file, as `width = 80;`, and compute from it.
-- Write a `module` for each part that has a meaning, and call it where the part belongs.
-- Use no files: neither `include` nor `use`, `import` or `surface`.
-
-Answer with the whole program in one block that opens with ```openscad.
-"""
-_WHOLE = "answer with the whole program in one block that opens with ```openscad."
-_WRONG = f"Mend this without leaving out any part of the drawing, and {_WHOLE}"
-_VALID = f"The program draws something. If what is said above is not meant so, change it; {_WHOLE}"
+_MOST = 48
+"""Most parts that a drawing is taken apart into."""
+_TREE = 4 << 20
+"""Characters of a tree above which it is not taken apart."""
 
 _MESSAGE = re.compile(r"^(ERROR|WARNING|TRACE|DEPRECATED): *(.*)$", re.M)
 _PLACE = re.compile(r",? in file [^,\n]*, line (\d+)")
@@ -47,69 +31,40 @@ _OUTLINE = re.compile(r'<path d="([^"]*)"')
 _CORNER = re.compile(r"([^\s,MLz]+),([^\s,MLz]+)")
 _PLAIN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\])*"', re.S)
 _FILES = re.compile(r"\b(?:include|use)\s*<|\b(?:import\w*|surface|dxf_\w+)\s*\(|\bfile\s*=")
+_AROUND = re.compile(r"(group\(\)|color\(|multmatrix\()")
+_COLOR = re.compile(r"color\(\[([\d.e-]+), ([\d.e-]+), ([\d.e-]+), [\d.e-]+\]\)")
 _MODULE = re.compile(r"\bmodule\s+\w+")
 _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*\Z")
 
 
 @record()
-class Rendered:
-    """The result of a program: closed outlines, holes among them, and messages, errors first."""
-
-    outlines: tuple[Polygon, ...] = ()
-    errors: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def ok(self) -> bool:
-        return not self.errors
-
-
-@record()
 class OpenScad:
-    """The language. `is_installed` tells whether its programs can be judged here."""
-
     name: str = "openscad"
     suffix: str = ".scad"
     fences: tuple[str, ...] = ("openscad", "scad")
 
-    @property
-    def is_installed(self) -> bool:
-        return shutil.which(COMMAND) is not None
+    def missing(self) -> str | None:
+        return None if shutil.which(COMMAND) else "it is not installed"
 
     def guide(self) -> str:
-        return _GUIDE
+        return rendering.guide(self.name)
 
     def reads(self, text: str) -> bool:
-        return render(text).ok
+        return self.run(text, parted=False)[0].ok
 
-    def conversation(self, before: str | None = None) -> OpenScadConversation:
-        return OpenScadConversation()
+    def conversation(self, before: str | None = None) -> RenderedConversation:
+        return RenderedConversation(self)
 
+    def structures(self, program: str) -> int:
+        return structures(program)
 
-@record(frozen=False)
-class OpenScadConversation:
-    """Judges each program by itself; a remark is made once."""
+    def knobs(self, program: str) -> Mapping[str, float]:
+        return knobs(program)
 
-    told: set[str] = field(default_factory=set)
-
-    def judge(self, program: str) -> Verdict:
-        rendered = render(program)
-        said = "\n".join((*rendered.errors, *rendered.warnings)[:_SHOWN])
-        if rendered.ok and said in self.told:
-            said = ""
-        self.told.add(said)
-        return Verdict(
-            ok=rendered.ok,
-            stage="done" if rendered.ok else "render",
-            feedback=f"{said}\n\n{_VALID if rendered.ok else _WRONG}" if said else "",
-            program=program,
-            codes=tuple(re.split(r" \(|:", error)[0] for error in rendered.errors),
-            weight=(int(not rendered.ok), len(rendered.errors), len(rendered.warnings)),
-            numbers={"structures": structures(program), "warnings": len(rendered.warnings)},
-        )
-
-    def finish(self, verdict: Verdict) -> Verdict:
-        return verdict
+    def run(
+        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
+    ) -> list[Rendered]:
+        return [(_parted if parted else render)(program, edit) for edit in edits]
 
 
 def structures(program: str) -> int:
@@ -131,7 +86,8 @@ def knobs(program: str) -> dict[str, float]:
 
 
 def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
-    """Run a program, with other values for some of its variables. It is kept from reading files.
+    """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
+    is kept from reading files.
 
     The limits on time, memory and output are set in the process that is started: call this where no other
     thread runs.
@@ -140,35 +96,122 @@ def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
         return Rendered(
             errors=("error: files cannot be read: do without `include`, `use`, `import` and `surface`",)
         )
+    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
+    code, text, drawn = _called(program, "drawing.svg", values)
+    if code is None:
+        return Rendered(errors=(f"error: rendering took longer than {rendering.SECONDS} s",))
+    errors, warnings = _messages(text)
+    if code:
+        return Rendered(errors=errors or (_failure(code, text),), warnings=warnings)
+    return _outlined(drawn, errors, warnings)
+
+
+def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int | None, str, str]:
+    """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
     with tempfile.TemporaryDirectory() as folder:
-        drawing, said = Path(folder, "drawing.svg"), Path(folder, "said")
+        drawing, said = Path(folder, output), Path(folder, "said")
         Path(folder, "program.scad").write_text(program, "utf-8", errors="replace")
-        values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
         try:
-            with open(said, "wb") as output:
+            with open(said, "wb") as file:
                 code = subprocess.run(
-                    [COMMAND, "-o", drawing.name, *values, "program.scad"],
+                    [COMMAND, "-o", output, *values, "program.scad"],
                     cwd=folder,
                     env={"HOME": folder, "PATH": "/usr/local/bin:/usr/bin:/bin", "OPENSCADPATH": folder},
                     stdin=subprocess.DEVNULL,
-                    stdout=output,
+                    stdout=file,
                     stderr=subprocess.STDOUT,
-                    timeout=_SECONDS,
+                    timeout=rendering.SECONDS,
                     preexec_fn=_limit,
                 ).returncode
         except subprocess.TimeoutExpired:
-            return Rendered(errors=(f"error: rendering took longer than {_SECONDS} s",))
-        text = said.read_bytes()[: _OUTPUT // 32].decode("utf-8", "replace")
-        errors, warnings = _messages(text)
-        if code:
-            return Rendered(errors=errors or (_failure(code, text),), warnings=warnings)
-        return _outlined(drawing.read_text("utf-8"), errors, warnings)
+            return None, "", ""
+        text = said.read_bytes()[: rendering.OUTPUT // 32].decode("utf-8", "replace")
+        return code, text, "" if code or not drawing.exists() else drawing.read_text("utf-8")
+
+
+def _parted(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
+    """Runs a program as `render` does, and draws what stands side by side in it as parts of their own, in
+    the order of writing: OpenSCAD itself unites them and drops their colours.
+    """
+    whole = render(program, knobs)
+    if not whole.ok:
+        return whole
+    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
+    code, _, tree = _called(program, "tree.csg", values)
+    pieces = parts(tree) if code == 0 and len(tree) <= _TREE else []
+    if len(pieces) < 2:
+        color = pieces[0].color if pieces else None
+        return replace(whole, regions=Regions(tuple(replace(p, color=color) for p in whole.regions.parts)))
+    found = list[Part]()
+    for piece in pieces:
+        drawn = render(piece.text)
+        found += [replace(part, color=piece.color) for part in drawn.regions.parts]
+    return replace(whole, regions=Regions(tuple(found)))
+
+
+@record()
+class Piece:
+    """A subtree that stands beside others; `text` draws it alone."""
+
+    text: str
+    color: str | None
+
+
+def parts(tree: str) -> list[Piece]:
+    """Returns the subtrees of a tree (as OpenSCAD writes it) that stand side by side: what groups, moves and
+    colours hold, down to the first operation on shapes. Where they are too many, those of a level further up.
+    """
+    lines = [line.strip() for line in tree.splitlines() if line.strip()]
+    level = [_Node(tuple(lines), "", "", None)] if lines else []
+    while (finer := [inner for node in level for inner in _opened(node)]) != level and len(finer) <= _MOST:
+        level = finer
+    return [Piece(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
+
+
+@record()
+class _Node:
+    """Lines of a tree that belong together, within opening and closing ones of moves around it."""
+
+    lines: tuple[str, ...]
+    before: str
+    after: str
+    color: str | None
+
+
+def _opened(node: _Node) -> list[_Node]:
+    """Returns what a node holds side by side; itself, if that is one shape."""
+    statements = _statements(node.lines)
+    if len(statements) > 1:
+        return [replace(node, lines=lines) for lines in statements]
+    head = node.lines[0]
+    if not _AROUND.match(head):
+        return [node]
+    if len(node.lines) < 3:
+        return []  # an empty group
+    inner = node.lines[1:-1]
+    if head.startswith("multmatrix"):
+        return [_Node(inner, f"{node.before}{head}\n", f"\n}}{node.after}", node.color)]
+    named = _COLOR.match(head)
+    color = node.color or (hexadecimal([255 * float(part) for part in named.groups()]) if named else None)
+    return [_Node(inner, node.before, node.after, color)]
+
+
+def _statements(lines: Sequence[str]) -> list[tuple[str, ...]]:
+    """Returns lines by statement: each ends where its braces are closed."""
+    found, start, depth = list[tuple[str, ...]](), 0, 0
+    for number, line in enumerate(lines):
+        bare = _PLAIN.sub("", line)
+        depth += bare.count("{") - bare.count("}")
+        if depth == 0:
+            found.append(tuple(lines[start : number + 1]))
+            start = number + 1
+    return found
 
 
 def _limit() -> None:
-    resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS, _SECONDS))
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (_OUTPUT, _OUTPUT))
+    resource.setrlimit(resource.RLIMIT_CPU, (rendering.SECONDS,) * 2)
+    resource.setrlimit(resource.RLIMIT_AS, (rendering.MEMORY,) * 2)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (rendering.OUTPUT,) * 2)
 
 
 def _bare(program: str) -> str:
@@ -194,7 +237,7 @@ def _failure(code: int, text: str) -> str:
         return f"error: OpenSCAD was stopped (signal {-code}): it took too much time, memory or room"
     if "3D object" in text:
         return "error: the drawing must be flat, not a solid: do without extrusion, `cube`, `sphere` …"
-    return "error: nothing is drawn"
+    return NOTHING
 
 
 def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> Rendered:
@@ -205,7 +248,7 @@ def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> R
         if "," in part
     ]
     if not outlines:
-        return Rendered(errors=(*errors, "error: nothing is drawn"), warnings=warnings)
+        return Rendered(errors=(*errors, NOTHING), warnings=warnings)
     if not all(np.isfinite(outline).all() for outline in outlines):
         return Rendered(errors=(*errors, "error: a coordinate is not a finite number"), warnings=warnings)
-    return Rendered(tuple(outlines), errors, warnings)
+    return Rendered(of_outlines([(outlines, None)]), errors, warnings)

@@ -3,19 +3,74 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from aidl_lang.checking.variants import Variant
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.openscad import OpenScad
+from aidl_lang.tools.evaluation.python_cad import PythonCad
 from aidl_lang.tools.evaluation.requirements import Prompt
+from aidl_lang.tools.evaluation.svg import Svg
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.generation import Settings
-from aidl_lang.tools.llm.language import Language
+from aidl_lang.tools.llm.language import Conversation, Language
 
 VARIANTS: dict[str, Language] = {
     **{str(variant): Aidl(variant) for variant in Variant},
     "openscad": OpenScad(),
+    "build123d": PythonCad("build123d"),
+    "cadquery": PythonCad("cadquery"),
+    "svg": Svg(),
+}
+"""All languages by name. To add one, see `rendering.RenderedLanguage`."""
+
+
+@record()
+class Switches:
+    """The help that a conversation has. Without a guide a model is told the name of the language alone."""
+
+    guide: bool = True
+    mends: bool = True
+    recovers: bool = True
+    plans: bool = True
+
+
+@record()
+class Guideless:
+    """A language without its guide."""
+
+    language: Language
+
+    @property
+    def name(self) -> str:
+        return self.language.name
+
+    @property
+    def suffix(self) -> str:
+        return self.language.suffix
+
+    @property
+    def fences(self) -> tuple[str, ...]:
+        return self.language.fences
+
+    def guide(self) -> str:
+        name = _NAMES.get(self.name, "AIDL")
+        fence = self.fences[0]
+        block = f"Answer with the whole program in one ```{fence} block."
+        return f"You write programs in {name} that draw flat parts. {block}\n"
+
+    def reads(self, text: str) -> bool:
+        return self.language.reads(text)
+
+    def conversation(self, before: str | None = None) -> Conversation:
+        return self.language.conversation(before)
+
+
+_NAMES = {
+    "openscad": "OpenSCAD",
+    "build123d": "Python with build123d",
+    "cadquery": "Python with CadQuery",
+    "svg": "SVG",
 }
 
 
@@ -40,6 +95,14 @@ class Plan:
     variants: tuple[str, ...]
     runs: int
     settings: Settings
+    switches: Switches = field(default_factory=Switches)
+
+    def language(self, variant: str) -> Language:
+        """Returns a language with the help that this plan gives."""
+        language, on = VARIANTS[variant], self.switches
+        if isinstance(language, Aidl):
+            language = replace(language, mends=on.mends, recovers=on.recovers, plans=on.plans)
+        return language if on.guide else Guideless(language)
 
     def jobs(self) -> Iterator[Job]:
         """Yields all jobs, the first run of everything first."""

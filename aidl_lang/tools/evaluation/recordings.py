@@ -326,7 +326,7 @@ def plan(recorded: Sequence[Recorded], known: Iterable[Prompt], settings: Settin
         tuple(name for name in VARIANTS if name in used),
         max(conversation.job.run for conversation in recorded),
         settings,
-        tuple(recorded),
+        recorded=tuple(recorded),
     )
 
 

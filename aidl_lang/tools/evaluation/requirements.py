@@ -27,11 +27,13 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.explaining.outcome import assertion_note, measured
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, SolvedModel
 from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled, front
 from aidl_lang.syntax import ast
+from aidl_lang.tools.evaluation.regions import Regions, of_drawing
 from aidl_lang.tools.evaluation.roles import Role, bind
 from aidl_lang.tools.evaluation.things import Thing, origins
 from aidl_lang.tools.evaluation.whole import MEASURES
@@ -61,6 +63,11 @@ class Requirement:
     start: int
     """offset of the condition in the prompt"""
 
+    @property
+    def is_geometric(self) -> bool:
+        """True if it names no role, so that it can be asked of a drawing in any language."""
+        return not self.roles
+
 
 @record()
 class Prompt:
@@ -80,6 +87,8 @@ class Result:
     text: str
     status: Status
     detail: str = ""
+    is_geometric: bool = False
+    """It is asked of the drawing as a whole, in any language."""
 
 
 class PromptError(Exception):
@@ -175,7 +184,7 @@ def examine(prompt: Prompt, source: SourceFile, compiled: Compiled) -> tuple[Res
 
 
 def _all(prompt: Prompt, why: str) -> tuple[Result, ...]:
-    return tuple(Result(r.text, Status.UNMEASURABLE, why) for r in prompt.requirements)
+    return tuple(Result(r.text, Status.UNMEASURABLE, why, r.is_geometric) for r in prompt.requirements)
 
 
 @record()
@@ -185,23 +194,87 @@ class _MissingError(Exception):
     why: str
 
 
+def examine_regions(prompt: Prompt, drawn: Regions) -> tuple[Result, ...]:
+    """Examines what a program of any language draws, and returns one result for each requirement that is
+    asked of the whole drawing.
+    """
+    asked, _ = _built(prompt.source, {})
+    whole = next((child for child in asked.root.children if child.name == WHOLE), None)
+    values = dict(_measured_values(asked, drawn))
+    if whole is not None:
+        values |= dict(_box_values(whole, Box(*region_bounds(drawn.whole)) if drawn.whole else None))
+    evaluate = Evaluator(values, lambda payload: math.nan)
+    judge = _Judge(evaluate, _by_start(asked))
+    return tuple(judge.result(r) for r in prompt.requirements if r.is_geometric)
+
+
+def _by_start(asked: Model) -> dict[int, list[Assertion]]:
+    found: dict[int, list[Assertion]] = {}
+    for assertion in asked.assertions:
+        found.setdefault(assertion.span.start, []).append(assertion)
+    return found
+
+
+def _measured_values(asked: Model, drawn: Regions) -> Iterator[tuple[Unknown, float]]:
+    """Yields the measures of the whole drawing that a prompt has."""
+    for unknown in asked.unknowns:
+        if unknown.holder is asked.root and unknown.field in MEASURES:
+            yield unknown, MEASURES[unknown.field](drawn)
+
+
+def _box_values(placeholder: Structure, box: Box | None) -> Iterator[tuple[Unknown, float]]:
+    """Yields the sides of a role's box; NaN without one."""
+    assert placeholder.plan is not None
+    box = box or Box(*(math.nan,) * 4)
+    for side, value in zip(placeholder.plan, (box.left, box.bottom, box.width, box.height), strict=True):
+        assert isinstance(side.payload, Unknown)
+        yield side.payload, value
+
+
+@record()
+class _Judge:
+    """Says what holds, given the values of a prompt's unknowns."""
+
+    evaluate: Evaluator
+    assertions: Mapping[int, Sequence[Assertion]]
+
+    def result(self, requirement: Requirement, told: str = "") -> Result:
+        """Returns the result of a requirement; `told` is what a failure is told with."""
+        known = requirement.is_geometric
+        try:
+            failures = [self._failure(a) for a in self.assertions.get(requirement.start, ())]
+        except _MissingError as missing:
+            return Result(requirement.text, Status.UNMEASURABLE, missing.why, known)
+        if failed := next(filter(None, failures), None):
+            return Result(requirement.text, Status.FAILED, failed + told, known)
+        return Result(requirement.text, Status.MET, "", known)
+
+    def _failure(self, assertion: Assertion) -> str | None:
+        comparisons = assertion.condition.comparisons() if isinstance(assertion.condition, Condition) else ()
+        for comparison in comparisons:
+            if not all(math.isfinite(self.evaluate(side)) for side in (comparison.left, comparison.right)):
+                raise _MissingError(f"nothing is drawn of which `{assertion.text}` could be asked")
+        note = assertion_note(assertion, self.evaluate)
+        if note is not None and assertion.condition is False:
+            return f"`{assertion.text}` is false"
+        return None if note is None else note.label
+
+
 class _Examination:
-    """The examination of one program for one prompt."""
+    """The examination of one program of AIDL for one prompt."""
 
     def __init__(self, prompt: Prompt, model: SolvedModel, drawing: Drawing, program: ast.Module) -> None:
         self.prompt, self.model, self.drawing = prompt, model, drawing
+        self.drawn = of_drawing(model, drawing)
         self.bound = bind(prompt.roles, model, drawing, origins(program))
         counts = {
             f"{name}{_COUNT}": float(count if low <= (count := len(self.bound[name])) <= high else low)
             for name, (low, high) in prompt.ranges.items()
         }
         asked, _ = _built(prompt.source, counts)
-        self.assertions: dict[int, list[Assertion]] = {}
-        for assertion in asked.assertions:
-            self.assertions.setdefault(assertion.span.start, []).append(assertion)
         self.things = {s: thing for s in asked.root.children if (thing := self._thing(s)) is not None}
         self.regions: dict[Structure, Region] = {}
-        self.evaluate = Evaluator(dict(self._values(asked)), self._measure)
+        self.judge = _Judge(Evaluator(dict(self._values(asked)), self._measure), _by_start(asked))
 
     @cached_property
     def whole(self) -> Region:
@@ -220,16 +293,9 @@ class _Examination:
         value.
         """
         for placeholder, thing in self.things.items():
-            assert placeholder.plan is not None
-            nothing = Box(*(math.nan,) * 4)
-            box = thing.box(lambda of=placeholder: self._region(of)) or nothing  # type: ignore[misc]
-            sides = (box.left, box.bottom, box.width, box.height)
-            for side, value in zip(placeholder.plan, sides, strict=True):
-                assert isinstance(side.payload, Unknown)
-                yield side.payload, value
-        for unknown in asked.unknowns:
-            if unknown.holder is asked.root and unknown.field in MEASURES:
-                yield unknown, MEASURES[unknown.field](self.whole)
+            box = thing.box(lambda of=placeholder: self._region(of))  # type: ignore[misc]
+            yield from _box_values(placeholder, box)
+        yield from _measured_values(asked, self.drawn)
 
     def _region(self, placeholder: Structure) -> Region:
         if placeholder not in self.regions:
@@ -249,14 +315,8 @@ class _Examination:
 
     def result(self, requirement: Requirement) -> Result:
         if why := next(filter(None, map(self._unusable, requirement.roles)), None):
-            return Result(requirement.text, Status.UNMEASURABLE, why)
-        try:
-            told = [self._failure(a) for a in self.assertions.get(requirement.start, ())]
-        except _MissingError as missing:
-            return Result(requirement.text, Status.UNMEASURABLE, missing.why)
-        if failed := next(filter(None, told), None):
-            return Result(requirement.text, Status.FAILED, failed + self._bindings(requirement))
-        return Result(requirement.text, Status.MET)
+            return Result(requirement.text, Status.UNMEASURABLE, why, requirement.is_geometric)
+        return self.judge.result(requirement, self._bindings(requirement))
 
     def _unusable(self, role: str) -> str | None:
         """Returns the reason why the things of a role cannot be measured."""
@@ -269,16 +329,6 @@ class _Examination:
             return f"{found} of `{role}` were found, and {high} at most are looked at"
         buried = next((thing for thing in self.bound[role] if thing.is_buried), None)
         return f"`{buried.path}` is inside other material and is not to be seen" if buried else None
-
-    def _failure(self, assertion: Assertion) -> str | None:
-        comparisons = assertion.condition.comparisons() if isinstance(assertion.condition, Condition) else ()
-        for comparison in comparisons:
-            if not all(math.isfinite(self.evaluate(side)) for side in (comparison.left, comparison.right)):
-                raise _MissingError(f"nothing is drawn of which `{assertion.text}` could be asked")
-        note = assertion_note(assertion, self.evaluate)
-        if note is not None and assertion.condition is False:
-            return f"`{assertion.text}` is false"
-        return None if note is None else note.label
 
     def _bindings(self, requirement: Requirement) -> str:
         """Describes the things bound to the roles of a requirement."""

@@ -196,7 +196,8 @@ class _Search:
     def _members(self, found: SolvedStructure) -> Iterator[Thing]:
         """Yields the members of a structure named in the plural, or as a group."""
         last = re.split(r"[_\d\W]+", found.name.casefold().strip("_]0123456789["))[-1]
-        is_group = self.role.many and (_singular(last) != last or last in _GENERIC)
+        is_member = found.name.endswith("]")  # `drivers[0]` is one of them
+        is_group = self.role.many and not is_member and (_singular(last) != last or last in _GENERIC)
         inner = [thing for _, thing in self._structures(found)] if is_group else []
         if len(inner) > 1:
             yield from inner

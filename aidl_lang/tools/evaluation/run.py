@@ -11,7 +11,7 @@ from dataclasses import asdict, field
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation import measures, store
-from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
+from aidl_lang.tools.evaluation.plan import Job, Plan
 from aidl_lang.tools.evaluation.recordings import Replay
 from aidl_lang.tools.evaluation.store import Record, Store
 from aidl_lang.tools.evaluation.worker import SECONDS, Broken, Remote, Worker
@@ -48,6 +48,7 @@ class _Result:
     job: Job
     record: Record
     png: bytes | None = None
+    neutral: bytes | None = None
     failure: Diagnostic | None = None
     bug: BaseException | None = None
 
@@ -112,7 +113,7 @@ def _gather(
         number += 1
         if result.bug is not None:
             raise result.bug
-        kept.keep(result.job, result.record, result.png)
+        kept.keep(result.job, result.record, result.png, result.neutral)
         if result.failure is None:
             done, in_a_row = done + 1, 0
         else:
@@ -141,7 +142,7 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
     prompt = crew.plan.prompt(job)
     if record is None:
         assert crew.provider is not None
-        language = Remote(VARIANTS[job.variant], worker)
+        language = Remote(crew.plan.language(job.variant), worker)
         task, settings = Task(prompt.text), crew.plan.sampled(job)
         provider = crew.provider.of(job) if isinstance(crew.provider, Replay) else crew.provider
         generation = generate(task, provider, language, settings)
@@ -151,17 +152,17 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
     if not record["ok"]:
         return _Result(job, record)
     measured = {**record, "measured": store.measured_with(prompt), "unmeasured": {}}
-    png = None
+    png = neutral = None
     try:
         drawn = worker.call(measures.draw, job.variant, record["program"], prompt)
-        png = drawn.png
+        png, neutral = drawn.png, drawn.neutral
         measured["numbers"] = dict(drawn.numbers)
         measured["requirements"] = [asdict(result) for result in drawn.requirements]
     except Broken as reason:
         measured["unmeasured"]["drawing"] = str(reason)
     try:
-        edits = worker.call(measures.edit, job.variant, record["program"])
+        edits = worker.call(measures.edit, job.variant, record["program"], prompt)
         measured["edits"] = asdict(edits)
     except Broken as reason:
         measured["unmeasured"]["editability"] = str(reason)
-    return _Result(job, measured, png)
+    return _Result(job, measured, png, neutral)

@@ -87,10 +87,11 @@ class Store:
         found.sort(key=lambda item: item[:3])
         return [record for *_, record in found if record is not None]
 
-    def keep(self, job: Job, record: Record, png: bytes | None) -> None:
-        """Writes the picture, then the record that refers to it."""
-        if png is not None:
-            self.write(picture_path(job.key), png)
+    def keep(self, job: Job, record: Record, png: bytes | None, neutral: bytes | None = None) -> None:
+        """Writes the pictures, then the record that refers to them."""
+        for path, drawn in ((picture_path(job.key), png), (neutral_path(job.key), neutral)):
+            if drawn is not None:
+                self.write(path, drawn)
         self.write(_record_path(job), _json(record))
 
     # --- files ------------------------------------------------------------------------------------
@@ -127,6 +128,11 @@ class Store:
 
 def picture_path(key: str) -> str:
     return f"pictures/{key}.png"
+
+
+def neutral_path(key: str) -> str:
+    """Returns where the picture in the style that all languages share is kept."""
+    return f"pictures/{key}.neutral.png"
 
 
 def _record_path(job: Job) -> str:
@@ -221,13 +227,14 @@ def _settings(plan: Plan, provider: str) -> Record:
         "temperature": sampling.temperature,
         "max_tokens": sampling.max_tokens,
         "extra": dict(sampling.extra),
+        "help": asdict(plan.switches),
         **(plan.facts if isinstance(plan, RecordedPlan) else _guides(plan)),
         **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
     }
 
 
 def _guides(plan: Plan) -> Record:
-    return {f"{GUIDE}{name}": digest(VARIANTS[name].guide()) for name in plan.variants}
+    return {f"{GUIDE}{name}": digest(plan.language(name).guide()) for name in plan.variants}
 
 
 def _short(value: object) -> str:

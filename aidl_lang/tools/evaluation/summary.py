@@ -15,6 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.editability import EditOutcome
 from aidl_lang.tools.evaluation.plan import VARIANTS
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 from aidl_lang.tools.evaluation.requirements import Status
 from aidl_lang.tools.evaluation.statistics import (
     Case,
@@ -148,7 +149,9 @@ MEANINGS: Mapping[str, str] = {
     "structures": "per valid program; modules in OpenSCAD",
     "constraints": "per valid program",
     "degrees": "degrees of freedom left, per valid program",
-    "requirements": "requirements of the prompts that hold, of those examined in valid programs",
+    "requirements": "requirements on named parts that hold, of those examined in valid programs of AIDL",
+    "geometry": "requirements on geometry alone that hold, the same in all languages",
+    "edits hold": "edits of knobs after which requirements on geometry that were met before still are",
     "editability": "edits of knobs that solve with everything kept, of those tried in valid programs",
     "knobs": "named numbers to edit, per valid program",
     "detached": "pieces beyond the first that stand apart from all others, per valid program",
@@ -157,6 +160,7 @@ MEANINGS: Mapping[str, str] = {
     "seconds": "until the model's replies were there, per conversation",
     "cost": "of all conversations, in dollars",
     "CLIP": "CLIP score, per valid program",
+    "CLIP neutral": "CLIP score of the picture in the one style of all languages, per valid program",
 }
 
 
@@ -213,7 +217,7 @@ def _cases(figure: Figure) -> tuple[Case, ...]:
 
 def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Figure]:
     valid = [r for r in held if r["ok"]]
-    remembers = [r for r in held if r["variant"] != "openscad"]
+    remembers = [r for r in held if not isinstance(VARIANTS[r["variant"]], RenderedLanguage)]
     edited = [r for r in valid if "edits" in r]
     costs = [r["usage"]["cost"] for r in held]
     return {
@@ -226,9 +230,9 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "structures": _number(valid, "structures"),
         "constraints": _number(valid, "constraints"),
         "degrees": _number(valid, "degrees"),
-        "requirements": Share.of(
-            (_counted(r, r.get("requirements", ()), "status", Status.MET) for r in valid), several=True
-        ),
+        "requirements": Share.of((_met(r, is_geometric=False) for r in valid), several=True),
+        "geometry": Share.of((_met(r, is_geometric=True) for r in valid), several=True),
+        "edits hold": Share.of((_held(r) for r in edited), several=True),
         "editability": Share.of(
             (_counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited), several=True
         ),
@@ -239,6 +243,7 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "seconds": _mean(held, _seconds),
         "cost": Total(sum(c is not None for c in costs), None if None in costs else sum(costs)),
         "CLIP": _mean(valid, lambda r: scores.of.get(_key(r)), scores.reason or ""),
+        "CLIP neutral": _mean(valid, lambda r: scores.neutral.get(_key(r)), scores.reason or ""),
     }
 
 
@@ -248,6 +253,18 @@ def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
 
 def _counted(of: Record, results: Sequence[Record], name: str, wanted: str) -> tuple[str, int, int]:
     return of["prompt"], sum(result[name] == wanted for result in results), len(results)
+
+
+def _met(of: Record, *, is_geometric: bool) -> tuple[str, int, int]:
+    """Returns the prompt of a record, how many requirements of that kind are met, and how many there are."""
+    asked = [x for x in of.get("requirements", ()) if bool(x.get("is_geometric")) == is_geometric]
+    return _counted(of, asked, "status", Status.MET)
+
+
+def _held(of: Record) -> tuple[str, int, int]:
+    """Returns the prompt of a record, how many of its edits hold, and how many were made."""
+    edits = of["edits"]["edits"]
+    return of["prompt"], sum(bool(edit.get("holds")) for edit in edits), len(edits)
 
 
 def _mean(records: Sequence[Record], value: Callable[[Record], float | None], reason: str = "") -> Mean:

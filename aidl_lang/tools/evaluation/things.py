@@ -209,7 +209,9 @@ def outlines(structure: SolvedStructure) -> Iterator[Outline]:
     seen: set[str] = set()
 
     def written(outline: SolvedGeometry) -> SolvedGeometry:
-        while outline.source is not None and outline.source in named:
+        passed = set[str]()  # an array of what has no name is a copy of itself
+        while outline.source is not None and outline.source in named and outline.path not in passed:
+            passed.add(outline.path)
             outline = named[outline.source]
         return outline
 

@@ -22,7 +22,7 @@ from aidl_lang.tools.llm import feedback
 from aidl_lang.tools.llm.intent import Ledger, Loss, request
 from aidl_lang.tools.llm.language import Verdict
 from aidl_lang.tools.llm.messages import Image
-from aidl_lang.tools.mending import mend
+from aidl_lang.tools.mending import Mended, mend
 from aidl_lang.tools.reference.guide import guide
 
 _PIXELS = 512
@@ -55,6 +55,12 @@ class Aidl:
     file: str = "part.aidl"
     suffix: str = ".aidl"
     fences: tuple[str, ...] = ("aidl",)
+    mends: bool = True
+    """Sure fixes are made by the machine."""
+    recovers: bool = True
+    """What a program lost of earlier ones is asked for, and put back in the end."""
+    plans: bool = True
+    """A program with empty structures is a plan, to be continued; else it is taken as it is."""
 
     @property
     def name(self) -> str:
@@ -85,7 +91,7 @@ class AidlConversation:
     asked: Counter[tuple[str, ...]] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        self.settings = pipeline.Settings(variant=self.language.variant)
+        self.settings = pipeline.Settings.of(self.language.variant)
         self.world = self.language.world and Programs(self.language.world)
         self.ledger = Ledger(self.world, self.settings)
 
@@ -95,7 +101,8 @@ class AidlConversation:
         self.ledger.note(source, self._compiled(source))
 
     def judge(self, program: str) -> Verdict:
-        mended = mend(self._source(program), self.world, self.settings)
+        source = self._source(program)
+        mended = mend(source, self.world, self.settings) if self.language.mends else Mended(source, [])
         compiled = self._compiled(mended.source)
         self.ledger.note(mended.source, compiled)
         verdict = self._verdict(mended.source, compiled, mended.fixes)
@@ -111,7 +118,7 @@ class AidlConversation:
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
         self.ledger.note(source, compiled)
-        if compiled.ok:
+        if compiled.ok and self.language.recovers:
             restored = self.ledger.restore(source)
             if restored.items:
                 source = self._source(restored.text)
@@ -132,7 +139,7 @@ class AidlConversation:
         warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
         stage = feedback.stage_of(compiled.diagnostics)
         missing = self.ledger.missing
-        is_partial = compiled.ok and _is_partial(source, compiled)
+        is_partial = self.language.plans and compiled.ok and _is_partial(source, compiled)
         distance = (int(not compiled.ok), -feedback.STAGES.index(stage) if wrong else 0, int(is_partial))
         picture = (Image("image/png", _picture(compiled)),) if is_partial else ()
         return Verdict(
@@ -171,7 +178,7 @@ class AidlConversation:
         """Returns the missing things that were not asked for too often."""
         losses = tuple(
             loss
-            for loss in self.ledger.missing
+            for loss in (self.ledger.missing if self.language.recovers else ())
             if self.asked[_what(loss)] < (1 if loss.is_doubtful else _ASKED)
         )
         self.asked.update(map(_what, losses))

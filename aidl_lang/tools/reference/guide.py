@@ -53,6 +53,8 @@ def guide(variant: Variant = Variant.FULL) -> str:
     """Returns the guide as Markdown. Raises KeyError for a placeholder, variant or topic that does not
     exist.
     """
+    if variant is Variant.PAPER:  # too little of the rest is left to be told together
+        return Path(__file__).with_name("guide_paper.md").read_text("utf-8")
     text = template()
     for block in _BLOCKS:
         text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)

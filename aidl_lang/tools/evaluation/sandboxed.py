@@ -1,0 +1,158 @@
+"""Runs untrusted Python that draws, by an interpreter that has the library; see `sandbox/lock.py`."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from aidl_lang.common.colors import css_color
+from aidl_lang.geometry.curves import Line, Piece
+from aidl_lang.geometry.sections import Polygon
+from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.tools.evaluation import rendering, shapes
+from aidl_lang.tools.evaluation.regions import Part, Regions
+from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered
+
+_HOST = Path(__file__).with_name("sandbox") / "host.py"
+_START = 60
+"""Seconds in which a library must have been loaded."""
+_LARGEST = 1e9
+
+
+def interpreter(library: str) -> str:
+    """Returns the interpreter that has a library: that of `AIDL_LIBRARY_PYTHON`, or else this one."""
+    return os.environ.get(f"AIDL_{library.upper()}_PYTHON") or sys.executable
+
+
+@cache
+def missing(library: str, python: str) -> str | None:
+    """Returns the reason why an interpreter cannot run programs of a library safely; None if it can."""
+    variable = f"AIDL_{library.upper()}_PYTHON"
+    if sys.platform == "win32":
+        return "programs in Python cannot be locked in on Windows"
+    probe = (
+        f"import sys; sys.path.insert(0, {str(_HOST.parent)!r}); import lock; import {library}; "
+        "print(lock.has_filter())"
+    )
+    try:
+        done = subprocess.run(
+            [python, "-I", "-c", probe],
+            capture_output=True,
+            text=True,
+            timeout=_START,
+            stdin=subprocess.DEVNULL,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"`{python}` (of {variable}) cannot be run: {error}"
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
+        return f"{library} is not there ({said[:200]}): name an interpreter that has it by {variable}"
+    if done.stdout.strip() != "True":
+        return "programs in Python are run on Linux alone, on x86-64 or ARM64, where they can be locked in"
+    return None
+
+
+def run(library: str, programs: Sequence[str], seconds: float | None = None) -> list[Rendered]:
+    """Runs programs one after the other, each within the limits of `rendering`."""
+    seconds = rendering.SECONDS if seconds is None else seconds
+    request = {
+        "library": library,
+        "programs": [program.encode("utf-8", "replace").decode() for program in programs],
+        "seconds": seconds,
+        "memory": rendering.MEMORY,
+        "output": rendering.OUTPUT,
+    }
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(
+            [interpreter(library), "-I", "-B", str(_HOST)],
+            cwd=folder,
+            env={
+                "HOME": folder,
+                "PATH": "/usr/bin:/bin",
+                "OMP_NUM_THREADS": "1",
+                "OPENBLAS_NUM_THREADS": "1",
+            },
+            stdin=subprocess.PIPE,
+            stdout=said,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        try:
+            process.communicate(json.dumps(request).encode(), timeout=_START + seconds * len(programs))
+        except subprocess.TimeoutExpired:
+            pass
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        said.seek(0)
+        try:
+            found = json.loads(said.read())
+        except (ValueError, RecursionError):
+            found = [{"kind": "death"}] * len(programs)
+    return [_rendered(each, seconds) for each in found]
+
+
+def _rendered(said: Mapping[str, Any], seconds: float) -> Rendered:
+    """Returns what came of a program; it is strangers' data, and may be anything."""
+    why = {
+        "time": f"error: the program took longer than {seconds:g} s",
+        "memory": f"error: the program took more than {rendering.MEMORY >> 30} GB of memory",
+        "death": "error: the program ended its process: it took too much memory, or crashed the library",
+    }
+    if (kind := said.get("kind")) in why:
+        return Rendered(errors=(why[cast(str, kind)],))
+    errors = said.get("errors")
+    if isinstance(errors, list) and errors:
+        return Rendered(errors=tuple(str(error)[:1000] for error in errors[:20]))
+    try:
+        drawn = _regions(said)
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
+        return Rendered(errors=("error: a coordinate is not a finite number, or too large",))
+    return Rendered(drawn) if drawn else Rendered(errors=(f"{NOTHING}: hand it to `show_object(…)`",))
+
+
+def _regions(said: Mapping[str, Any]) -> Regions:
+    parts = list[Part]()
+    for part in said["parts"]:
+        outlines = [o for face in part["faces"] for o in _directed(face)]
+        if region := shapes.region(outlines, "NonZero"):
+            parts.append(Part(region, _color(part["color"])))
+    lines = tuple(_line(_points(line)) for line in said["lines"] if len(line) > 1)
+    return Regions(tuple(parts), lines)
+
+
+def _directed(face: Sequence[object]) -> Iterator[Polygon]:
+    """Yields the outlines of a face, the outer one counter-clockwise and its holes clockwise."""
+    for number, outline in enumerate(map(_points, face)):
+        if len(outline) > 2:
+            is_reversed = (polygon_area(outline) > 0) == bool(number)
+            yield outline[::-1] if is_reversed else outline
+
+
+def _points(outline: object) -> Polygon:
+    points = np.array(outline, float).reshape(-1, 2)
+    if not (np.abs(points) < _LARGEST).all():
+        raise ValueError
+    return points
+
+
+def _line(points: Polygon) -> tuple[Piece, ...]:
+    corners = [(float(x), float(y)) for x, y in points]
+    return tuple(Line(a, b) for a, b in pairwise(corners) if a != b)
+
+
+def _color(color: object) -> str | None:
+    return css_color((color,)) if isinstance(color, str) else None
