@@ -34,7 +34,8 @@ shape spline(points: list, closed: bool = false) {
 }
 
 // The direction in a knot is that of the circle through it and its neighbours; at an open end it mirrors that of the
-// next knot about the chord between. A handle is as long as that of a Bézier along a circle.
+// next knot about the chord between. A handle is as long as that of a Bézier along a circle, and no longer than its
+// chord: where neighbouring chords are of very different lengths it would be endless.
 fn spline_way(chord: list, i: integer, closed: bool) = if closed then circle_way(
     chord[(i + len(chord) - 1) % len(chord)], chord[i % len(chord)]
 ) else if len(chord) == 1 then chord[0] else if i == 0 then mirrored_way(
@@ -47,4 +48,4 @@ fn circle_way(before: point, after: point) =
 fn mirrored_way(way: point, chord: point) =
     unit(chord) * (2 * dot(way, unit(chord)) / 1mm / 1mm) - way
 fn spline_handle(way: point, chord: point) =
-    unit(way) * (norm(chord) * 2 / 3 / (1mm + dot(unit(way), unit(chord)) / 1mm))
+    unit(way) * (norm(chord) * 2 / 3 / max(2mm / 3, 1mm + dot(unit(way), unit(chord)) / 1mm))

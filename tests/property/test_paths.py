@@ -372,3 +372,13 @@ def test_an_s_is_smooth(dx: int, dy: int, upright: bool) -> None:
     assert level == pytest.approx([0, 0], abs=2e-3)
     assert all(abs(cmath.phase(b / a)) < 5e-3 for a, b in pairwise(ways))
     assert points[-1] == pytest.approx(complex(dx, dy))
+
+
+def test_a_spline_stays_near_its_points_where_it_turns_sharply() -> None:
+    """Its curves lie in the hulls of their handles, none of which is longer than its chord."""
+    points = [(-97, 18), (-75, 52), (-55, 117), (-64, 90), (-84, 48)]
+    parts = geometry(f"drawing d {{ s = spline({points}, closed: true) }}")["s"]["parts"]
+    for segment in indexed(parts, "segment"):
+        start, one, two, end = segment["points"]
+        chord = math.dist(start, end)
+        assert max(math.dist(start, one), math.dist(two, end)) <= chord * (1 + 1e-9)

@@ -853,7 +853,7 @@ export const about: Record<string, string> = {
   "scale": "Larger or smaller: as a statement it changes the sizes that were written above it, as an expression it makes a copy.",
   "linear_array": "A row of a thing: members `[0]` to `[n-1]`, a pitch apart, or a step `by`.",
   "grid": "Rows and columns of a thing: members `[column][row]`, from the lower left.",
-  "along": "Members at equal ways along a curve: a line, an arc, a circle, an ellipse, a Bézier curve, a `spline`, `wave` or `spiral`, a `path`, an outline, or a list of such that meet.",
+  "along": "Members at equal ways along a curve: a line, a round or free curve, a `path`, an outline, or a list of such that meet.",
   "polar_array": "Members around a circle, from the direction `start`, counter-clockwise.",
   "mirror_of": "One thing is the mirror image of another: points, lines, arcs, circles, curves, boxes, or lists of them.",
   "coincident": "The points are one point, or lie on a line (endless), a circle, an arc (whole circle) or an ellipse.",
