@@ -28,7 +28,7 @@ solid key_rack {
         emblem.art.midrib.center_y == 40
         left_leaf.center_x == plate.Screws.left + 2.25
         right_leaf.center_x == plate.Screws.right - 2.25
-        [left_leaf, right_leaf].center_y == emblem.art.midrib.center_y - 6
+        for leaf in [left_leaf, right_leaf] { leaf.center_y == emblem.art.midrib.center_y - 6 }
     }
 
     assert emblem.art.top <= plate.top - 12, "the leaf runs into the hollow above it"
