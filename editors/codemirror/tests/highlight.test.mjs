@@ -84,7 +84,7 @@ test("no program of the documentation has one", () => {
   let count = 0;
   const pages = [...readdirSync(join(root, "docs")), ...readdirSync(join(root, "docs/reference")).map((f) => `reference/${f}`)];
   for (const page of pages.filter((file) => file.endsWith(".md"))) {
-    for (const [, text] of read(`docs/${page}`).matchAll(/^```aidl(?: error| fragment| file=\S+)?\n(.*?)^```$/gms)) {
+    for (const [, text] of read(`docs/${page}`).matchAll(/^```aidl(?: error| fragment| file=\S+\.aidl)?\n(.*?)^```$/gms)) {
       assert.deepEqual(errors(text), [], page);
       count += 1;
     }
