@@ -27,6 +27,7 @@ _FAR = 0.1
 _NAMED = 3
 _SIDES = ("left", "bottom", "right", "top")
 _ENDS = frozenset({"start", "end"})
+_FORMED = frozenset({"path", "polyline", "spline"})
 
 Naming = Mapping[Unknown | Structure, Sequence[Constraint]]
 """The constraints that mention an unknown, or the box of a structure."""
@@ -174,7 +175,7 @@ def _lost_form(
             ways.setdefault(unknown.holder, []).append(unknown)
     for way, lengths in ways.items():
         changed = [u for u in lengths if u in moved]
-        has_form = sum(not u.angular for u in lengths) > 1  # two points alone are a line, which adapts
+        has_form = way.type in _FORMED and sum(not u.angular for u in lengths) > 1  # two points adapt
         if way.name is None or not has_form or not changed or len(changed) == len(lengths):
             continue
         unknowns = source_unknowns(way, way.owner)
