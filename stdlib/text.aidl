@@ -6,10 +6,8 @@
 /// STEP get. In a `hole` it is cut out, in a `solid` it is material. Instead of its center `start` may be said: the point
 /// of the baseline where the text begins (or as `align` says); instead of a height a `width`. `\n` begins a new line, and
 /// `line_spacing` is between baselines, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line
-/// under the first line. The font is DejaVu Sans without kerning, or a file found as an import is: `font: "My.ttf"`. The letters of
-/// `font: "single line"` are the way of a tool, to be engraved. `stencil: true` bridges letters that are cut out, so that the
-/// inside of an O stays; the bridges are a tenth of the height wide, or as wide as said (`stencil: 2mm`). The box and the
-/// `width` are those of the letters without bridges.
+/// under the first line. The font is DejaVu Sans without kerning, a file found as an import is (`font: "My.ttf"`), or `"single line"`,
+/// engraved in one pass. `stencil: true` (or a width, `2mm`) bridges letters that are cut; the box is that without.
 ///
 /// ```aidl
 /// solid badge {
@@ -17,10 +15,8 @@
 ///     drawing label {
 ///         construction way = circle(center: fixed((0, 0)), radius: 30)
 ///         name = text("HARBOUR BAKERY", along: way, height: 6, bold: true)
-///         what = text("Bread\n& buns", center: fixed((0, 0)), height: 8)
 ///         year = text("1931", center: fixed((0, -26)), height: 7, outline: true)
 ///     }
-///     constrain disc.center == (0, 0)
 /// }
 /// ```
 shape text(

@@ -100,10 +100,13 @@ class _Pen:
                 self._canvas.setFillAlpha(mark.opacity)
         if mark.ink is not None:
             self._ink(mark.ink)
+        is_lined, is_filled = mark.ink is not None, mark.fill is not None
         if mark.gradient is not None:
+            if mark.opacity == 1:  # for readers without gradients
+                self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
             self._shade(path, mark.gradient)
-        is_filled = mark.fill is not None and mark.gradient is None
-        self._canvas.drawPath(path, fill=is_filled, stroke=mark.ink is not None, fillMode=0)
+            is_filled = False
+        self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
         """Fills a path with a gradient, as dense as the fill is set to be."""

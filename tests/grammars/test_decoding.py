@@ -169,7 +169,8 @@ def test_what_the_engine_lets_through_is_read_by_the_parser(
     texts = [text for seed in range(40) if (text := walk(walker, seed)) is not None]
     assert len(texts) >= 36
     assert len(set(texts)) > 30
-    assert {text: codes for text in texts if (codes := syntax_errors(text))} == {}
+    # What an attribute may stand before is no matter of the grammar (E0119).
+    assert {text: codes for text in texts if (codes := set(syntax_errors(text)) - {"E0119"})} == {}
 
 
 # --- Particular places ----------------------------------------------------------------------------

@@ -224,7 +224,18 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
     known = list(mentions(example))
     for node in ast.walk(example.module):
         if isinstance(node, ast.Name) and node not in example.resolution.uses:
-            assert node.text in ("x", "y", "left", "right", "center", "top", "bottom"), node.text
+            assert node.text in (
+                "x",
+                "y",
+                "left",
+                "right",
+                "center",
+                "top",
+                "bottom",
+                "round",
+                "ball",
+                "slope",
+            ), node.text
     for mention in known:
         found = mention_at(example, mention.span.start)
         assert found is not None

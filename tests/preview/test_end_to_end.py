@@ -238,7 +238,9 @@ def test_a_failed_assertion_changes_the_status_while_a_slider_moves(preview: Pre
     expect(preview.find("#source-lines")).to_contain_text("too wide")
     status = preview.find("#status")
     expect(status).to_have_text("Solved")
-    box = preview.find("#knobs-list input[type=range]").bounding_box()
+    slider = preview.find("#knobs-list input[type=range]")
+    expect(slider).to_be_visible()
+    box = slider.bounding_box()
     assert box is not None
     middle = box["y"] + box["height"] / 2
     preview.page.mouse.move(box["x"] + box["width"] * 0.25, middle)
