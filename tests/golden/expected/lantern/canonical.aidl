@@ -7,7 +7,7 @@ assembly lantern {
 
     @color("dimgray") @detached solid handle {
         construction way = arch(width: 1.12 * w, height: 1.1 * w)
-        bow = thick([way.right, way.top, way.left], 5)
+        bow = thick([way.right, way.top, way.left], 5, caps: "butt")
     }
 
     @color("lightcyan") @shade(ball) solid globe {
@@ -58,7 +58,7 @@ assembly lantern {
             up(0.5 * w),
             line_to(0.3 * w, 1.2 * w)
         )
-        rod = thick(way, 5)
+        rod = thick(way, 5, caps: "butt")
     }
     left_wire = mirror(right_wire, about: y_axis)
 
