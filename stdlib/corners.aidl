@@ -4,7 +4,7 @@
 fn quarter_arc(center: point, radius: length, from: angle) =
     arc(center: center, radius: radius, start_angle: fixed(from), end_angle: fixed(from + 90deg))
 
-/// A rectangle with round corners, by its centre, a corner or the middle of a side, with one radius or four.
+/// A rectangle with round corners, by its centre, a corner, the middle of a side or its sides, with one radius or four.
 ///
 /// The round corners are `corner_bottom_left` and so on; `bottom_left` is where the sharp corner would be. Four
 /// `radii` go counter-clockwise from the bottom left corner, and may be 0.
@@ -153,6 +153,14 @@ fn rounded_rectangle(
     angle = 0deg,
     rotatable = false
 ) = rounded_rectangle(left_center, -1, 0, width, height, radius, angle, rotatable)
+
+/// By the coordinates of its sides.
+fn rounded_rectangle(left: length, right: length, bottom: length, top: length, radius: length) =
+    rounded_rectangle((left, bottom), -1, -1, right - left, top - bottom, radius)
+fn rounded_rectangle(left: length, bottom: length, width: length, height: length, radius: length) =
+    rounded_rectangle((left, bottom), -1, -1, width, height, radius)
+fn rounded_rectangle(left: length, top: length, width: length, height: length, radius: length) =
+    rounded_rectangle((left, top), -1, 1, width, height, radius)
 
 // By a point of its border, as the rectangle.
 shape rounded_rectangle(

@@ -107,6 +107,17 @@ shape house(
     left = line(eaves_left, bottom_left)
 }
 
+/// By the middle of its foot, about which it turns.
+fn house(
+    bottom_center: point, width: length, height: length, roof_height: length, angle: angle = 0deg
+) = house(
+    center: above_foot(bottom_center, height, angle),
+    width: width,
+    height: height,
+    roof_height: roof_height,
+    angle: angle
+)
+
 /// A drop: a circle with two straight sides that meet in a tip above it; `height` is overall.
 ///
 /// Lies tip up; `center` is that of its round side.

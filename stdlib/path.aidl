@@ -20,7 +20,21 @@
 ///     )
 /// }
 /// ```
-shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
+fn path(steps: list, from: point, closed: bool = false) = path(steps, from, 0deg, false, closed)
+fn path(steps: list, from: point, heading: angle, closed: bool = false) =
+    path(steps, from, heading, true, closed)
+
+/// By `start:`, or with the start as the first argument.
+fn path(steps: list, start: point, closed: bool = false) = path(steps, from: start, closed: closed)
+fn path(steps: list, start: point, heading: angle, closed: bool = false) =
+    path(steps, from: start, heading: heading, closed: closed)
+fn path(steps: list, closed: bool = false) =
+    path([steps[i] for i in 1..<len(steps)], from: steps[0], closed: closed)
+fn path(steps: list, heading: angle, closed: bool = false) =
+    path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
+
+// With a heading that was stated or not: a curve at the beginning sets out as it likes best unless it was.
+shape path(steps: list, from: point, heading: turn, is_aimed: bool, closed: bool) {
     let drawn = [as_step(s) for s in steps if not as_step(s).kind in last_kinds]
     assert len(drawn) >= 1, "a path has at least one step that draws"
     let endings = [as_step(s) for s in steps if as_step(s).kind in last_kinds]
@@ -91,7 +105,7 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
             let is_arrival_free = not (move.is_aimed or goes_home or goes_over or next.kind in straight_kinds) and (next.kind != "smooth_to" or next.is_leaving)
             let departure = if move.is_leaving then polar(
                 1mm, move.leaving
-            ) else if i > 0 then way else if comes_home then circle_way(
+            ) else if i > 0 or is_aimed then way else if comes_home then circle_way(
                 from - drawn[-2].to, chord
             ) else mirrored_way(unit(arrival), chord)
             let last = if is_arrival_free then mirrored_way(unit(departure), chord) else arrival
@@ -193,12 +207,6 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
     let points = corner
     let edges = segment
 }
-
-/// By `start:`, or with the start as the first argument.
-fn path(steps: list, start: point, heading: angle = 0deg, closed: bool = false) =
-    path(steps, from: start, heading: heading, closed: closed)
-fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
-    path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
     "line_to",
@@ -447,7 +455,8 @@ fn tangent_arc_to(to: point, smooth: bool = true) =
 /// Several are one smooth curve through their points, its knots. It goes on from the step before and into a straight
 /// step behind it; into the first step where it closes the outline, and square to the axis of `mirrored(smooth: true)`.
 /// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then. Without
-/// `leaving` the first step of an open path sets out as an arc does: turned from its chord as much as it arrives.
+/// `leaving` the first step of an open path sets out in the path's `heading`, or, where it has none, as an arc does:
+/// turned from its chord as much as it arrives.
 ///
 /// ```aidl
 /// solid pear {

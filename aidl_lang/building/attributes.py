@@ -106,13 +106,19 @@ def _read(
             continue
         values: list[Value] = []
         for argument in attribute.arguments if name not in NAMING else ():
-            value = argument.value
-            is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
-            if name in WORDED and is_bare:
-                assert isinstance(value, ast.Name)
-                value = ast.String(value.text, span=value.span)
-            values.append(evaluate(it, value, env))
+            values.append(_argument(it, name, argument.value, env))
         yield "color" if name == "colour" else name, values, attribute
+
+
+def _argument(it: Interpreter, name: str, argument: ast.Expr, env: Env) -> Value:
+    """Returns the value of an argument; a word of the attribute is meant where its namesake is no text."""
+    if name not in WORDED or not isinstance(argument, ast.Name):
+        return evaluate(it, argument, env)
+    word = TextVal(argument.text)
+    if argument not in it.program.resolution.uses:
+        return word
+    value = evaluate(it, argument, env)
+    return word if argument.text in _WORDS.get(name, ()) and not isinstance(value, TextVal) else value
 
 
 ORIENTATIONS = ("top", "front", "side")
@@ -124,6 +130,8 @@ EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids without outline; a width of 0 says the same."""
+_WORDS = {"orientation": ORIENTATIONS, "edges": EDGES, "shade": SHADES, "stroke": (NO_OUTLINE.value,)}
+"""The words of attributes."""
 
 
 def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute) -> bool:
