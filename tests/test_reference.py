@@ -266,3 +266,17 @@ def test_codes_in_the_guide_exist() -> None:
     codes = set(re.findall(r"\b[EWN]\d{4}\b", guide()))
     assert codes
     assert codes <= set(pages.codes())
+
+
+def test_forms_are_written_as_few() -> None:
+    lines = guide().splitlines()
+    for line in (
+        "dome(…/bottom_center, width, height) →",
+        "chamfered_rectangle(…/bottom_left/…, width, height, chamfer) →",
+        "arch(…/bottom_center, width, height, rise?) →",
+        "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height, leg_angle) →",
+        "path(steps, from/start?, heading?, closed?)",
+        "shingles(of, width, height, round?, gap?, angle?, margin?)",
+        "smooth_to(to) | (to, heading/leaving) | (to, heading, leaving)",
+    ):
+        assert any(found.startswith(line) for found in lines), line

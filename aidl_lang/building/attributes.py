@@ -110,7 +110,7 @@ def _read(
         yield "color" if name == "colour" else name, values, attribute
 
 
-def _argument(it: Interpreter, name: str, argument: ast.Expr, env: Env) -> Value:
+def _argument(it: Interpreter, name: str, argument: ast.Expression, env: Env) -> Value:
     """Returns the value of an argument; a word of the attribute is meant where its namesake is no text."""
     if name not in WORDED or not isinstance(argument, ast.Name):
         return evaluate(it, argument, env)

@@ -12,6 +12,7 @@ the registry: `aidl explain` prints them and a test fails when a code and its pa
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from enum import StrEnum
 
 from aidl_lang.common.records import record
@@ -149,6 +150,27 @@ def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
             seen.add(key)
             unique.append(d)
     return sorted(unique, key=lambda d: (d.span.source.name, d.span.start) if d.span else ("", -1))
+
+
+def by_statement(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Returns the diagnostics with one in place of all that have the same code, places and fix: a statement
+    in a loop makes several things.
+    """
+    alike: dict[object, list[Diagnostic]] = {}
+    for d in diagnostics:
+        places = (d.span, *(label.span for label in d.secondary)) if d.span else (d.message,)
+        alike.setdefault((d.code, places, d.fix), []).append(d)
+    return [_said_once(list({d.message: d for d in several}.values())) for several in alike.values()]
+
+
+def _said_once(alike: Sequence[Diagnostic]) -> Diagnostic:
+    first = min(alike, key=lambda d: (len(d.message), d.message))  # by number, where it is one
+    more = len(alike) - 1
+    if not more:
+        return first
+    hint = f"the same holds for {more} more of what this statement makes"
+    points = tuple(p for d in alike for p in d.points)
+    return replace(first, hints=(hint, *first.hints), points=points)
 
 
 def apply_fixes(source: SourceFile, diagnostics: Iterable[Diagnostic]) -> tuple[str, int]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
-from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
@@ -178,7 +178,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
-    return drawing, ordered(notes)
+    return drawing, ordered(by_statement(notes))
 
 
 def _closed(

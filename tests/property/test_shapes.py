@@ -161,6 +161,22 @@ def four_radii_by_name(n: Draw) -> tuple[str, float, float]:
     return f"rounded_rectangle(width: {w}, height: {h}, {radii})", area, 2 * (w + h) - 2 * cut * (2 * r + s)
 
 
+def rounded_by_sides(place: Callable[[float, float], str]) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h, r = n(10, 50), n(10, 50), n(0.1, 4.5)
+        call = f"rounded_rectangle({place(w, h)}, radius: {r})"
+        return call, w * h - (4 - math.pi) * r**2, 2 * (w + h) - (8 - tau) * r
+
+    return make
+
+
+FORMS += [
+    rounded_by_sides(lambda w, h: f"left: -3, right: {w - 3}, bottom: 2, top: {h + 2}"),
+    rounded_by_sides(lambda w, h: f"left: -3, bottom: 2, width: {w}, height: {h}"),
+    rounded_by_sides(lambda w, h: f"left: -3, top: 2, width: {w}, height: {h}"),
+]
+
+
 @form
 def rectangle_with_a_radius(n: Draw) -> tuple[str, float, float]:
     w, h, r = n(10, 50), n(10, 50), n(0.1, 4.5)
@@ -900,13 +916,18 @@ def double_arrow(n: Draw) -> tuple[str, float, float]:
     return call, 2 * area, 2 * (edges - w)
 
 
-@form
-def house(n: Draw) -> tuple[str, float, float]:
-    w, h = n(10, 50), n(10, 50)
-    roof = n(1, h - 1)
-    walls = h - roof
-    call = f"house(width: {w}, height: {h}, roof_height: {roof})"
-    return call, w * walls + w * roof / 2, w + 2 * walls + 2 * hypot(w / 2, roof)
+def house(place: str) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h = n(10, 50), n(10, 50)
+        roof = n(1, h - 1)
+        walls = h - roof
+        call = f"house({place}width: {w}, height: {h}, roof_height: {roof})"
+        return call, w * walls + w * roof / 2, w + 2 * walls + 2 * hypot(w / 2, roof)
+
+    return make
+
+
+FORMS += [house(place) for place in ("", "bottom_center: (3, 4), ")]
 
 
 @form

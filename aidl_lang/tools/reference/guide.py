@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import groupby
+from itertools import groupby, zip_longest
 from pathlib import Path
 
 from aidl_lang.checking.builtins import CUTS
@@ -167,15 +167,50 @@ def _arguments(variant: Variant, entry: Entry) -> str:
         forms = ["(a, b, …)"]  # as calls that gather their arguments are written
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
     forms = [f for f in forms if not any(f == _OPTIONAL.sub("", o) for o in forms if o != f)]
+    forms = [f for f in forms if not any(_is_laxer(o, f) for o in forms if o != f)]
     for name in ("rotatable", *_UNSAID.get(variant, ())):
         forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
     forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
     return _factored(forms) if entry.sort != "constant" else ""
 
 
+def _is_laxer(one: str, other: str) -> bool:
+    """Tells whether a form has the arguments of another, and lets more of them out."""
+    pairs = list(zip_longest(one.split(", "), other.split(", ")))
+    return all(a == b or (b is not None and a == f"{b}?") for a, b in pairs)
+
+
 def _factored(forms: Sequence[str]) -> str:
-    """Returns forms with the arguments that all begin or end with written once: `(a, {b | c, d}, e)`."""
-    lists = [form[1:-1].split(", ") for form in dict.fromkeys(forms)]
+    """Returns forms with the arguments that all begin or end with written once: `(a, {b | c, d}, e)`; failing
+    that with those that neighbours begin with.
+    """
+    lists = _held_elsewhere([form[1:-1].split(", ") for form in dict.fromkeys(forms)])
+    if (whole := _as_one(lists)) is not None:
+        return whole
+    groups = [list(alike) for _, alike in groupby(lists, key=lambda each: each[:_SHARED])]
+    return " | ".join(_as_one(g) or " | ".join(f"({', '.join(each)})" for each in g) for g in groups)
+
+
+def _held_elsewhere(lists: Sequence[list[str]]) -> list[list[str]]:
+    """Returns forms with the other places by which a shape may be held beside the `…` of its first form."""
+    kept: list[list[str]] = []
+    for held in lists:
+        same = next((each for each in kept if [held[0], *each[1:], "angle?"] == held), None)
+        if same is not None and same[0].startswith("…"):
+            same[0] += f"/{held[0]}"
+        elif kept and kept[-1][:-1] == held:  # the last argument of the form before is none that it needs
+            kept[-1] = [*held, f"{kept[-1][-1].removesuffix('?')}?"]
+        else:
+            kept.append(held)
+    return kept
+
+
+_SHARED = 2
+"""Arguments at the beginning by which forms beside each other are written as one."""
+
+
+def _as_one(lists: Sequence[list[str]]) -> str | None:
+    """Returns several forms as one; None if they have no argument in common, or if there is only one."""
     shortest = min(map(len, lists), default=0)
     first = next((n for n in range(shortest) if len({each[n] for each in lists}) > 1), shortest)
     last = next((n for n in range(shortest - first) if len({each[-1 - n] for each in lists}) > 1), None)
@@ -186,7 +221,7 @@ def _factored(forms: Sequence[str]) -> str:
     elif len(lists) > 1 and 0 < first + last < shortest:
         middle = f"{{{' | '.join(', '.join(each[first : len(each) - last]) for each in lists)}}}"
     else:
-        return " | ".join(f"({', '.join(each)})" for each in lists)
+        return None
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 

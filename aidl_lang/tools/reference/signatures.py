@@ -327,9 +327,9 @@ class _Row:
         if len(names) != len(self.names):
             return False
         differing = [i for i, name in enumerate(names) if name not in self.names[i].split("/")]
-        if kinds != self.kinds or not differing:
+        if not differing:
             return True
-        if len(differing) > 1 or self.place not in (None, differing[0]):
+        if kinds != self.kinds or len(differing) > 1 or self.place not in (None, differing[0]):
             return False
         self.place = differing[0]
         self.names[self.place] += f"/{names[self.place]}"
@@ -343,7 +343,10 @@ def _merged_calls(functions: Sequence[ast.FunctionDefinition]) -> list[str]:
         names = split_items(short(written(node)).partition("(")[2].removesuffix(")"))
         if not any(row.takes(kinds, names) for row in rows):
             rows.append(_Row(kinds, names))
-    return [f"{functions[0].name.text}({', '.join(row.names)})" for row in rows]
+    options: list[_Options] = [
+        tuple((name.removesuffix("?"), not name.endswith("?")) for name in row.names) for row in rows
+    ]
+    return [f"{functions[0].name.text}({_listed(row)})" for row in _joined(options, _with_last_optional)]
 
 
 def _merged_forms(constraints: Sequence[ast.ConstraintDefinition]) -> list[str]:
@@ -367,13 +370,16 @@ def _merged(group: Sequence[ast.ConstraintDefinition]) -> list[str]:
     rows = list(dict.fromkeys(tuple((p.name.text, p.default is None) for p in each) for each in options))
     for join in (_of_the_same, _with_optional, _with_alternative):
         rows = _joined(rows, join)
-    words = [[name if needed else f"{name}?" for name, needed in row] for row in rows]
-    return [f"{group[0].name.text}({', '.join([*related, *row])})" for row in words]
+    return [f"{group[0].name.text}({', '.join(filter(None, [*related, _listed(row)]))})" for row in rows]
 
 
 _Options: TypeAlias = tuple[tuple[str, bool], ...]
 """Names of options in their order, each with whether it is needed."""
 _Join: TypeAlias = Callable[[_Options, _Options], _Options | None]
+
+
+def _listed(row: _Options) -> str:
+    return ", ".join(name if needed else f"{name}?" for name, needed in row)
 
 
 def _joined(rows: Sequence[_Options], join: _Join) -> list[_Options]:
@@ -400,9 +406,17 @@ def _with_optional(one: _Options, other: _Options) -> _Options | None:
     """Joins two rows of which one has an option more."""
     short, long = sorted((one, other), key=len)
     more = [word for word in long if word not in short]
-    if len(long) != len(short) + 1 or len(more) != 1:
+    if len(long) != len(short) + 1 or len(more) != 1 or [word for word in long if word in short] != [*short]:
         return None
     return tuple((name, needed and (name, needed) != more[0]) for name, needed in long)
+
+
+def _with_last_optional(one: _Options, other: _Options) -> _Options | None:
+    """Joins two rows of which one has an option more, behind all that is needed and by one name."""
+    both = _with_optional(one, other)
+    optional = [name for name, needed in both or () if not needed]
+    is_last = both is not None and [name for name, _ in both[-len(optional) :]] == optional
+    return both if is_last and not any("/" in name for name in optional) else None
 
 
 def _with_alternative(one: _Options, other: _Options) -> _Options | None:
