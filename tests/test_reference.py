@@ -274,7 +274,7 @@ def test_forms_are_written_as_few() -> None:
         "dome(…/bottom_center, width, height) →",
         "chamfered_rectangle(…/bottom_left/…, width, height, chamfer) →",
         "arch(…/bottom_center, width, height, rise?) →",
-        "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height, leg_angle) →",
+        "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height,",
         "path(steps, from/start?, heading?, closed?)",
         "shingles(of, width, height, round?, gap?, angle?, margin?)",
         "smooth_to(to) | (to, heading/leaving) | (to, heading, leaving)",

@@ -28,10 +28,30 @@ def state_clip(it: Interpreter, s: Structure, stated: StatedClip) -> None:
     s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in stated.attribute.arguments)
 
 
+def settle_clips_in(it: Interpreter, parent: Structure) -> None:
+    """Gives the structures in one whose body has been run the outlines of its own that they are clipped to:
+    boxes leave out what is cut off.
+    """
+    for s in parent.children:
+        if (stated := it.clips.get(s)) is not None and _names_own(stated, parent):
+            s.clip = tuple(_outline(it, s, stated))
+
+
+def _names_own(stated: StatedClip, parent: Structure) -> bool:
+    """Tells whether the outline is geometry that stands in a structure itself."""
+    values = [argument.value for argument in stated.attribute.arguments]
+    if len(values) != 1 or not isinstance(name := values[0], ast.Name):
+        return False
+    scope = next((scope for scope in stated.scope.chain() if name.text in scope.values), None)
+    return scope is not None and scope.container is parent and isinstance(scope.values[name.text], Geometry)
+
+
 def settle_clips(it: Interpreter) -> None:
-    """Gives structures the outlines that they are clipped to; those of copies come with the copies."""
+    """Gives structures the outlines that they are clipped to, those that have theirs aside; those of copies
+    come with the copies.
+    """
     for s, stated in it.clips.items():
-        s.clip = tuple(_outline(it, s, stated))
+        s.clip = s.clip or tuple(_outline(it, s, stated))
 
 
 def _outline(it: Interpreter, s: Structure, stated: StatedClip) -> Iterator[Geometry]:

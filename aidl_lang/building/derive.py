@@ -243,6 +243,9 @@ class Copier:
         for child in source.children:
             self.structure(child, copy, child.name, self._inner(child.frame))
         self._members(source, copy)
+        for child in source.children:
+            if all(g.owner is source for g in child.clip):
+                self.structures[child].clip = tuple(self.geometry(g) for g in child.clip)
         copy.is_complete = source.is_complete
         return copy
 

@@ -8,6 +8,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
+from aidl_lang.building.clipping import settle_clips_in
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.constraints import read_constraint
 from aidl_lang.building.construct import solvable
@@ -203,6 +204,7 @@ def finish(it: Interpreter, structure: Structure) -> None:
         _plan(it, structure)
     structure.is_complete = True
     settle_order(it, structure)
+    settle_clips_in(it, structure)
     pending = it.pending.pop(structure, [])
     # Finished corners first, as constraints may mention their sizes, wherever they are written.
     for node, scope in sorted(pending, key=lambda item: not _finishes(it, item[0])):

@@ -37,19 +37,22 @@ def clip_shapes(root: SolvedStructure, first: int) -> tuple[dict[str, Shape], li
 
 def clip_sections(network: Network, root: SolvedStructure, shapes: Clips) -> dict[str, Section]:
     """Returns what each structure that is clipped, or lies in one that is, may lie in."""
-    found: dict[str, Section] = {}
+    return dict(_clip_sections(network, root, shapes, None)) if shapes else {}
 
-    def visit(s: SolvedStructure, around: Section | None) -> None:
-        if s.path in shapes:
-            around = union_of(own_faces(network, [shapes[s.path]]).faces)
-        if around is not None:
-            found[s.path] = around
-        for child in s.structures:
-            visit(child, around)
 
-    if shapes:
-        visit(root, None)
-    return found
+def _clip_sections(
+    network: Network, s: SolvedStructure, shapes: Clips, around: Section | None
+) -> Iterator[tuple[str, Section]]:
+    """Yields the sections of a structure and of what lies in it, which is clipped to `around`, too.
+
+    No closure, which would keep itself and what it holds: Manifold tells of sections that are left at the end.
+    """
+    if s.path in shapes:
+        around = union_of(own_faces(network, [shapes[s.path]]).faces)
+    if around is not None:
+        yield s.path, around
+    for child in s.structures:
+        yield from _clip_sections(network, child, shapes, around)
 
 
 def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagnostic]:
