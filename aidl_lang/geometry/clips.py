@@ -45,7 +45,7 @@ def _clip_sections(
 ) -> Iterator[tuple[str, Section]]:
     """Yields the sections of a structure and of what lies in it, which is clipped to `around`, too.
 
-    No closure, which would keep itself and what it holds: Manifold tells of sections that are left at the end.
+    No closure, which would keep itself and what it holds: Manifold tells of sections left at the end.
     """
     if s.path in shapes:
         around = union_of(own_faces(network, [shapes[s.path]]).faces)
