@@ -65,8 +65,8 @@ class Session:
         return sorted(sheet.drawn, key=lambda name: _drawn_lot(rater, sheet.prompt, sheet.run, name))
 
     def asked(self, rater: str, number: int | None) -> dict[str, Any]:
-        """Returns what the page shows: the sheet of a number, else the first without an answer, or that all is
-        done. Nothing in it tells of a language. Raises RefusedError and StoreError.
+        """Returns what the page shows: the sheet of a number, else the first without an answer, or that all
+        is done. Nothing in it tells of a language. Raises RefusedError and StoreError.
         """
         order = [sheet for sheet in self.order(rater) if sheet.is_shown]
         given = self._given(rater)
@@ -111,8 +111,8 @@ class Session:
     # --- answering --------------------------------------------------------------------------------
 
     def answer(self, rater: str, number: int, sheet_id: str, ranking: Groups | None) -> None:
-        """Keeps an answer, with those that are plain on the way to the next question: places on the screen from
-        best to worst, None if the rater could not tell. Raises RefusedError and StoreError.
+        """Keeps an answer, with those that are plain on the way to the next question: places on the screen
+        from best to worst, None if the rater could not tell. Raises RefusedError and StoreError.
         """
         order = self.order(rater)
         asked = [sheet for sheet in order if sheet.is_shown]
@@ -191,8 +191,8 @@ def picture_of(folder: Path, pictures: str, sheet: Sheet, language: str) -> Path
 
 
 def opened(store: Store, pictures: str) -> Session:
-    """Returns the session of a folder. Raises StoreError if there is nothing to rank, a picture is missing, or
-    its answers are about pictures of the other style.
+    """Returns the session of a folder. Raises StoreError if there is nothing to rank, a picture is missing,
+    or its answers are about pictures of the other style.
     """
     folder = store.folder
     found = sheets(store.records())
