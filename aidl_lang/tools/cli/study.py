@@ -1,4 +1,4 @@
-"""`aidl eval study`: people rank pictures of an evaluation on a local page, without knowing whose they are."""
+"""`aidl eval study`: people rank pictures on a local page, without knowing what language drew which."""
 
 from __future__ import annotations
 

@@ -151,8 +151,8 @@ function mark(said = "") {
   });
   const chosen = groups.flat().length;
   const isWhole = chosen === cards.length;
-  const order = groups.map((group) => group.map((place) => place + 1).join(" = ")).join(" › ");
-  const rest = isWhole ? "" : shares ? " = …" : " › …";
+  const order = groups.map((group) => group.map((place) => place + 1).join(" = ")).join(" > ");
+  const rest = isWhole ? "" : shares ? " = …" : " > …";
   part("order").textContent = chosen ? `${order}${rest}` : said || "Choose from best to worst.";
   back.disabled = !sheet || sheet.number === 0;
   undo.disabled = chosen === 0;
