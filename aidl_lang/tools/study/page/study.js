@@ -19,7 +19,7 @@ function element(id, kind) {
 const button = /** @param {string} id */ (id) => element(id, HTMLButtonElement);
 const part = /** @param {string} id */ (id) => element(id, HTMLElement);
 
-const name = element("name", HTMLInputElement);
+const field = element("name", HTMLInputElement);
 const bar = part("bar");
 const begin = element("begin", HTMLFormElement);
 const rank = part("rank");
@@ -55,7 +55,7 @@ function ordinal(n) {
 async function ask(what, said) {
   if (busy) return;
   busy = true;
-  part("trouble").hidden = true;
+  trouble.hidden = true;
   try {
     const answer = await fetch(what, {
       method: "POST",
@@ -208,8 +208,8 @@ function leave() {
   sheet = null;
   bar.hidden = rank.hidden = done.hidden = trouble.hidden = true;
   begin.hidden = false;
-  name.value = "";
-  name.focus();
+  field.value = "";
+  field.focus();
 }
 
 back.addEventListener("click", goBack);
@@ -222,7 +222,7 @@ button("another").addEventListener("click", leave);
 button("leave").addEventListener("click", leave);
 begin.addEventListener("submit", (event) => {
   event.preventDefault();
-  ask("sheet", { rater: name.value });
+  ask("sheet", { rater: field.value });
 });
 
 /** What keys press. @type {Record<string, HTMLButtonElement>} */
@@ -252,4 +252,4 @@ addEventListener("keydown", (event) => {
 
 const kept = sessionStorage.getItem(KEPT);
 if (kept) ask("sheet", { rater: kept });
-else name.focus();
+else field.focus();
