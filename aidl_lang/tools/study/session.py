@@ -204,7 +204,7 @@ def opened(store: Store, pictures: str) -> Session:
         )
     for sheet in found:
         for language in sheet.drawn:
-            _require_picture(picture_of(folder, pictures, sheet, language))
+            _require_picture(folder, picture_of(folder, pictures, sheet, language))
     answers = Answers(folder)
     others = {answer.pictures for answer in answers.all()} - {pictures}
     for other in others:
@@ -217,13 +217,14 @@ def opened(store: Store, pictures: str) -> Session:
     return Session(folder, pictures, tuple(found), answers)
 
 
-def _require_picture(path: Path) -> None:
+def _require_picture(folder: Path, path: Path) -> None:
     try:
         with Image.open(path, formats=["PNG"]) as image:
             _require_small(image)
     except (OSError, ValueError, SyntaxError):
+        again = f"aidl eval --replay {folder / 'recording.jsonl'} --out NEW"
         raise StoreError(
             "E0987",
             f"`{path}` is no picture, and its program is valid",
-            "`aidl eval --replay results/recording.jsonl --out NEW` draws all again without asking a model",
+            f"`{again}` draws all again without asking a model",
         ) from None
