@@ -236,6 +236,7 @@ def without_extras(here: Installation) -> None:
         ("mcp", "mcp"),
         ("editor", "lsp"),
         ("editor", "preview", "part.aidl", "--no-open"),
+        ("editor", "eval", "study", "results", "--no-open"),
     ]
     for extra, *arguments in lacking:
         here.run(*arguments, code=2, says=rf"pip install 'aidl-lang\[{extra}\]'")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
-from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli import files, study
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.tools.cli.report import UseError, say, show
 
@@ -109,6 +109,24 @@ def register(parser: argparse.ArgumentParser) -> None:
     )
     add_provider(parser)
     parser.set_defaults(run=run)
+    _add_study(parser)
+
+
+def _add_study(parser: argparse.ArgumentParser) -> None:
+    """Adds `study`, which takes none of the options of a run."""
+    own = parser.add_subparsers(title="instead of a run", metavar="[study]").add_parser(
+        "study", help="have people rank the pictures on a local page: `aidl eval study --help`"
+    )
+    study.register(own)
+    known = vars(own.parse_args(["FOLDER"])).keys()
+
+    def apart(arguments: argparse.Namespace) -> int:
+        for name, value in vars(arguments).items():
+            if name not in known and value != parser.get_default(name):
+                parser.error("`study` takes none of the options of a run")
+        return study.run(arguments)
+
+    own.set_defaults(run=apart)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 import socket
+from importlib.util import find_spec
 
+from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli.report import UseError
 
 LOCALHOST = "127.0.0.1"
@@ -33,6 +35,37 @@ def address(text: str) -> str:
             f"expected an address of this machine alone, as {LOCALHOST} or ::1, not `{text}`"
         )
     return text
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Adds where a page is served, and whether the browser is opened."""
+    parser.add_argument(
+        "--port", type=port, default=0, metavar="N", help="the port (default: one that is free)"
+    )
+    parser.add_argument(
+        "--host",
+        type=address,
+        default=LOCALHOST,
+        metavar="ADDRESS",
+        help=f"an address of this machine alone (default: {LOCALHOST})",
+    )
+    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
+
+
+def require(what: str, *packages: str) -> None:
+    """Raises UseError if what serves pages is not installed."""
+    missing = [name for name in packages if find_spec(name) is None]
+    if missing:
+        message = f"{what} needs {', '.join(ticked(missing))}, not installed here"
+        raise UseError("E0952", message, "pip install 'aidl-lang[editor]'")
+
+
+def open_browser(url: str) -> None:
+    """Opens the browser; some of those for terminals return only when they are closed."""
+    import threading
+    import webbrowser
+
+    threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
 
 def listener(host: str, port: int, code: str, hint: str) -> socket.socket:

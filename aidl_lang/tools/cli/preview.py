@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files, listening
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import UseError, say
@@ -24,23 +22,13 @@ def register(parser: argparse.ArgumentParser) -> None:
         "address that is printed, can see it."
     )
     add_program(parser)
-    parser.add_argument(
-        "--port", type=listening.port, default=0, metavar="N", help="the port (default: one that is free)"
-    )
-    parser.add_argument(
-        "--host",
-        type=listening.address,
-        default=listening.LOCALHOST,
-        metavar="ADDRESS",
-        help=f"an address of this machine alone (default: {listening.LOCALHOST})",
-    )
-    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
+    listening.add_options(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
-    _require_packages()
+    listening.require("the preview", *_NEEDED)
     if arguments.file == files.STANDARD:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
@@ -52,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     served = Served(Path(arguments.file).resolve(), _write, listener)
     say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")
     if not arguments.no_open:
-        _open(served.url)
+        listening.open_browser(served.url)
     try:
         served.run()
     finally:
@@ -73,25 +61,8 @@ def _rescue(served: Served) -> None:
         say(f"what was typed in the preview and not saved is in {kept}")
 
 
-def _open(url: str) -> None:
-    """Opens the browser; some of those for terminals return only when they are closed."""
-    import threading
-    import webbrowser
-
-    threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
-
-
 def _write(path: Path, data: bytes) -> None:
     try:
         files.write(str(path), data)
     except UseError as reason:
         raise OSError(reason.diagnostic.message) from None
-
-
-def _require_packages() -> None:
-    missing = [name for name in _NEEDED if find_spec(name) is None]
-    if missing:
-        names = ", ".join(ticked(missing))
-        raise UseError(
-            "E0952", f"the preview needs {names}, not installed here", "pip install 'aidl-lang[editor]'"
-        )

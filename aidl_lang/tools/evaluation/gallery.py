@@ -18,7 +18,7 @@ from aidl_lang.common.prose import counted
 from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.requirements import Status
 from aidl_lang.tools.evaluation.store import picture_path
-from aidl_lang.tools.evaluation.summary import MEANINGS, Row
+from aidl_lang.tools.evaluation.summary import MEANINGS, Row, names
 from aidl_lang.tools.evaluation.table import shown
 
 Record = Mapping[str, Any]
@@ -76,10 +76,10 @@ def _text(value: object) -> str:
 def _figures(rows: Sequence[Row]) -> str:
     head = "".join(f"<th>{_text(row.variant)}</th>" for row in rows)
     lines = "".join(
-        f'<tr><th title="{_text(meaning)}">{_text(name)}</th>'
+        f'<tr><th title="{_text(MEANINGS[name])}">{_text(name)}</th>'
         + "".join(f"<td>{_text(shown(row.figures[name]))}</td>" for row in rows)
         + "</tr>"
-        for name, meaning in MEANINGS.items()
+        for name in names(rows)
     )
     return f"<details><summary>Figures</summary><table><tr><th></th>{head}</tr>{lines}</table></details>"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from aidl_lang.tools.evaluation import gallery, recordings, table
 from aidl_lang.tools.evaluation.clip import MODEL, score_all
+from aidl_lang.tools.evaluation.preference import study_of
 from aidl_lang.tools.evaluation.store import Store
 from aidl_lang.tools.evaluation.summary import WITHIN, pairs, rows
 
@@ -17,14 +18,15 @@ def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
     settings = store.settings()
     attempts = settings.get("attempts")
     limit = attempts if isinstance(attempts, int) else WITHIN[-1]
-    variants, prompts = rows(records, scores, limit=limit), rows(records, scores, True, limit)
-    differences = pairs(variants)
-    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings))
+    study = study_of(store, records)
+    variants, prompts = (rows(records, scores, each, limit, study) for each in (False, True))
+    differences = pairs(variants, study)
+    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings), study)
     outputs = {
         "recording.jsonl": recordings.written(records, settings),
         "evaluation.md": text,
-        "evaluation.csv": table.to_csv([*variants, *prompts], differences),
-        "evaluation.json": table.to_json(variants, prompts, differences),
+        "evaluation.csv": table.to_csv([*variants, *prompts], differences, study),
+        "evaluation.json": table.to_json(variants, prompts, differences, study),
         "index.html": gallery.page(store.folder, records, variants, scores),
     }
     for name, content in outputs.items():

@@ -15,6 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.editability import EditOutcome
 from aidl_lang.tools.evaluation.plan import VARIANTS
+from aidl_lang.tools.evaluation.preference import Study
 from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 from aidl_lang.tools.evaluation.requirements import Status
 from aidl_lang.tools.evaluation.statistics import (
@@ -133,6 +134,7 @@ COMPARED = (
     "tokens out",
     "seconds",
     "CLIP",
+    "rank",
 )
 """Figures that languages are compared by."""
 
@@ -161,11 +163,22 @@ MEANINGS: Mapping[str, str] = {
     "cost": "of all conversations, in dollars",
     "CLIP": "CLIP score, per valid program",
     "CLIP neutral": "CLIP score of the picture in the one style of all languages, per valid program",
+    "rank": "place among the languages in the study, 1 for the best; without a picture the last",
+    "preferred": "share of the other languages that raters placed it above in the study, ties a half",
 }
 
 
+def names(rows: Sequence[Row]) -> list[str]:
+    """Returns the names of the figures that rows have: those of a study only where there is one."""
+    return [name for name in MEANINGS if any(name in row.figures for row in rows)]
+
+
 def rows(
-    records: Sequence[Record], scores: Scores, per_prompt: bool = False, limit: int = WITHIN[-1]
+    records: Sequence[Record],
+    scores: Scores,
+    per_prompt: bool = False,
+    limit: int = WITHIN[-1],
+    study: Study | None = None,
 ) -> list[Row]:
     """Returns one row for each variant, or for each prompt in each variant, in the order of the records and
     variants. `limit` is the number of attempts that conversations had.
@@ -176,9 +189,8 @@ def rows(
             own = [r for r in records if r["variant"] == variant and prompt in (None, r["prompt"])]
             if own:
                 held = [r for r in own if "failure" not in r]
-                found.append(
-                    Row(variant, prompt, len(held), len(own) - len(held), _figures(held, scores, limit))
-                )
+                figures = _figures(held, scores, limit) | _judged(study, variant, prompt)
+                found.append(Row(variant, prompt, len(held), len(own) - len(held), figures))
     return found
 
 
@@ -192,27 +204,39 @@ class Pair:
     comparison: Comparison
 
 
-def pairs(variants: Sequence[Row]) -> list[Pair]:
+def pairs(variants: Sequence[Row], study: Study | None = None) -> list[Pair]:
     """Returns the comparisons of all pairs of languages, by figures."""
-    found = []
+    found, both = [], list(combinations([row.variant for row in variants], 2))
     for name in COMPARED:
-        of = {row.variant: by_prompt(_cases(row.figures[name])) for row in variants}
-        own = [
-            Pair(name, first, second, comparison)
-            for first, second in combinations(of, 2)
-            if (comparison := compared(of[first], of[second])) is not None
-        ]
-        tested = [pair for pair in own if pair.comparison.p is not None]
-        adjusted = dict(zip(map(id, tested), holm([p.comparison.p or 0.0 for p in tested]), strict=True))
-        found += [
-            replace(pair, comparison=replace(pair.comparison, adjusted=adjusted.get(id(pair))))
-            for pair in own
-        ]
+        of = {row.variant: by_prompt(_cases(row.figures.get(name))) for row in variants}
+        found += _corrected(name, {(a, b): compared(of[a], of[b]) for a, b in both})
+    if study is not None:
+        over = {(a, b): compared(study.over(a, b), study.over(b, a)) for a, b in both}
+        found += _corrected("preferred", over)
     return found
 
 
-def _cases(figure: Figure) -> tuple[Case, ...]:
-    return () if isinstance(figure, Total) else figure.cases
+def _corrected(name: str, found: Mapping[tuple[str, str], Comparison | None]) -> list[Pair]:
+    """Returns the comparisons in one figure, with their probabilities corrected for how many there are."""
+    own = [Pair(name, *languages, of) for languages, of in found.items() if of is not None]
+    tested = [pair for pair in own if pair.comparison.p is not None]
+    adjusted = dict(zip(map(id, tested), holm([p.comparison.p or 0.0 for p in tested]), strict=True))
+    return [
+        replace(pair, comparison=replace(pair.comparison, adjusted=adjusted.get(id(pair)))) for pair in own
+    ]
+
+
+def _judged(study: Study | None, variant: str, prompt: str | None) -> dict[str, Figure]:
+    if study is None:
+        return {}
+    return {
+        "rank": Mean.of(study.ranks(variant, prompt)),
+        "preferred": Mean.of(study.preferred(variant, prompt)),
+    }
+
+
+def _cases(figure: Figure | None) -> tuple[Case, ...]:
+    return () if figure is None or isinstance(figure, Total) else figure.cases
 
 
 def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Figure]:

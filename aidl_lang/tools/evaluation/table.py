@@ -8,22 +8,28 @@ import json
 from collections.abc import Sequence
 from math import sqrt
 
+from aidl_lang.common.prose import counted
+from aidl_lang.tools.evaluation.preference import Study
 from aidl_lang.tools.evaluation.statistics import RESAMPLES, SEED, Interval
-from aidl_lang.tools.evaluation.summary import MEANINGS, Figure, Mean, Pair, Row, Share, Total
+from aidl_lang.tools.evaluation.summary import MEANINGS, Figure, Mean, Pair, Row, Share, Total, names
 
 _NONE = "–"
 _BY_PROMPT = ("valid", "requirements", "editability")
 
 
 def markdown(
-    rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = (), notes: Sequence[str] = ()
+    rows: Sequence[Row],
+    prompts: Sequence[Row],
+    pairs: Sequence[Pair] = (),
+    notes: Sequence[str] = (),
+    study: Study | None = None,
 ) -> str:
-    """Returns one column for each variant, what pairs of them differ by, then the prompts one by one, then a
-    key to the lines. `notes` tell what must be known of the conversations.
+    """Returns one column for each variant, what pairs of them differ by, what raters say, then the prompts
+    one by one, then a key to the lines. `notes` tell what must be known of the conversations.
     """
     head = ["", *(row.variant for row in rows)]
     lines = [["conversations", *(_conversations(row) for row in rows)]]
-    lines += [[name, *(shown(row.figures[name]) for row in rows)] for name in MEANINGS]
+    lines += [[name, *(shown(row.figures[name]) for row in rows)] for name in names(rows)]
     parts = [
         "# Evaluation",
         *(f"Note on {note}." for note in notes),
@@ -33,11 +39,12 @@ def markdown(
         _table([head, *lines]),
         *_reasons(rows),
         *_differences(pairs),
+        *_study(rows, pairs, study),
         "## By prompt",
         f"In each cell: {', '.join(_BY_PROMPT)}.",
         _by_prompt(rows, prompts),
         "## What the lines mean",
-        "\n".join(f"- {name}: {meaning}" for name, meaning in MEANINGS.items()),
+        "\n".join(f"- {name}: {MEANINGS[name]}" for name in names(rows)),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -84,6 +91,46 @@ def _differences(pairs: Sequence[Pair]) -> list[str]:
         "figure. Figures of valid programs compare only prompts where both languages came to one.",
         _table([head, *lines]),
     ]
+
+
+def _study(rows: Sequence[Row], pairs: Sequence[Pair], study: Study | None) -> list[str]:
+    if study is None:
+        return []
+    agreed = "not to be had" if study.alpha is None else f"{study.alpha:.3f}"
+    said = [
+        f"{counted(len(study.raters), 'rater')} and {counted(study.judgements, 'judgement')}; "
+        f"{counted(study.skipped, 'time')} a rater could not tell.",
+        f"Their agreement, Krippendorff's alpha of ranks: {agreed}.",
+    ]
+    if study.unasked:
+        said.append(f"{counted(study.unasked, 'answer')} followed without a rater: fewer than two had drawn.")
+    if study.outdated:
+        said.append(f"Left out: {counted(study.outdated, 'answer')} to what is no longer there as it was.")
+    return ["## Study", " ".join(said), *_preferred(rows, pairs)]
+
+
+def _preferred(rows: Sequence[Row], pairs: Sequence[Pair]) -> list[str]:
+    """Returns the table of how often each language was placed above each other."""
+    cells = {}
+    for pair in pairs:
+        if pair.figure == "preferred":
+            of = pair.comparison
+            low, high = of.interval or (None, None)
+            cells[pair.first, pair.second] = _half(of.difference, low, high)
+            turned = (None, None) if high is None or low is None else (-high, -low)
+            cells[pair.second, pair.first] = _half(-of.difference, *turned)
+    if not cells:
+        return []
+    variants = [row.variant for row in rows]
+    lines = [[first, *(cells.get((first, second), _NONE) for second in variants)] for first in variants]
+    how = "How often the language of the line was placed above that of the column, by prompt, ties a half."
+    return [how, _table([["", *variants], *lines])]
+
+
+def _half(difference: float, low: float | None, high: float | None) -> str:
+    """Returns a share from how much it exceeds that of the opposite."""
+    between = None if low is None or high is None else ((1 + low) / 2, (1 + high) / 2)
+    return f"{50 * (1 + difference):.0f} %{_between(between, 100, 0)}"
 
 
 def _conversations(row: Row) -> str:
@@ -158,21 +205,42 @@ def differences(pairs: Sequence[Pair]) -> list[dict[str, object]]:
     return found
 
 
-def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = ()) -> str:
-    """Returns one line for each figure of each row, then one for each comparison."""
+def judgements(study: Study | None) -> list[dict[str, object]]:
+    """Returns the figures of a study as a whole in the same form."""
+    if study is None:
+        return []
+    known = {
+        "raters": len(study.raters),
+        "judgements": study.judgements,
+        "skipped": study.skipped,
+        "unasked": study.unasked,
+        "outdated": study.outdated,
+        "alpha": study.alpha,
+    }
+    place = {"prompt": None, "variant": None, "against": None}
+    empty = dict.fromkeys(_FIELDS)
+    return [{**place, "figure": name, **empty, "value": value} for name, value in known.items()]
+
+
+def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None) -> str:
+    """Returns one line for each figure of each row, then one for each comparison, then those of a study."""
     out = io.StringIO()
     writer = csv.DictWriter(out, ("prompt", "variant", "against", "figure", *_FIELDS), lineterminator="\n")
     writer.writeheader()
     writer.writerows(line for row in rows for line in data(row))
-    writer.writerows(differences(pairs))
+    writer.writerows([*differences(pairs), *judgements(study)])
     return out.getvalue()
 
 
-def to_json(rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = ()) -> str:
+def to_json(
+    rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None
+) -> str:
     """Returns the same as data, with how intervals and probabilities were had."""
     lines: dict[str, object]
     lines = {"variants": [line for row in rows for line in data(row)]}
     lines["prompts"] = [line for row in prompts for line in data(row)]
     lines["pairs"] = differences(pairs)
+    if study is not None:
+        lines["study"] = judgements(study)
     lines["method"] = {"resamples": RESAMPLES, "seed": SEED, "test": "paired permutation, two-sided"}
     return json.dumps(lines, indent=1, ensure_ascii=False) + "\n"

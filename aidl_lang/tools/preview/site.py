@@ -1,9 +1,4 @@
-"""The pages of the preview and their WebSocket, for this machine and for holders of the token only.
-
-A page of the web that the user has open elsewhere can send requests to localhost, too. It does not know the
-token that all addresses begin with, its requests name another `Host` once its own name is made to mean this
-machine, and its WebSockets another `Origin`.
-"""
+"""The pages of the preview and their WebSocket."""
 
 from __future__ import annotations
 
@@ -19,14 +14,14 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from aidl_lang.tools.preview.host import LONGEST, Host
+from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
 from aidl_lang.tools.preview.page import Page
 from aidl_lang.tools.preview.watching import watch
 
-PANE = Path(__file__).parent / "pane"
 MOST_PAGES = 16
 """Most pages that are served at once."""
 POLICY = (
@@ -34,15 +29,6 @@ POLICY = (
     "img-src 'self' data:; font-src 'self'"
 )
 """What a page may load. The editor of the text makes a style sheet of its own: `nonce` is for that."""
-_KINDS = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-_HEADERS = {
-    "Cache-Control": "no-store",
-    "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Referrer-Policy": "no-referrer",
-    "X-Content-Type-Options": "nosniff",
-}
 _TRY_AGAIN = 1013
 _NO_TEXT = 1003
 _TOO_BIG = 1009
@@ -59,7 +45,7 @@ def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
     ]
     app = Starlette(routes=routes, lifespan=_working)
     app.state.host, app.state.token = host, token
-    return _Guard(app, frozenset(addresses), token)
+    return Guard(app, addresses, token)
 
 
 @asynccontextmanager
@@ -76,36 +62,6 @@ async def _working(app: Starlette) -> AsyncIterator[None]:
         watching.result()
 
 
-class _Guard:
-    """Admits requests that call this machine by its own name and know the token."""
-
-    def __init__(self, app: ASGIApp, addresses: Collection[str], token: str) -> None:
-        self._app, self._addresses, self._token = app, addresses, token
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] == "lifespan":
-            await self._app(scope, receive, send)
-            return
-        refusal = self._refusal(scope)
-        if refusal is None:
-            await self._app(scope, receive, send)
-        elif scope["type"] == "websocket":
-            await WebSocket(scope, receive, send).close()  # before it was opened: 403
-        else:
-            await Response(status_code=refusal, headers=_HEADERS)(scope, receive, send)
-
-    def _refusal(self, scope: Scope) -> int | None:
-        headers = [(name.lower(), value.decode("latin-1")) for name, value in scope["headers"]]
-        hosts = [value for name, value in headers if name == b"host"]
-        if len(hosts) != 1 or hosts[0].lower() not in self._addresses:
-            return 421
-        origins = [value for name, value in headers if name == b"origin"]
-        if any(origin.lower() != f"http://{hosts[0].lower()}" for origin in origins):
-            return 403
-        given = scope["path"].removeprefix("/").partition("/")[0]
-        return None if secrets.compare_digest(given.encode(), self._token.encode()) else 404
-
-
 async def _index(request: Request) -> Response:
     text = (PANE / "index.html").read_text("utf-8")
     uri, nonce = request.app.state.host.uri, secrets.token_urlsafe(16)
@@ -113,21 +69,18 @@ async def _index(request: Request) -> Response:
     values = {"csp": policy, "root": "pane/", "nonce": nonce, "socket": "socket", "uri": uri}
     for name, value in values.items():
         text = text.replace(f"{{{{{name}}}}}", html.escape(value))
-    strict = f"{policy}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
-    return Response(text, media_type="text/html", headers={**_HEADERS, "Content-Security-Policy": strict})
+    headers = {**HEADERS, "Content-Security-Policy": f"{policy}; {STRICT}"}
+    return Response(text, media_type="text/html", headers=headers)
 
 
 @cache
 def _files() -> dict[str, Path]:
     """Returns the files of the pane that pages may ask for, by name."""
-    return {file.name: file for file in PANE.iterdir() if file.suffix in _KINDS}
+    return {file.name: file for file in PANE.iterdir() if file.suffix in KINDS}
 
 
 async def _file(request: Request) -> Response:
-    file = _files().get(request.path_params["name"])
-    if file is None:
-        return Response(status_code=404, headers=_HEADERS)
-    return Response(file.read_bytes(), media_type=_KINDS[file.suffix], headers=_HEADERS)
+    return file_named(_files(), request.path_params["name"])
 
 
 async def _socket(socket: WebSocket) -> None:

@@ -1,0 +1,1 @@
+from tests.preview.conftest import browser as browser
