@@ -90,19 +90,19 @@ def rank(page: Page, taste: Taste) -> None:
     page.wait_for_function(is_next, arg=number)
 
 
-def ann(prompt: str) -> dict[str, int]:
+def north(prompt: str) -> dict[str, int]:
     return {"full": 0, "openscad": 1, "svg": 2}
 
 
-def bob(prompt: str) -> dict[str, int] | None:
+def south(prompt: str) -> dict[str, int] | None:
     return None if prompt == "old key" else {"full": 0, "openscad": 0, "svg": 1}
 
 
-def cem(prompt: str) -> dict[str, int]:
+def west(prompt: str) -> dict[str, int]:
     return {"full": 1, "openscad": 0, "svg": 2} if prompt < "p" else {"full": 2, "openscad": 1, "svg": 0}
 
 
-RATERS: dict[str, Taste] = {"ann": ann, "bob": bob, "cem": cem}
+RATERS: dict[str, Taste] = {"north": north, "south": south, "west": west}
 STATES = {("tall mug", "svg", 1): "none"}
 
 
@@ -130,28 +130,28 @@ def test_three_raters_and_the_report(
     results.write(tmp_path, states=STATES)
     with serving(tmp_path) as url:
         with opened(browser, url) as page:
-            begin(page, "ann")
+            begin(page, "north")
             for _number in PROMPTS:
-                rank(page, ann)
+                rank(page, north)
             expect(page.locator("#all")).to_have_text("That was all: 4 answers are kept.")
             page.get_by_role("button", name="Someone else").click()
-            begin(page, "bob")
-            rank(page, bob)
-            rank(page, bob)
-        assert [line["rater"] for line in results.lines(tmp_path)] == ["ann"] * 4 + ["bob"] * 2
-    with serving(tmp_path) as url:  # bob stopped in the middle, and so did the study
+            begin(page, "south")
+            rank(page, south)
+            rank(page, south)
+        assert [line["rater"] for line in results.lines(tmp_path)] == ["north"] * 4 + ["south"] * 2
+    with serving(tmp_path) as url:  # south stopped in the middle, and so did the study
         with opened(browser, url) as page:
-            begin(page, "Bob")
+            begin(page, "South")
             expect(page.locator("#count")).to_have_text("3 of 4")
-            rank(page, bob)
+            rank(page, south)
             page.reload()
             expect(page.locator("#count")).to_have_text("4 of 4")
-            rank(page, bob)
+            rank(page, south)
             expect(page.locator("#all")).to_be_visible()
         with opened(browser, url) as page:
-            begin(page, "cem")
+            begin(page, "west")
             for _number in PROMPTS:
-                rank(page, cem)
+                rank(page, west)
             expect(page.locator("#all")).to_be_visible()
     assert len(results.lines(tmp_path)) == 12
 

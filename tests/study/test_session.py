@@ -42,7 +42,7 @@ def answer(session: Session, rater: str, ranking: tuple[tuple[int, ...], ...] | 
 
 
 def test_every_prompt_comes_once_before_any_comes_twice(session: Session) -> None:
-    for rater in ("ann", "bob", "7"):
+    for rater in ("north", "south", "7"):
         order = session.order(rater)
         assert len({sheet.id for sheet in order}) == len(order) == 2 * len(PROMPTS)
         first, second = order[: len(PROMPTS)], order[len(PROMPTS) :]
@@ -62,9 +62,9 @@ def test_each_place_on_the_screen_and_in_the_order_is_drawn_by_lot(session: Sess
 
 
 def test_the_order_on_the_screen_is_kept(session: Session, store: Store) -> None:
-    answer(session, "ann", ((2,), (0, 1)))
+    answer(session, "north", ((2,), (0, 1)))
     (line,) = results.lines(store.folder)
-    names = session.shown("ann", session.order("ann")[0])
+    names = session.shown("north", session.order("north")[0])
     assert line["shown"] == names
     assert line["ranking"] == [[names[2]], [names[0], names[1]]]
     assert (line["number"], line["count"], line["pictures"]) == (1, 8, "neutral")
@@ -83,37 +83,37 @@ def test_ranks_share_the_mean_of_theirs() -> None:
 
 def test_a_rater_goes_on_goes_back_and_changes_an_answer(session: Session, store: Store) -> None:
     for ranking in (((0,), (1,), (2,)), None, ((0, 1, 2),)):
-        answer(session, "ann", ranking)
+        answer(session, "north", ranking)
     again = opened(Store(store.folder), "neutral")
-    asked = again.asked("ann", None)
+    asked = again.asked("north", None)
     assert (asked["number"], asked["answered"], asked["count"], asked["answer"]) == (3, 3, 8, None)
-    assert again.asked("ann", 1)["answer"] == {"ranking": None}
-    before = again.asked("ann", 0)
+    assert again.asked("north", 1)["answer"] == {"ranking": None}
+    before = again.asked("north", 0)
     assert before["answer"] == {"ranking": [[0], [1], [2]]}
-    again.answer("ann", 0, before["id"], ((2,), (1,), (0,)))
-    assert again.asked("ann", 0)["answer"] == {"ranking": [[2], [1], [0]]}
-    assert again.asked("ann", None)["number"] == 3
+    again.answer("north", 0, before["id"], ((2,), (1,), (0,)))
+    assert again.asked("north", 0)["answer"] == {"ranking": [[2], [1], [0]]}
+    assert again.asked("north", None)["number"] == 3
     study = study_of(store, store.records())
     assert study is not None
-    assert (study.raters, study.judgements, study.skipped, study.outdated) == (["ann"], 2, 1, 0)
+    assert (study.raters, study.judgements, study.skipped, study.outdated) == (["north"], 2, 1, 0)
     assert len(results.lines(store.folder)) == 4
 
 
 @pytest.mark.parametrize("ranking", [(), ((0,),), ((0,), (1,), (2,), (3,)), ((0, 1), (1, 2)), ((-1, 0, 1),)])
 def test_half_a_ranking_is_refused(session: Session, ranking: tuple[tuple[int, ...], ...]) -> None:
     with pytest.raises(RefusedError, match="one place"):
-        answer(session, "ann", ranking)
+        answer(session, "north", ranking)
     assert session.answers.all() == []
 
 
 def test_nobody_answers_ahead(session: Session) -> None:
-    ahead = [sheet for sheet in session.order("ann") if sheet.is_shown][2]
+    ahead = [sheet for sheet in session.order("north") if sheet.is_shown][2]
     with pytest.raises(RefusedError):
-        session.asked("ann", 1)
+        session.asked("north", 1)
     with pytest.raises(RefusedError):
-        session.answer("ann", 2, ahead.id, ((0, 1, 2),))
+        session.answer("north", 2, ahead.id, ((0, 1, 2),))
     with pytest.raises(RefusedError, match="load this page again"):
-        session.answer("ann", 0, ahead.id, ((0, 1, 2),))
+        session.answer("north", 0, ahead.id, ((0, 1, 2),))
 
 
 STATES = {
@@ -137,13 +137,13 @@ def test_who_drew_nothing_is_last_and_who_broke_off_is_left_out(tmp_path: Path) 
         "tall mug": ((), LANGUAGES),
         "wide fork": (("openscad", "svg"), ()),
     }
-    assert session.asked("ann", None)["count"] == 2
+    assert session.asked("north", None)["count"] == 2
     for _number in range(2):
-        asked = session.asked("ann", None)
-        shown = session.shown("ann", next(s for s in session.sheets if s.id == asked["id"]))
+        asked = session.asked("north", None)
+        shown = session.shown("north", next(s for s in session.sheets if s.id == asked["id"]))
         best = shown.index("openscad")
-        session.answer("ann", asked["number"], asked["id"], ((best,), (1 - best,)))
-    assert "pictures" not in session.asked("ann", None)
+        session.answer("north", asked["number"], asked["id"], ((best,), (1 - best,)))
+    assert "pictures" not in session.asked("north", None)
     study = study_of(store, store.records())
     assert study is not None
     assert (study.judgements, study.unasked) == (2, 2)
@@ -170,14 +170,14 @@ def test_what_needs_no_rater_waits_until_its_turn(tmp_path: Path) -> None:
 
 def test_answers_to_what_has_changed_do_not_count(session: Session, store: Store) -> None:
     for _number in range(8):
-        answer(session, "ann", ((0,), (1,), (2,)))
+        answer(session, "north", ((0,), (1,), (2,)))
     path = store.folder / "records/old_key/full/1.json"
     changed = json.loads(path.read_text("utf-8")) | {"program": "another"}
     path.write_text(json.dumps(changed), "utf-8")
     study = study_of(store, store.records())
     assert study is not None
     assert (study.judgements, study.outdated) == (7, 1)
-    asked = opened(store, "neutral").asked("ann", None)
+    asked = opened(store, "neutral").asked("north", None)
     assert (asked["answered"], asked["text"]) == (7, "old key")
 
 
@@ -187,7 +187,7 @@ def test_answers_to_what_has_changed_do_not_count(session: Session, store: Store
 @pytest.mark.parametrize(
     ("typed", "name"),
     [
-        ("Ann", "ann"),
+        ("North", "north"),
         ("  J.  de-Vries ", "j. de-vries"),
         ("7", "7"),
         ("Zoë", "zoë"),
@@ -228,21 +228,21 @@ def test_what_is_no_name(typed: object) -> None:
 
 
 def test_half_a_line_is_cut_and_nothing_else(session: Session, store: Store) -> None:
-    answer(session, "ann", None)
+    answer(session, "north", None)
     whole = session.answers.path.read_bytes()
     session.answers.path.write_bytes(whole + whole[:70])
-    assert opened(store, "neutral").asked("ann", None)["number"] == 1
-    answer(opened(store, "neutral"), "bob", None)
+    assert opened(store, "neutral").asked("north", None)["number"] == 1
+    answer(opened(store, "neutral"), "south", None)
     assert session.answers.path.read_bytes().startswith(whole)
-    assert [line["rater"] for line in results.lines(store.folder)] == ["ann", "bob"]
+    assert [line["rater"] for line in results.lines(store.folder)] == ["north", "south"]
     session.answers.path.write_bytes(whole[:20])
     assert session.answers.all() == []
 
 
 def test_two_servers_see_each_other(session: Session, store: Store) -> None:
     other = opened(store, "neutral")
-    answer(session, "ann", None)
-    assert other.asked("ann", None)["number"] == 1
+    answer(session, "north", None)
+    assert other.asked("north", None)["number"] == 1
 
 
 DAMAGES: list[Callable[[dict[str, object]], object]] = [
@@ -270,7 +270,7 @@ def test_damaged_lines_are_refused(
     session: Session, store: Store, damage: Callable[[dict[str, object]], object]
 ) -> None:
     for _number in range(2):
-        answer(session, "ann", ((0, 1), (2,)))
+        answer(session, "north", ((0, 1), (2,)))
     first, second = results.lines(store.folder)
     damage(second)
     session.answers.path.write_text(f"{json.dumps(first)}\n{json.dumps(second)}\n", "utf-8")
@@ -292,7 +292,7 @@ def test_what_is_no_line_is_told(store: Store, line: str, capsys: pytest.Capture
 def test_other_pictures_are_refused(
     session: Session, store: Store, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    answer(session, "ann", None)
+    answer(session, "north", None)
     assert main(["eval", "study", str(store.folder), "--no-open", "--pictures", "own"]) == 2
     assert capsys.readouterr().err == (
         f"error[E0989]: `{store.folder / STUDY}` has answers to pictures in style `neutral`, not `own`\n"
@@ -330,9 +330,9 @@ def test_options_of_a_run_are_refused(store: Store, capsys: pytest.CaptureFixtur
 
 
 def test_answers_are_exported(session: Session, store: Store, capsys: pytest.CaptureFixture[str]) -> None:
-    answer(session, "ann", ((0,), (1, 2)))
-    answer(session, "ann", None)
-    session.answer("ann", 0, session.asked("ann", 0)["id"], ((2,), (1,), (0,)))
+    answer(session, "north", ((0,), (1, 2)))
+    answer(session, "north", None)
+    session.answer("north", 0, session.asked("north", 0)["id"], ((2,), (1,), (0,)))
     assert main(["eval", "study", str(store.folder), "--export", "-"]) == 0
     out, err = capsys.readouterr()
     assert err == f"-: 3 answers of {store.folder / STUDY}\n"

@@ -118,7 +118,7 @@ def test_the_page_and_its_files_name_no_language(page: Site) -> None:
 
 def test_pictures_stand_in_the_order_of_the_rater(page: Site, store: Store) -> None:
     session = opened(store, "neutral")
-    for rater in ("ann", "bob", "cem"):
+    for rater in ("north", "south", "west"):
         said = page.post("sheet", rater=rater).json()
         sheet = next(sheet for sheet in session.sheets if sheet.id == said["id"])
         widths = [
@@ -149,7 +149,7 @@ def test_there_is_nothing_else(page: Site, path: str) -> None:
 
 
 def test_strangers_are_refused(page: Site) -> None:
-    said = {"rater": "ann"}
+    said = {"rater": "north"}
     for what in ("sheet", "answer"):
         assert page.client.get(f"/{TOKEN}/{what}").status_code == 405
         assert page.client.post(f"/wrong/{what}", json=said).status_code == 404
@@ -179,7 +179,7 @@ def test_strangers_are_refused(page: Site) -> None:
         b"\xff",
         b"[" * 4000,
         b'{"a":' * 800,
-        b'{"rater": "ann"}' + b" " * 5000,
+        b'{"rater": "north"}' + b" " * 5000,
     ],
 )
 @pytest.mark.parametrize("what", ["sheet", "answer"])
@@ -189,13 +189,13 @@ def test_noise_is_refused(page: Site, store: Store, what: str, content: bytes) -
 
 
 def test_forms_of_other_pages_are_refused(page: Site) -> None:
-    content = json.dumps({"rater": "ann"}).encode()
+    content = json.dumps({"rater": "north"}).encode()
     assert page.raw("sheet", content) == 200
     for kind in ("text/plain", "application/x-www-form-urlencoded", ""):
         assert page.raw("sheet", content, **{"content-type": kind}) == 400
 
 
-@pytest.mark.parametrize("rater", [None, 7, "", "=cmd", "<b>", "a" * 41, ["ann"]])
+@pytest.mark.parametrize("rater", [None, 7, "", "=cmd", "<b>", "a" * 41, ["north"]])
 def test_hostile_names_are_refused(page: Site, rater: object) -> None:
     answer = page.post("sheet", rater=rater)
     assert answer.status_code == 400
@@ -225,8 +225,8 @@ def test_hostile_names_are_refused(page: Site, rater: object) -> None:
     ],
 )
 def test_hostile_answers_are_refused(page: Site, store: Store, change: dict[str, object]) -> None:
-    first = page.post("sheet", rater="ann").json()
-    said = {"rater": "ann", "number": 0, "id": first["id"], "ranking": [[0], [1], [2]]}
+    first = page.post("sheet", rater="north").json()
+    said = {"rater": "north", "number": 0, "id": first["id"], "ranking": [[0], [1], [2]]}
     answer = page.post("answer", **{**said, **change})
     assert answer.status_code == 400
     assert answer.json()["reason"]
@@ -237,7 +237,7 @@ def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(store: Store) -> 
     page = Site(store)
     for picture in store.folder.rglob("*.neutral.png"):
         picture.write_bytes(b"\x89PNG\r\n\x1a\n")
-    answer = page.post("sheet", rater="ann")
+    answer = page.post("sheet", rater="north")
     assert answer.status_code == 500
     assert TELLING.search(answer.text) is None
     assert "no picture" in page.told[0].diagnostic.message
@@ -245,8 +245,8 @@ def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(store: Store) -> 
 
 def test_an_answer_that_cannot_be_kept_is_told(store: Store) -> None:
     page = Site(store)
-    first = page.post("sheet", rater="ann").json()
+    first = page.post("sheet", rater="north").json()
     (store.folder / "study.jsonl").mkdir()
-    answer = page.post("answer", rater="ann", number=0, id=first["id"], ranking=None)
+    answer = page.post("answer", rater="north", number=0, id=first["id"], ranking=None)
     assert answer.status_code == 500
     assert [reason.diagnostic.code for reason in page.told] == ["E0988"]
