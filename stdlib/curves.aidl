@@ -70,7 +70,7 @@ shape s_curve(start: point, end: point, upright: bool = false) {
     let dx = end.x - start.x
     let dy = end.y - start.y
     assert abs(written(if upright then dx else dy)) > 0.000001 * norm(written(end - start)),
-        "an S goes aside: this one would be a straight line"
+        "an S goes aside: straight ahead go a `wave` and a `line`"
     let radius = (dx ^ 2 + dy ^ 2) / (4 * (if upright then dx else dy))
     let reach = if upright then (radius, 0) else (0, radius)
     let is_left_first = (written(dx) * written(dy) > 0) != upright

@@ -33,7 +33,10 @@ assembly plates {
     solid upper { body = rectangle(center: (0, 40), width: wide, height: 10) }
 }
 """
-HINT = "it has too many curves, or too many that cross; the limit is a setting of the API"
+HINT = (
+    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch` of patterns, take less; "
+    "the limit is a setting of the API"
+)
 
 
 @pytest.fixture

@@ -356,8 +356,11 @@ class Mismatch:
         """The reason in words, made when it is read: most mismatches are never reported."""
         if self.kinds is None:
             return self.problem
-        wanted, given = map(with_article, self.kinds)
-        return f"{self.problem} to be {wanted}, not {given}"
+        wanted, given = self.kinds
+        not_whole = isinstance(given, NumberType) and given.dimension in (None, PLAIN)
+        is_fraction = not_whole and isinstance(wanted, NumberType) and wanted.whole
+        other = "one that may be a fraction" if is_fraction else with_article(given)
+        return f"{self.problem} to be {with_article(wanted)}, not {other}"
 
 
 _GATHERED = 20

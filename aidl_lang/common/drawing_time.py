@@ -22,7 +22,10 @@ class TooLongError(AidlError):
                 f"{doing} what this program says takes more than {seconds:g} seconds",
                 span,
                 label,
-                hints=("it has too many curves, or too many that cross; the limit is a setting of the API",),
+                hints=(
+                    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch` of patterns, "
+                    "take less; the limit is a setting of the API",
+                ),
             )
         )
 
