@@ -34,7 +34,7 @@ assembly plates {
 }
 """
 HINT = (
-    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch` of patterns, take less; "
+    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch`, take less; "
     "the limit is a setting of the API"
 )
 

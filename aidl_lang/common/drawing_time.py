@@ -23,7 +23,7 @@ class TooLongError(AidlError):
                 span,
                 label,
                 hints=(
-                    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch` of patterns, "
+                    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch`, "
                     "take less; the limit is a setting of the API",
                 ),
             )
