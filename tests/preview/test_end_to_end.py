@@ -229,6 +229,20 @@ def test_a_number_with_a_unit_is_written_and_undone(preview: Preview) -> None:
     wait(lambda: preview.text == TELEPHONE.replace("160mm", "14cm"))
 
 
+def test_what_is_being_typed_stays_when_a_new_picture_comes(preview: Preview) -> None:
+    field = preview.page.get_by_role("textbox", name="width")
+    field.fill("200")
+    longer = f"{TELEPHONE}// of another hand\n"
+    preview.file.write_text(longer, "utf-8")
+    expect(preview.find("#source-lines")).to_contain_text("of another hand")
+    expect(field).to_have_value("200")
+    field.press("Enter")
+    wait(lambda: preview.text == longer.replace("160mm", "200mm"))
+    field.fill("90")
+    field.press("Escape")
+    expect(field).to_have_value("200")
+
+
 def test_a_failed_assertion_changes_the_status_while_a_slider_moves(preview: Preview) -> None:
     text = (
         "solid a {\n    param w = 30 in 10..90\n    body = rectangle(width: w, height: 20)\n"

@@ -265,6 +265,7 @@ function number(row, id) {
   const slider = el("input", { type: "range", step: "any", "aria-label": knob.name });
   const field = el("input", { type: "text", id, size: "6", autocomplete: "off", spellcheck: "false", "aria-describedby": `${id}-refusal` });
   const unit = el("span", { class: "unit" }, knob.unit === "deg" ? "°" : knob.unit);
+  let isTyping = false; // what is being typed stays when a new picture comes
   const bounds = [knob.low, knob.high].map((bound) => (bound === null ? "…" : shown(bound, 6)));
   const range = knob.low === null && knob.high === null ? "" : `${bounds.join(" to ")}; `;
   field.title = `${range}units and sums are worked out: 12cm, 80+20, 1/2in`;
@@ -284,7 +285,7 @@ function number(row, id) {
     }
     set(slider, { min: `${scale.start}`, max: `${scale.end}` });
     slider.value = String(value);
-    field.value = plain(Number(value));
+    if (!isTyping) field.value = plain(Number(value));
     fill(Number(value));
   }
 
@@ -310,13 +311,23 @@ function number(row, id) {
     slider.value = String(row.value);
     row.finish();
   });
-  field.addEventListener("input", () => row.refuse(""));
+  field.addEventListener("input", () => {
+    isTyping = true;
+    row.refuse("");
+  });
+  field.addEventListener("keydown", ({ key }) => {
+    if (key !== "Escape") return;
+    isTyping = false;
+    if (!row.isRefused) show(row.value);
+  });
   field.addEventListener("change", () => {
+    isTyping = false;
     const text = field.value.trim();
     if (text === "" || text === plain(Number(row.value))) show(row.value);
     else void row.type(text);
   });
   field.addEventListener("blur", () => {
+    isTyping = false;
     if (!row.isAsking && !row.isRefused) show(row.value); // what was typed is the value, otherwise written
   });
   show(knob.value);
