@@ -72,7 +72,6 @@ assembly panelled_door {
         lock = drop(center: (-side * 44 * u, rail - 6 * u), radius: 1.2 * u, height: 5 * u)
         mouth = slot(center: (0, rail), length: 20 * u, width: 2 * u)
     }
-    /// Treads and risers by turns.
     steps = [box(stone, w * u, h * u) for stone, w, h in [
         ["#f0ebdd", 160, 3], ["#b9b1a0", 157, 8], ["#f0ebdd", 190, 3], ["#b9b1a0", 187, 8]
     ]]
