@@ -5,18 +5,20 @@ assembly robot_face {
     param eye = 0.26 in 0.19..0.33
     param teeth = 7 in 4..10 step 1
     param rivets = 4 in 2..6 step 1
-
     let w = width / 100
     let tall = tallness * width
+
     let tin = "#6fa3b8"
     let steel = "#69737f"
     let brass = "#e3b04a"
     let ink = "#22303c"
+    @color(tint) @shade(ball)
+    solid ball(tint = brass, radius = 3.6 * w) { v = circle(origin, radius) }
     for i in 0..2 {
         @color("#ff8a80") @opacity(0.16) @stroke(none)
         solid glow[i] { v = circle(radius: (9 + 3 * i) * w) }
     }
-    @color("#e5484d") @shade(ball) solid bulb { lamp = circle(radius: 6 * w) }
+    bulb = ball("#e5484d", 6 * w)
     @color(brass) @detached solid waves {
         right = [thick(arc(origin, r * w, -35deg, 35deg), 1.6 * w, "butt") for r in [11, 16, 21]]
         left = mirror(right, about: y_axis)
@@ -38,9 +40,7 @@ assembly robot_face {
         v = trapezoid(bottom_width: 112 * w, top_width: 84 * w, height: 24 * w)
         fillet([v.corners[2], v.corners[3]], 12 * w)
     }
-    for i in -2..2 {
-        @color(brass) @shade(ball) solid button[i] { v = circle(radius: 3.6 * w) }
-    }
+    buttons = [ball() for i in -2..2]
     @color(brass) @shade(round, 90deg) @edges(seams) solid right_ear {
         axle = rectangle(width: 6 * w, height: 12 * w)
         disc = rounded_rectangle(width: 7 * w, height: 32 * w, radius: 3 * w)
@@ -48,23 +48,24 @@ assembly robot_face {
         constrain row(axle, disc, knob, gap: 0, align: center)
     }
     left_ear = mirror(right_ear, about: y_axis)
-    @color(tin) @shade(round)
-    solid head { v = rounded_rectangle(center: origin, width: width, height: tall, radius: 14 * w) }
-    @clip(head.v) @stroke(none) assembly gloss {
-        @color("black") @opacity(0.2) solid low { v = rectangle((0, -tall / 2), 2 * width, 10 * w) }
-        @color("white") @opacity(0.3) solid high { v = rectangle((0, tall / 2), 2 * width, 7 * w) }
-    }
-    @color(lighter(tin, 0.35)) @shade(slope)
-    solid plate { v = rounded_rectangle(width: 90 * w, height: tall - 14 * w, radius: 9 * w) }
-    @color("#2c3a46") @shade("#546a7b")
-    solid visor { v = rounded_rectangle((0, 0.14 * tall), 76 * w, 0.44 * tall, 12 * w) }
-    assembly studs {
-        for i in 0..<rivets {
-            @color("#dfe6ea") @shade(ball) solid left[i] { v = circle((-41.5 * w, 10 * i), 2 * w) }
+    assembly head {
+        @color(tin) @shade(round) solid shell { v = rounded_rectangle(origin, width, tall, 14 * w) }
+        @clip(shell.v) @stroke(none) assembly gloss {
+            @color("black") @opacity(0.2)
+            solid low { v = rectangle((0, 2.5 * w - tall / 2), width, 5 * w) }
+            @color("white") @opacity(0.3)
+            solid high { v = rectangle((0, tall / 2 - 2 * w), width, 4 * w) }
         }
+        @color(lighter(tin, 0.35)) @shade(slope)
+        solid plate { v = rounded_rectangle(origin, 90 * w, tall - 14 * w, 9 * w) }
+        @color("#2c3a46") @shade("#546a7b")
+        solid visor { v = rounded_rectangle((0, 0.14 * tall), 76 * w, 0.44 * tall, 12 * w) }
+    }
+    assembly studs {
+        for i in 0..<rivets { left[i] = ball("#dfe6ea", 2 * w) at (-41.5 * w, 10 * i) }
     }
     right_studs = mirror(studs, about: y_axis)
-    assembly lamp(d = 40) {
+    assembly lamp(d = min(eye, 0.34 * tallness) * width) {
         for i, size in enumerate([1.18, 1, 0.68]) {
             @color([brass, ink, "#3fd8c6"][i]) @shade(ball)
             solid disc[i] { v = circle(center: origin, diameter: size * d) }
@@ -73,34 +74,27 @@ assembly robot_face {
         drawing rays { v = polar_array(line((0, 0), (0.08 * d, 0)), n: 24, radius: 0.25 * d) }
         @color("#0c3b44") @shade(slope)
         solid pupil { v = cog(outer_radius: 0.22 * d, inner_radius: 0.16 * d, teeth: 8) }
+        @color(ink) @shade(slope)
+        solid brow { v = arc_slot(origin, 0.69 * d, 3.6 * w, 58deg, 122deg) }
         @color("white") @opacity(0.9) @stroke(none) solid glint {
             v = [circle((-k * d, k * d), (0.06 + 0.2 * k) * d) for k in [0.14, -0.1]]
         }
     }
-    let d = min(eye, 0.34 * tallness) * width
-    for s in [-1, 1] { eyes[s] = lamp(d) at (20 * s * w, 14 * w) }
-    @color("#e5484d") @shade(slope)
-    solid nose { v = triangle(center: (0, -5 * w), base: 9 * w, height: 8 * w) }
-    @color(ink) @shade(slope) solid features {
-        mouth = arc_slot((0, 0), 42 * w, 14 * w, start_angle: 237deg, end_angle: 303deg)
-        brow = arc_slot((20 * w, 0), 0.69 * d, 3.6 * w, start_angle: 58deg, end_angle: 122deg)
-        other_brow = mirror(brow, about: y_axis)
-    }
+    for s in [-1, 1] { eyes[s] = lamp() at (20 * s * w, 14 * w) }
+    nose = ball("#e5484d", 4 * w) at (0, -5 * w)
+    @color(ink) @shade(slope)
+    solid mouth { v = arc_slot(origin, 42 * w, min(14 * w, 0.17 * tall), 237deg, 303deg) }
     @color("#fff8e4") @shade(slope)
-    solid grin { v = ribs(features.mouth, 52 * w / teeth, 42 * w / teeth, margin: 2.5 * w) }
+    solid grin { v = ribs(mouth.v, 56 * w / teeth, 46 * w / teeth, margin: 2.5 * w) }
     constrain {
         for g in glow { g.center == bulb.center }
         waves.origin == bulb.center
-        for i in -2..2 { button[i].center == collar.center + (12 * i * w, 0) }
+        for i, b in enumerate(buttons) { b.center == collar.center + (12 * (i - 2) * w, 0) }
         column(bulb, antenna, head, neck, collar, gap: 0, align: center)
-        gloss.origin == head.v.center
-        plate.centered_in(head)
-        visor.center == head.v.center + (0, 0.14 * tall)
         right_ear.right_of(head, gap: 0, align: center)
-        for s in [-1, 1] { eyes[s].origin == visor.center + (20 * s * w, 0) }
-        features.brow.center.y == visor.center_y
-        features.mouth.bb.center == head.v.center - (0, 0.29 * tall)
-        nose.v.center.y == head.v.center.y - 0.08 * tall
-        spread(studs.left, inside: plate, axis: y, margin: 9 * w)
+        for s in [-1, 1] { eyes[s].origin == head.visor.center + (20 * s * w, 0) }
+        mouth.center == head.center - (0, 0.27 * tall)
+        nose.v.center.y == head.center.y - 0.08 * tall
+        spread(studs.left, inside: head.plate, axis: y, margin: 9 * w)
     }
 }
