@@ -29,15 +29,15 @@ assembly table_lamp {
     wall = part(wide, h + stem_height + 96, 0, "#413a58")
     @color("#534b6c") @shade("#2f2943") @stroke(none)
     solid paper { v = ribs(wall.v, pitch: 18, width: 8) }
-    for i in 0..7 {
-        @color("#ffc765") @opacity(0.07) @stroke(none) @clip(wall.v)
-        solid halo[i] { v = ellipse((0, 0), (1 + 0.09 * i) * s, (0.72 + 0.09 * i) * s) }
+    for i in 0..5 {
+        @color("#ffc765") @opacity(0.09) @stroke(none) @clip(wall.v)
+        solid halo[i] { v = circle(radius: (0.95 + 0.1 * i) * s) }
     }
     @color("#fff3c4") @shade("#8c6f58") @opacity(0.75) @stroke(none) solid glow {
         v = trapezoid(bottom_width: 3.4 * s, top_width: 1.84 * s, height: stem_height + 13)
     }
     table = part(wide, 10, 2, "#c08650")
-    @color("#8a5c34") drawing grain { v = wood_grain(table.v, pitch: 3) }
+    @color("#8a5c34") drawing grain { v = wood_grain(table.v, pitch: 3.5) }
     @color("#fff0c0") @opacity(0.5) @stroke(none) solid pool { v = ellipse((0, 0), 1.6 * s, 3.4) }
     front = part(wide - 12, 32, 1, "#8a5c3c")
     @color("black") @opacity(0.3) @stroke(none) solid ledge { v = rectangle((0, 0), wide - 12, 4) }
@@ -64,9 +64,9 @@ assembly table_lamp {
             glass_[i] = pane(a, b, if i % 2 == 0 then glass else mix(glass, "#ffe9b0", 0.7))
             jewels[i] = jewel(s * (b - a)) at (0.49 * s * (a + b), 0.14 * h)
         }
-        for i in 1..6 {
-            @color("#fff6d0") @opacity(0.1) @stroke(none)
-            solid shine[i] { v = ellipse((0, 0.42 * h), 0.12 * s * i, 0.065 * h * i) }
+        for i in 1..4 {
+            @color("#fff6d0") @opacity(0.14) @stroke(none)
+            solid shine[i] { v = ellipse((0, 0.42 * h), 0.18 * s * i, 0.1 * h * i) }
         }
     }
     rim = part(shade_width + 4, 5, 2.5, bronze, "round")
