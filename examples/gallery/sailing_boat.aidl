@@ -79,7 +79,8 @@ assembly sailing_boat {
         @color("#6b3c1d") drawing joints { v = planks(body, width: 4.5, length: 48 * l) }
     }
     @color(canvas) @shade(slope) solid rail { v = thick(hull.body.segment[0], 3) }
-    @color("gold") drawing name { v = text("AURORA", start: (22 * l, 5), height: 3 * l, bold: true) }
+    @color("gold")
+    drawing name { v = text("AURORA", start: (22 * l, 5), height: 3 * l, bold: true) }
     near_sea = sea(high: -3, waves: 6)
     @color("#14344a") @opacity(0.25) @stroke(none)
     solid under { v = ellipse((2 * l, -13), 44 * l, 5) }
