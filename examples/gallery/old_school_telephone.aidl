@@ -1,4 +1,4 @@
-/// A rotary telephone on a table: shaded casing, finger wheel over its digits, handset in the cradle, curly cord.
+/// A rotary telephone from the front: casing, finger wheel over its digits, handset in the cradle, curly cord.
 assembly old_school_telephone {
     param width = 180mm in 135..225
     param height = 104mm in 78..130
@@ -36,7 +36,7 @@ assembly old_school_telephone {
             mirrored(about: y_axis)
         )
     }
-    /// What light and shade lie on the casing.
+    /// The light and the shadows that lie on the casing.
     @clip(casing.outline) @stroke(none) assembly gloss {
         @color("black") @opacity(0.2) solid dark {
             under = ellipse((0, 100 * h), 50 * w, 12 * w)

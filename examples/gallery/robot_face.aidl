@@ -5,9 +5,9 @@ assembly robot_face {
     param eye = 0.26 in 0.19..0.33
     param teeth = 7 in 4..10 step 1
     param rivets = 4 in 2..6 step 1
+
     let w = width / 100
     let tall = tallness * width
-
     let tin = "#6fa3b8"
     let steel = "#69737f"
     let brass = "#e3b04a"
