@@ -8,23 +8,24 @@ assembly old_school_telephone {
     let w = width / 100
     let h = height / 100
     let r = dial / 2 * min(94 * h, 60 * w)
-    let shadow = darker(tint, 0.4)
-    @color(tint)
-    solid roundel(tint = "gainsboro", radius = 20) { rim = circle(center: origin, radius: radius) }
-    @color(tint) solid pads(tint = "#33333a", x = 10, width = 20, height = 10) {
-        left = rounded_rectangle((-x, 0), width: width, height: height, radius: 0.4 * height)
-        right = mirror(left, about: y_axis)
+    let ink = "#2c2c33"
+    @color(tint) @shade(light)
+    solid roundel(tint = "gainsboro", radius = 20, light = "ball") { rim = circle(origin, radius) }
+    @color(tint) @shade(light, way)
+    solid bar(tint = ink, wide = 10, high = 4, light = "round", way = 90deg) {
+        v = rounded_rectangle((0, 0), wide, high, min(wide, high) / 2.2)
     }
-    @color("#33333a") solid cord {
-        let swing = arc((-48 * w, height), (-45 * w, 6), mid: (-60 * w - 20, 42 * h))
+    for i in 0..4 {
+        @color("black") @opacity(0.07) @stroke(none)
+        solid pool[i] { v = ellipse((4 * w, -6), (76 - 4 * i) * w, (7 - i) * w) }
+    }
+    @color(ink) @shade(round, 60deg) solid cord {
+        swing = arc((-50 * w, height + 2), (-45 * w, 6), mid: (-60 * w - 20, 42 * h))
         wire = thick(swing, 2)
-        for i in 0..<curls_of_cord {
-            let turn = swing.start_angle + (i + 0.5) / curls_of_cord * swing.sweep
-            curl[i] = slot(swing.center + polar(swing.radius, turn), 14, 3.6, angle: turn + 15deg)
-        }
+        curls = along(slot((0, 0), 14, 3.8, 75deg), swing, n: curls_of_cord, inset: 4)
     }
-    feet = pads(x: 36 * w, width: 15 * w) at (0, -3)
-    @color(tint) solid casing {
+    for i in 0..1 { feet[i] = bar(wide: 16 * w, high: 9) at ((72 * i - 36) * w, -2) }
+    @color(tint) @shade(round) solid casing {
         outline = path(
             from: (0, 0),
             right(50 * w - 5),
@@ -34,33 +35,42 @@ assembly old_school_telephone {
             bezier_to((30 * w, 95 * h), (28 * w, 100 * h), (24 * w, 100 * h)),
             mirrored(about: y_axis)
         )
-        @color(lighter(tint, 0.4))
-        drawing shine { flank = arc((-42 * w, 25 * h), (-28 * w, 87 * h), mid: (-33 * w, 52 * h)) }
     }
-    @color(shadow)
-    solid skirt { rim = clip(rectangle(width: 2 * width, height: 20), by: casing.outline) }
-    @color("black") @opacity(0.2) @stroke(none)
-    solid shade { v = difference(casing.outline, copy(casing.outline, by: (-8 * w, 0))) }
+    /// The light and the shadows that lie on the casing.
+    @clip(casing.outline) @stroke(none) assembly gloss {
+        @color("black") @opacity(0.2) solid dark {
+            under = ellipse((0, 100 * h), 50 * w, 12 * w)
+            cast = circle((3 * w, 46 * h), 1.05 * r)
+            skirt = rectangle((0, 0), 2 * width, 18)
+        }
+        @color("white") @opacity(0.4) solid light {
+            sill = rectangle((0, 10), 2 * width, 1.6)
+            flank = lens((-34 * w, 52 * h), 66 * h, 3 * w, angle: 74deg)
+        }
+    }
     /// The dial, about its own origin; the digits show through the holes of the wheel.
     assembly face {
-        bezel = roundel(radius: r)
-        plate = roundel("ivory", radius: 0.92 * r)
+        bezel = roundel("#d8dce0", r, "round")
+        groove = roundel("#70757c", 0.94 * r, "slope")
+        plate = roundel("ivory", 0.91 * r, "none")
         @color("black") drawing digits {
             for i in 0..9 { d[i] = text(str((i + 1) % 10), polar(0.67 * r, 60 + 26 * i), 0.12 * r) }
         }
-        @color("#33333a") solid finger_wheel {
+        @color(ink) @shade(slope, -45deg) solid finger_wheel {
             plate = circle(center: origin, radius: 0.87 * r)
             for i in 0..9 { hole h[i] { rim = circle(polar(0.67 * r, 60 + 26 * i), 0.128 * r) } }
         }
-        hub = roundel(radius: 0.38 * r)
-        card = roundel("ivory", radius: 0.31 * r)
+        @color("white") @opacity(0.1) @stroke(none)
+        solid sheen { v = [sector(origin, 0.87 * r, a, a + 35) for a in [115, 295]] }
+        hub = roundel("#c9ced4", 0.4 * r)
+        card = roundel("ivory", 0.31 * r, "none")
         drawing name { letters = text("AIDL", center: origin, width: 0.4 * r) }
-        @color("silver")
+        @color("silver") @shade(round, 60deg)
         solid stop { hook = strip(polar(0.97 * r, -34), polar(0.6 * r, -24), 0.14 * r, 0.09 * r) }
     }
-    @color(shadow)
+    @color(darker(tint, 0.4)) @shade(round)
     solid saddle { block = trapezoid(bottom_width: 46 * w, top_width: 36 * w, height: 14) }
-    @color(tint) solid handset {
+    @color(tint) @shade(round, 90deg) solid handset {
         body = path(
             from: (0, 14 * w),
             bezier_to((22 * w, 14 * w), (29 * w, 13 * w), (32 * w, 3 * w)),
@@ -69,21 +79,22 @@ assembly old_school_telephone {
             bezier_to((23 * w, 28 * w), (12 * w, 26 * w), (0, 26 * w)),
             mirrored(about: y_axis)
         )
-        @color(lighter(tint, 0.4))
-        drawing shine { gleam = arc((-24 * w, 25 * w), (-51 * w, 17 * w), mid: (-39 * w, 25 * w)) }
     }
-    @color("black") @opacity(0.2) @stroke(none)
-    solid under { v = difference(handset.body, copy(handset.body, by: (0, 4 * w))) }
-    caps = pads(shadow, x: 44 * w, width: 28 * w, height: 4.5 * w)
-    @color(darker(tint, 0.2)) solid horns {
-        left = tapered_slot((-16 * w, 0), (-18 * w, 12 * w), 4.5 * w, 3 * w)
-        right = mirror(left, about: y_axis)
+    @color("white") @opacity(0.35) @stroke(none)
+    solid gleam { v = [lens((k * 36 * w, 25 * w), 28 * w, 2 * w, -k * 9) for k in [-1, 1]] }
+    for i in 0..1 { caps[i] = bar(darker(tint, 0.4), 28 * w, 5 * w, "round", 0deg) at (0, height) }
+    @color(darker(tint, 0.2)) @shade(round, 20deg) solid horn {
+        stem = tapered_slot((-16 * w, 0), (-18 * w, 12 * w), 4.5 * w, 3 * w)
     }
+    other_horn = mirror(horn, about: y_axis)
     constrain {
         face.bezel.rim.center == casing.center + (0, 2)
         saddle.on_top_of(casing, align: center)
         handset.body.start == saddle.block.top.midpoint
-        caps.top == handset.bottom + 2
-        horns.bottom == saddle.bottom + 2
+        gleam.center == handset.center + (0, 9.5 * w)
+        for i in 0..1 {
+            caps[i].v.top_center == (handset.center_x + (88 * i - 44) * w, handset.bottom + 2)
+        }
+        horn.bottom == saddle.bottom + 2
     }
 }

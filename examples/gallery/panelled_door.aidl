@@ -1,4 +1,4 @@
-/// A front door: a panelled leaf under a fanlight in a brick wall, with a knob, hinges and steps.
+/// A front door: a panelled leaf with brasses under a fanlight, in a brick wall over stone steps.
 assembly panelled_door {
     param width = 900mm in 675..1125
     param height = 1950mm in 1460..2440
@@ -10,77 +10,91 @@ assembly panelled_door {
     let side = if hinged == "left" then -1 else 1
     let cell = (height - 20 * u) / rows - 8 * u
     let rail = (cell + 8 * u) * (1 - rows / 2) + 4 * u
-    let paint = "#2f6b5a"
-    let stone = "#e9e4d8"
-    let brass = "#dcae4a"
-    @color("#b5543c") solid wall { v = rectangle(width: 220 * u, height: height + 100 * u) }
-    @color("#e6cdb6") drawing mortar { v = bricks(wall.v, width: 26 * u, height: 10 * u) }
-    assembly planter() {
-        @color("#5d8f56")
-        solid shrub { v = [circle((0, (34 + 21 * i) * u), (17 - 3 * i) * u) for i in 0..2] }
-        @color("#e6b34a")
-        solid fruit { v = [circle((4 * (-1) ^ i * u, (28 + 9 * i) * u), 1.6 * u) for i in 0..5] }
-        @color("#c98a5a") solid pot { v = trapezoid((0, 11 * u), 20 * u, 30 * u, 22 * u) }
-    }
-    for k in [-1, 1] { planters[k] = planter() at (92 * k * u, -height) }
-    @color(stone) solid surround {
+    let paint = "#23705c"
+    @color(tint) @shade(light)
+    solid box(tint = "#f4f1e8", w = 10, h = 10, light = "slope") { v = rectangle(origin, w, h) }
+    ground = box("#a9a193", 220 * u, 26 * u)
+    wall = box("#b04a35", 220 * u, height + 100 * u)
+    @color("#dcc3ab") @stroke(u)
+    drawing mortar { v = bricks(wall.v, width: 26 * u, height: 10 * u) }
+    @color("#e2dccb") @shade(round) solid surround {
         arch = arch(width: 140 * u, height: height + 78 * u)
         foot = rectangle(width: 146 * u, height: 18 * u)
     }
-    @color("#f7f5ee") solid frame { v = arch(width: 116 * u, height: height + 64 * u) }
-    @color("#bfe0ea") solid glass { v = semicircle(radius: 48 * u) }
-    @color("#f7f5ee") solid sunburst {
-        hub = semicircle(radius: 12 * u)
-        for i in 1..<panes {
-            ray[i] = strip(origin, polar(49 * u, 180deg / panes * i), width: 2.5 * u)
+    @color("black") @opacity(0.35) @stroke(none) @behind(surround)
+    solid cast { v = copy(surround.arch, by: (6 * u, 0)) }
+    @color("#f4f1e8") @shade(slope)
+    solid frame { v = arch(width: 116 * u, height: height + 64 * u) }
+    @color("#d3cbb6") @shade(slope)
+    solid keystone { v = trapezoid(bottom_width: 10 * u, top_width: 17 * u, height: 17 * u) }
+    assembly fanlight {
+        @color("#eaf6fa") @shade("#6fa6c4") solid glass { v = semicircle(radius: 48 * u) }
+        @color("white") @opacity(0.4) @stroke(none) @clip(glass.v) solid glare {
+            v = [parallelogram((x * u, 24 * u), 10 * u, 50 * u, 40 * u) for x in [-20, 6]]
         }
-        curve = thick(arc(radius: 32 * u, start_angle: 0deg, end_angle: 180deg), 2.5 * u)
+        @color("#f4f1e8") @shade(slope) solid sunburst {
+            hub = semicircle(radius: 12 * u)
+            curve = thick(arc(radius: 32 * u, start_angle: 0deg, end_angle: 180deg), 2.5 * u)
+            for i in 1..<panes {
+                let way = 180deg / panes * i
+                ray[i] = strip(polar(8 * u, way), polar(49 * u, way), width: 2.5 * u)
+            }
+        }
     }
-    /// A sunk panel: its upper left side is in the shade, its lower right one in the light.
+    transom = box(w: 106 * u, h: 7 * u)
+    leaf = box(paint, width, height)
+    /// A sunk panel: shade at its upper and left side, light at the others, and a raised field in it.
     assembly panel(w = 30mm, h = 60mm) {
-        let b = 5 * u
-        let x = w / 2
-        let y = h / 2
-        @color(lighter(paint, 0.3))
-        solid groove { v = rectangle(center: origin, width: w, height: h) }
-        @color(darker(paint, 0.45)) solid shade {
-            v = polygon((-x, -y), (b - x, b - y), (x - b, y - b), (x, y), (-x, y))
-        }
-        @color(paint)
-        solid field { v = rectangle(center: origin, width: w - 2 * b, height: h - 2 * b) }
+        groove = box(darker(paint, 0.5), w, h, "none")
+        @color(lighter(paint, 0.3)) @stroke(none)
+        solid lit { v = polygon((-w / 2, -h / 2), (w / 2, -h / 2), (w / 2, h / 2)) }
+        field = box(paint, w - 10 * u, h - 10 * u)
+        rise = box(lighter(paint, 0.12), w - 20 * u, h - 20 * u)
     }
-    @color("#f7f5ee") solid transom { v = rectangle(width: 106 * u, height: 6 * u) }
-    @color(paint) solid leaf { v = rectangle(width: width, height: height) }
     for i in 0..<rows {
-        for s in [-1, 1] {
-            panels[i][s] = panel(
-                w: 34 * u, h: cell
-            ) at (s * 21 * u, (cell + 8 * u) * (i - (rows - 1) / 2) + 4 * u)
-        }
+        let y = (i - (rows - 1) / 2) * (cell + 8 * u) + 4 * u
+        for s in [-1, 1] { panels[i][s] = panel(34 * u, cell) at (21 * s * u, y) }
     }
-    @color(brass) solid brasses {
-        plate = slot(center: (-side * 44 * u, rail), length: 22 * u, width: 7 * u, angle: 90deg)
-        letters = rounded_rectangle(center: (0, rail), width: 26 * u, height: 6 * u, radius: u)
-        for i in -1..1 {
-            hinge[i] = rectangle(
-                center: (side * 49 * u, i * height * 0.38), width: 5 * u, height: 13 * u
-            )
+    @color("black") @opacity(0.3) @stroke(none)
+    solid reveal { v = rectangle(width: width, height: 4 * u) }
+    @color("#dcae4a") @shade(slope) assembly brasses {
+        let edge = -side * 44 * u
+        solid plate { v = slot(center: (edge, rail), length: 22 * u, width: 7 * u, angle: 90deg) }
+        solid letters { v = rounded_rectangle((0, rail), 26 * u, 7 * u, radius: u) }
+        @shade(round) solid hinges {
+            for i in -1..1 { v[i] = rectangle((side * 49 * u, i * height * 0.38), 5 * u, 13 * u) }
         }
-        kick = rectangle(center: (0, 7 * u - height / 2), width: 84 * u, height: 9 * u)
+        solid kick { v = rectangle((0, 7 * u - height / 2), 84 * u, 9 * u) }
+        @shade(ball) solid knob { v = circle((edge, rail + 4 * u), radius: 5 * u) }
+        drawing number { v = text("17", (0, height / 2 - 7 * u), height: 4.5 * u, bold: true) }
     }
-    @color(lighter(brass, 0.35))
-    solid knob { v = circle(center: (-side * 44 * u, rail + 4 * u), radius: 4.5 * u) }
-    @color("#1d2b27") solid dark {
+    @color("#1d2b27") solid slits {
         lock = drop(center: (-side * 44 * u, rail - 6 * u), radius: 1.2 * u, height: 5 * u)
-        slit = slot(center: (0, rail), length: 20 * u, width: 2 * u)
+        mouth = slot(center: (0, rail), length: 20 * u, width: 2 * u)
     }
-    @color(darker(stone, 0.15)) solid upper_step { v = rectangle(width: 160 * u, height: 9 * u) }
-    @color(darker(stone, 0.3)) solid lower_step { v = rectangle(width: 190 * u, height: 9 * u) }
+    steps = [box(stone, w * u, h * u) for stone, w, h in [
+        ["#f0ebdd", 160, 3], ["#b9b1a0", 157, 8], ["#f0ebdd", 190, 3], ["#b9b1a0", 187, 8]
+    ]]
+    assembly planter() {
+        for i, r in enumerate([17 * u, 14 * u, 11 * u]) {
+            @color("#4f8f4b") @shade(ball)
+            solid bush[i] { v = rosette((0, (34 + 21 * i) * u), r, 0.91 * r, lobes: 14) }
+        }
+        @color("#f2b84b") @shade(ball)
+        solid fruit { v = [circle((5 * (-1) ^ i * u, (26 + 8 * i) * u), 1.8 * u) for i in 0..6] }
+        @color("#c17a4b") @shade(round) solid pot {
+            v = trapezoid((0, 10 * u), 20 * u, 27 * u, 20 * u)
+            lip = rectangle((0, 21 * u), 32 * u, 5 * u)
+        }
+    }
+    for k in [-1, 1] { planters[k] = planter() at (92 * k * u, -height) }
     constrain {
-        align_center_x(surround.foot, surround.arch, frame, wall, leaf)
-        column(glass, transom, leaf, upper_step, lower_step, gap: 0, align: center)
-        sunburst.hub.bb.bottom_center == glass.v.bb.bottom_center
+        align_center_x(surround.foot, surround.arch, keystone, frame, wall, leaf, reveal)
+        column([fanlight, transom, leaf] + steps, gap: 0, align: center)
         for k in [-1, 1] { planters[k].origin == wall.v.bottom.midpoint + (92 * k * u, 0) }
         align_bottom(surround.foot, surround.arch, frame.v, wall, leaf)
+        keystone.top == surround.arch.bb.top + 3 * u
+        reveal.top == leaf.top
+        ground.below(wall, gap: 0, align: center)
     }
 }

@@ -1,4 +1,4 @@
-/// A friendly tin robot: lamps for eyes, a grin, ears, rivets, and an antenna with a bulb.
+/// A friendly tin robot: glass lamps for eyes, a grin, ears, rivets, and an antenna with a bulb.
 assembly robot_face {
     param width = 160mm in 120..210
     param tallness = 0.85 in 0.63..1.07
@@ -8,16 +8,22 @@ assembly robot_face {
 
     let w = width / 100
     let tall = tallness * width
-    let tin = "#6f9bb0"
-    let steel = "#5b6470"
-    let brass = "#e0b04c"
-    let red = "#e5484d"
-    @color(red) solid bulb { lamp = circle(radius: 6 * w) }
+    let tin = "#6fa3b8"
+    let steel = "#69737f"
+    let brass = "#e3b04a"
+    let ink = "#22303c"
+    @color(tint) @shade(ball)
+    solid ball(tint = brass, radius = 3.6 * w) { v = circle(origin, radius) }
+    for i in 0..2 {
+        @color("#ff8a80") @opacity(0.16) @stroke(none)
+        solid glow[i] { v = circle(radius: (9 + 3 * i) * w) }
+    }
+    bulb = ball("#e5484d", 6 * w)
     @color(brass) @detached solid waves {
         right = [thick(arc(origin, r * w, -35deg, 35deg), 1.6 * w, "butt") for r in [11, 16, 21]]
         left = mirror(right, about: y_axis)
     }
-    @color(steel) solid antenna {
+    @color(steel) @shade(round) @edges(seams) solid antenna {
         foot = dome(width: 26 * w, height: 8 * w)
         rod = rectangle(width: 3 * w, height: 18 * w)
         for i in 0..2 { coil[i] = slot(length: 9 * w, width: 3 * w) }
@@ -27,62 +33,68 @@ assembly robot_face {
             for c in coil { centered_horizontally(c, rod) }
         }
     }
-    @color(steel) solid neck { pipe = rectangle(width: 40 * w, height: 14 * w) }
-    @color(darker(steel, 0.35))
+    @color(steel) @shade(round) solid neck { pipe = rectangle(width: 40 * w, height: 14 * w) }
+    @color("black") @opacity(0.35) @stroke(none)
     solid bellows { folds = slats(neck.pipe, width: 2 * w, gap: 2.5 * w) }
-    @color(darker(tin, 0.3))
-    solid collar { v = trapezoid(bottom_width: 112 * w, top_width: 76 * w, height: 22 * w) }
-    @color(brass) solid buttons { v = [circle((12 * w * i, 0), 3.4 * w) for i in -2..2] }
-    @color(brass) solid right_ear {
+    @color(darker(tin, 0.2)) @shade(round) solid collar {
+        v = trapezoid(bottom_width: 112 * w, top_width: 84 * w, height: 24 * w)
+        fillet([v.corners[2], v.corners[3]], 12 * w)
+    }
+    buttons = [ball() for i in -2..2]
+    @color(brass) @shade(round, 90deg) @edges(seams) solid right_ear {
         axle = rectangle(width: 6 * w, height: 12 * w)
         disc = rounded_rectangle(width: 7 * w, height: 32 * w, radius: 3 * w)
         knob = rounded_rectangle(width: 5 * w, height: 16 * w, radius: 2.4 * w)
         constrain row(axle, disc, knob, gap: 0, align: center)
     }
     left_ear = mirror(right_ear, about: y_axis)
-    @color(tin)
-    solid head { v = rounded_rectangle(center: origin, width: width, height: tall, radius: 14 * w) }
-    @color(darker(tin, 0.22))
-    solid shadow { v = difference(head.v, copy(head.v, by: (-5 * w, 4 * w))) }
-    @color(lighter(tin, 0.35))
-    solid plate { v = rounded_rectangle(width: 84 * w, height: tall - 14 * w, radius: 9 * w) }
-    @color("#3a4a57")
-    solid visor { v = rounded_rectangle((0, 0.14 * tall), 79 * w, 0.44 * tall, 12 * w) }
-    @color(steel) solid studs {
-        for i in 0..<rivets { left[i] = circle(center: (-37 * w, 10 * i), radius: 1.8 * w) }
+    assembly head {
+        @color(tin) @shade(round) solid shell { v = rounded_rectangle(origin, width, tall, 14 * w) }
+        @clip(shell.v) @stroke(none) assembly gloss {
+            @color("black") @opacity(0.2)
+            solid low { v = rectangle((0, 2.5 * w - tall / 2), width, 5 * w) }
+            @color("white") @opacity(0.3)
+            solid high { v = rectangle((0, tall / 2 - 2 * w), width, 4 * w) }
+        }
+        @color(lighter(tin, 0.35)) @shade(slope)
+        solid plate { v = rounded_rectangle(origin, 90 * w, tall - 14 * w, 9 * w) }
+        @color("#2c3a46") @shade("#546a7b")
+        solid visor { v = rounded_rectangle((0, 0.14 * tall), 76 * w, 0.44 * tall, 12 * w) }
+    }
+    assembly studs {
+        for i in 0..<rivets { left[i] = ball("#dfe6ea", 2 * w) at (-41.5 * w, 10 * i) }
     }
     right_studs = mirror(studs, about: y_axis)
-    assembly lamp(d = 40) {
-        let tones = [brass, "#22303c", "#4fe3d0"]
+    assembly lamp(d = min(eye, 0.34 * tallness) * width) {
         for i, size in enumerate([1.18, 1, 0.68]) {
-            @color(tones[i]) solid disc[i] { v = circle(center: origin, diameter: size * d) }
+            @color([brass, ink, "#3fd8c6"][i]) @shade(ball)
+            solid disc[i] { v = circle(center: origin, diameter: size * d) }
         }
+        @color("#0c5a5f")
         drawing rays { v = polar_array(line((0, 0), (0.08 * d, 0)), n: 24, radius: 0.25 * d) }
-        @color("#0c3b44")
+        @color("#0c3b44") @shade(slope)
         solid pupil { v = cog(outer_radius: 0.22 * d, inner_radius: 0.16 * d, teeth: 8) }
-        @color("white") solid glint { v = circle(center: (0.15 * d, 0.17 * d), radius: 0.07 * d) }
+        @color(ink) @shade(slope)
+        solid brow { v = arc_slot(origin, 0.69 * d, 3.6 * w, 58deg, 122deg) }
+        @color("white") @opacity(0.9) @stroke(none) solid glint {
+            v = [circle((-k * d, k * d), (0.06 + 0.2 * k) * d) for k in [0.14, -0.1]]
+        }
     }
-    right_eye = lamp(d: min(eye, 0.34 * tallness) * width) at (20 * w, 14 * w)
-    left_eye = mirror(right_eye, about: y_axis)
-    @color(red) solid nose { v = triangle(center: (0, -5 * w), base: 9 * w, height: 8 * w) }
-    @color("#22303c") solid features {
-        mouth = rounded_rectangle(width: 52 * w, height: 15 * w, radius: 7.5 * w)
-        brow = slot(start: (12 * w, 36 * w), end: (28 * w, 33 * w), width: 3.5 * w)
-        other_brow = mirror(brow, about: y_axis)
-    }
-    @color("#f6efd8")
-    solid grin { v = ribs(features.mouth, 52 * w / teeth, 42 * w / teeth, margin: 2.5 * w) }
+    for s in [-1, 1] { eyes[s] = lamp() at (20 * s * w, 14 * w) }
+    nose = ball("#e5484d", 4 * w) at (0, -5 * w)
+    @color(ink) @shade(slope)
+    solid mouth { v = arc_slot(origin, 42 * w, min(14 * w, 0.17 * tall), 237deg, 303deg) }
+    @color("#fff8e4") @shade(slope)
+    solid grin { v = ribs(mouth.v, 56 * w / teeth, 46 * w / teeth, margin: 2.5 * w) }
     constrain {
+        for g in glow { g.center == bulb.center }
         waves.origin == bulb.center
-        buttons.center == collar.center
+        for i, b in enumerate(buttons) { b.center == collar.center + (12 * (i - 2) * w, 0) }
         column(bulb, antenna, head, neck, collar, gap: 0, align: center)
-        plate.centered_in(head)
-        visor.center == head.v.center + (0, 0.14 * tall)
         right_ear.right_of(head, gap: 0, align: center)
-        right_eye.disc[0].v.center == head.v.center + (20 * w, 0.14 * tall)
-        features.brow.bottom == right_eye.disc[0].top + 1.5 * w
-        features.mouth.center == head.v.center - (0, 0.28 * tall)
-        nose.v.center.y == head.v.center.y - 0.08 * tall
-        spread(studs.left, inside: plate, axis: y, margin: 9 * w)
+        for s in [-1, 1] { eyes[s].origin == head.visor.center + (20 * s * w, 0) }
+        mouth.center == head.center - (0, 0.27 * tall)
+        nose.v.center.y == head.center.y - 0.08 * tall
+        spread(studs.left, inside: head.plate, axis: y, margin: 9 * w)
     }
 }
