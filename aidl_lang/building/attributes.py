@@ -127,7 +127,7 @@ THINNEST, WIDEST = 0.01, 1000.0
 MOST = 1000
 """Pieces of a part."""
 EDGES = ("seams", "outline")
-SHADES = ("round", "ball", "slope", "none")
+SHADES = ("round", "ball", "slope", "fade", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids without outline; a width of 0 says the same."""
 _WORDS = {"orientation": ORIENTATIONS, "edges": EDGES, "shade": SHADES, "stroke": (NO_OUTLINE.value,)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Line, Piece, Vec
@@ -30,16 +30,30 @@ class Ink:
     is_round: bool = False
 
 
+class Stop(NamedTuple):
+    """The colour and the opacity of a gradient at a share of its way, from 0 to 1."""
+
+    share: float
+    color: str
+    opacity: float = 1.0
+
+
 @record()
 class Gradient:
     """A fill that goes from colour to colour along the way from `start` to `end`; with a `radius`, outwards
-    from `start`. `stops` are shares of the way, from 0 to 1, with their colours.
+    from `start`, up and down by a share of it, its `height`.
     """
 
     start: Vec
     end: Vec
-    stops: tuple[tuple[float, str], ...]
+    stops: tuple[Stop, ...]
     radius: float | None = None
+    height: float = 1.0
+
+    @property
+    def fades(self) -> bool:
+        """Whether something shows through it."""
+        return any(stop.opacity < 1 for stop in self.stops)
 
 
 @record()

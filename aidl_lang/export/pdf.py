@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from functools import singledispatchmethod
 from typing import Any
 
+import numpy as np
+
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.numbers import size_text
@@ -30,6 +32,10 @@ LONGEST = 14_400 / POINTS_PER_MM
 _STEP = TAU / 16
 _FILLED_AND_STROKED = 2
 _WHITE = "#ffffff"
+_LAYERS = 40
+"""Layers of a fill that fades to nothing."""
+_FAR = 1e5
+"""mm; as far as any drawing goes on paper."""
 
 
 def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
@@ -101,18 +107,22 @@ class _Pen:
         if mark.ink is not None:
             self._ink(mark.ink)
         is_lined, is_filled = mark.ink is not None, mark.fill is not None
-        if mark.gradient is not None:
+        if mark.gradient is not None and mark.gradient.fades:
+            self._fade(path, mark.gradient, mark.opacity)
+            is_filled = False
+        elif mark.gradient is not None:
             if mark.opacity == 1:  # for readers without gradients
                 self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
             self._shade(path, mark.gradient)
             is_filled = False
-        self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
+        if is_filled or is_lined:
+            self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
         """Fills a path with a gradient, as dense as the fill is set to be."""
         shares, colors = (
-            [share for share, _ in gradient.stops],
-            [self._color(color) for _, color in gradient.stops],
+            [stop.share for stop in gradient.stops],
+            [self._color(stop.color) for stop in gradient.stops],
         )
         with self._state():
             self._canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
@@ -120,6 +130,39 @@ class _Pen:
                 self._canvas.linearGradient(*gradient.start, *gradient.end, colors, shares)
             else:
                 self._canvas.radialGradient(*gradient.start, gradient.radius, colors, shares)
+
+    def _fade(self, path: Any, gradient: Gradient, opacity: float) -> None:
+        """Fills a path with one colour that fades to nothing: in layers that lie on each other, as readers
+        agree on these and not on gradients of opacity.
+        """
+        shares = np.linspace(0.0, 1.0, _LAYERS + 1)
+        told = np.array([(stop.share, stop.opacity) for stop in gradient.stops])
+        seen = np.interp((shares[:-1] + shares[1:]) / 2, *told.T) * opacity
+        through = 1.0 - np.append(seen, 0.0)
+        with self._state():
+            self._canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
+            for layer in range(_LAYERS - 1, -1, -1):
+                self._canvas.setFillAlpha(1.0 - through[layer] / through[layer + 1])
+                self._canvas.drawPath(self._within(gradient, shares[layer + 1]), fill=1, stroke=0)
+
+    def _within(self, gradient: Gradient, share: float) -> Any:
+        """Returns the area that a gradient covers up to a share of its way."""
+        path, (x, y) = self._canvas.beginPath(), gradient.start
+        if gradient.radius is not None:
+            across, up = gradient.radius * share, gradient.radius * gradient.height * share
+            path.ellipse(x - across, y - up, 2 * across, 2 * up)
+            return path
+        dx, dy = gradient.end[0] - x, gradient.end[1] - y
+        far = _FAR / math.hypot(dx, dy)
+        corners = ((-far, -far), (share, -far), (share, far), (-far, far))
+        first, *others = (
+            (x + along * dx - aside * dy, y + along * dy + aside * dx) for along, aside in corners
+        )
+        path.moveTo(*first)
+        for corner in others:
+            path.lineTo(*corner)
+        path.close()
+        return path
 
     @_draw.register
     def _(self, mark: Curves) -> None:

@@ -243,7 +243,9 @@ class _File:
             colors = (None, color) if part.is_stroke else (color, None)
             shown = STEPConstruct_RenderingProperties()
             if part.style.is_clear and not part.is_stroke:
-                shown = STEPConstruct_RenderingProperties(color, 1.0 - (part.style.opacity or 0.0))
+                shown = STEPConstruct_RenderingProperties(
+                    color, 1.0 - (1.0 if part.style.opacity is None else part.style.opacity)
+                )
             items = HArray1_StepRepr_RepresentationItem(1, len(found))
             for number, item in enumerate(found, 1):
                 look = styles.MakeColorPSA(item, *colors, shown)

@@ -67,8 +67,12 @@ def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
         if gradient.radius is None
         else svg.gradients.RadialGradient(start, fixed(gradient.radius), **looks)
     )
-    for share, color in gradient.stops:
-        made.add_stop_color(fixed(share), color)
+    if gradient.height != 1:
+        made["gradientTransform"] = (
+            f"matrix(1 0 0 {fixed(gradient.height)} 0 {fixed(-y0 * (1 - gradient.height))})"
+        )
+    for stop in gradient.stops:
+        made.add_stop_color(fixed(stop.share), stop.color, None if stop.opacity == 1 else fixed(stop.opacity))
     return made
 
 

@@ -22,12 +22,12 @@ _OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
 
 @record()
 class Shade:
-    """How the fill of a body changes over it: as on a `round` bar, a `ball` or a `slope`, or to another
-    colour; and the way it goes in the frame of the root, in degrees.
+    """How the fill of a body changes over it: as on a `round` bar, a `ball` or a `slope`, to nothing, or to
+    another colour; and the way it goes in the frame of the root, in degrees; None for out of the middle.
     """
 
     kind: str
-    way: float
+    way: float | None
 
 
 @record()
@@ -78,7 +78,8 @@ class Style:
     @property
     def is_clear(self) -> bool:
         """True if what lies behind shows through."""
-        return self.opacity is not None and self.opacity < 1
+        fades = self.shade is not None and self.shade.kind == "fade"
+        return fades or (self.opacity is not None and self.opacity < 1)
 
     @property
     def width(self) -> float | None:
@@ -159,6 +160,8 @@ def _shade(values: Sequence[Scalar], turn: Turn) -> Shade | None:
     kind, *angles = values
     if kind == "none":
         return None
+    if kind == "fade" and not angles:
+        return Shade("fade", None)
     angle = angles[0] if angles else 0.0 if kind == "round" else _DOWN
     assert isinstance(angle, int | float)
     way = turn.of(float(angle))

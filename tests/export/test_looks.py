@@ -488,6 +488,44 @@ def test_a_fill_goes_over_into_another_colour(suffix: str) -> None:
     assert seen["right"] > 220
 
 
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_fill_fades_along_a_way(suffix: str) -> None:
+    seen = _brightness("@shade(fade, 0deg)", suffix=suffix)
+    assert seen["left"] < seen["middle"] < seen["right"]
+    assert seen["middle"] == pytest.approx((128 + 255) / 2, abs=4)
+    assert seen["above"] == pytest.approx(seen["below"], abs=2)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_fill_fades_out_of_its_middle(suffix: str) -> None:
+    """Half of the way, 0.3 of the square, shows 0.4 of it: 0.78 at 0.3 and 0.3 at 0.6 of the way."""
+    seen = _brightness("@shade(fade)", suffix=suffix)
+    assert seen["middle"] == pytest.approx(128, abs=5)
+    assert seen["left"] == pytest.approx(255 - 127 * (0.78 - 0.48 / 3), abs=5)
+    assert seen["left"] < seen["right"] == pytest.approx(seen["below"], abs=3)
+
+
+def test_what_fades_is_flat_where_its_box_is() -> None:
+    program = "@stroke(none) @shade(fade) solid s { pool = ellipse(center: fixed((0, 0)), rx: 40, ry: 10) }"
+    image = Image.open(io.BytesIO(written(".png", program, pixels=400).data)).convert("L")
+    width, height = image.size
+    inner = int(width * 0.15), int(height * 0.15)
+    level = image.getpixel((width // 2 + int(0.3 * (width - 2 * inner[0])), height // 2))
+    upright = image.getpixel((width // 2, height // 2 - int(0.3 * (height - 2 * inner[1]))))
+    assert level == pytest.approx(upright, abs=40)
+
+
+def test_what_fades_lies_over_others_without_hiding_them() -> None:
+    program = """
+    @stroke(none) assembly a {
+        @color("black") solid under { p = rectangle(center: fixed((0, 0)), width: 20, height: 4) }
+        @color("white") @shade(fade) solid light { p = circle(center: fixed((0, 0)), radius: 12) }
+        drawing line { l = line(fixed((-9, 0)), fixed((9, 0))) }
+    }
+    """
+    assert [d.code for d in compiled(program).diagnostics] == []
+
+
 def test_shade_ends_where_it_is_said() -> None:
     program = """
     @shade(round) assembly a {
@@ -505,4 +543,4 @@ def test_shade_ends_where_it_is_said() -> None:
 def test_a_shade_that_is_none_is_told(arguments: str) -> None:
     made = compiled(f"@shade({arguments}) solid s {{ p = circle(radius: 3) }}")
     (found,) = [d for d in made.diagnostics if d.code == "E0517"]
-    assert found.message.startswith("`@shade` takes `round`, `ball`, `slope`, `none`, or a colour")
+    assert found.message.startswith("`@shade` takes `round`, `ball`, `slope`, `fade`, `none`, or a colour")

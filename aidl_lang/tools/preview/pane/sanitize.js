@@ -14,7 +14,7 @@ const ATTRIBUTES = new Set([
   "transform", "viewBox", "class", "fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-opacity",
   "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-dasharray", "stroke-dashoffset", "opacity",
   "font-size", "font-family", "font-weight", "font-style", "text-anchor", "dominant-baseline", "clip-path",
-  "clip-rule", "clipPathUnits", "gradientUnits", "offset", "stop-color", "aria-hidden", "data-element",
+  "clip-rule", "clipPathUnits", "gradientUnits", "gradientTransform", "offset", "stop-color", "stop-opacity", "aria-hidden", "data-element",
 ]);
 
 /** What others refer to by its id, and the attributes that do. */
