@@ -192,14 +192,17 @@ class Pair:
     comparison: Comparison
 
 
-def pairs(variants: Sequence[Row]) -> list[Pair]:
-    """Returns the comparisons of all pairs of languages, by figures."""
+def pairs(
+    variants: Sequence[Row], figures: Iterable[str] = COMPARED, against: str | None = None
+) -> list[Pair]:
+    """Returns the comparisons of all pairs of languages, or of all with the one `against`, by figures."""
     found = []
-    for name in COMPARED:
+    for name in figures:
         of = {row.variant: by_prompt(_cases(row.figures[name])) for row in variants}
+        both = combinations(of, 2) if against is None else ((v, against) for v in of if v != against)
         own = [
             Pair(name, first, second, comparison)
-            for first, second in combinations(of, 2)
+            for first, second in both
             if (comparison := compared(of[first], of[second])) is not None
         ]
         tested = [pair for pair in own if pair.comparison.p is not None]
