@@ -140,8 +140,11 @@ class _Built:
     def is_other(self, one: _Built) -> bool:
         """Tells whether what is to hold is not the same."""
         mine, its = self.problem.tape, one.problem.tape
-        pairs = (mine.ops, its.ops), (mine.operands, its.operands), (mine.constants, its.constants)
-        return not all(np.array_equal(*pair, equal_nan=True) for pair in pairs)
+        return not (
+            np.array_equal(mine.ops, its.ops)
+            and np.array_equal(mine.operands, its.operands)
+            and np.array_equal(mine.constants, its.constants, equal_nan=True)
+        )
 
 
 def _built(program: Program, whole_boxes: bool = False) -> _Built | None:

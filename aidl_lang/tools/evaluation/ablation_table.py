@@ -16,8 +16,8 @@ _MEANINGS = {
     "milliseconds": "of the processor, for a program; the quickest of three solves if the first was quick",
     "disturbed": "structures whose own geometry is not where it was in their frame, of those that draw",
     "bent": "structures whose own geometry is another, however it is moved and turned as a whole",
-    "drift": "root mean square of all changes from the first guesses, in mm; a turn counts as what it moves at "
-    "the size of the drawing",
+    "drift": "root mean square of all changes from the first guesses, in mm; a turn counts as what it "
+    "moves at the size of the drawing",
     "sizes": "written sizes that had to change, of a program",
     "missed": "constraints of a program that do not hold as it means them",
 }
@@ -36,8 +36,8 @@ def markdown(solves: Sequence[Solved]) -> str:
         "## Means",
         f"All but `{_ALL}` are over the {len(fair) // len(WAYS)} programs of {len(tried)} that every way "
         f"solves; they draw {things} things. In square brackets 95 % intervals by drawing things with "
-        f"replacement, with all programs of each ({RESAMPLES:,} resamples); after ± the standard deviation; in "
-        "round brackets what figures are taken over.",
+        f"replacement, with all programs of each ({RESAMPLES:,} resamples); after ± the standard deviation; "
+        "in round brackets what figures are taken over.",
         table.tabulated([["way", *_MEANINGS], *means]),
         f"## Less `{FULL}`",
         "By thing: each counts once (1.00 is 100 %). Two-sided p of the paired permutation test; Holm's "
