@@ -241,10 +241,7 @@ def test_a_wrong_program_is_told_apart() -> None:
 def test_the_csv_has_ways_programs_and_differences() -> None:
     found = list(csv.DictReader(io.StringIO(ablation_table.to_csv(table({"a": 2.0, "b": 4.0})))))
     drift = [line for line in found if line["figure"] == "drift"]
-        (line["prompt"], line["variant"], line["against"]): line
-        for line in found
-        if line["figure"] == "drift"
-    }
+    drifts = {(line["prompt"], line["variant"], line["against"]): line for line in drift}
     assert float(drifts["", "flat", ""]["value"]) == 3.0
     assert float(drifts["b", "flat", ""]["value"]) == 4.0
     least = drifts["", "flat", "full"]
