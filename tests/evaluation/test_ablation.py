@@ -277,5 +277,9 @@ def test_the_command_takes_the_programs_of_a_recording(evaluation: Evaluation) -
     assert done.out.count("| stack/full/1, reply 3 | ") == len(WAYS)
     assert "over the 2 programs of 2 that every way solves; they draw 1 things." in done.out
     assert "openscad" not in done.out
+    file.write_text(json.dumps(conversations[1]))
+    without = evaluation.called("eval", "--solver", file.name)
+    assert without.code == 2
+    assert "error[E0994]: `said.jsonl` holds no program in AIDL" in without.err
     file.write_text("{}")
     assert evaluation.called("eval", "--solver", file.name).code == 2

@@ -92,20 +92,25 @@ class Solved:
     is_other: bool = False
 
 
-def recorded(place: Path) -> Iterator[tuple[SourceFile, str]]:
-    """Yields the programs in AIDL of a recording, each with what it draws. Raises RecordingError."""
+def recorded(place: Path) -> list[tuple[SourceFile, str]]:
+    """Returns the programs in AIDL of a recording, each with what it draws. Raises RecordingError."""
     from aidl_lang.tools.evaluation import recordings
     from aidl_lang.tools.evaluation.plan import VARIANTS
     from aidl_lang.tools.llm.aidl import Aidl
     from aidl_lang.tools.llm.replies import find_program
 
+    found: list[tuple[SourceFile, str]] = []
     for conversation in recordings.load(place):
         job, language = conversation.job, VARIANTS[conversation.job.variant]
         if isinstance(language, Aidl):
             for number, reply in enumerate(conversation.replies, 1):
                 program = find_program(reply.text, language.fences, language.reads).program
                 if program is not None:
-                    yield SourceFile(f"{job.key}, reply {number}", program), job.prompt
+                    found.append((SourceFile(f"{job.key}, reply {number}", program), job.prompt))
+    if not found:
+        why = f"`{place}` holds no program in AIDL"
+        raise recordings.RecordingError("E0994", why, "--solver is for programs in AIDL and its subsets")
+    return found
 
 
 def compare(source: SourceFile, world: World | None = None, thing: str = "") -> Iterator[Solved]:
