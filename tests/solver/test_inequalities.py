@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
+import operator
 import random
 
 import numpy as np
@@ -163,11 +165,13 @@ class TestBranches:
         """Those that would go to arrays, which know chosen branches alone."""
         m = Model()
         starts = [(1.0 + i % 7) * (-1.0) ** i for i in range(420)]
-        for i, start in enumerate(starts):
-            m.equal(abs(m.unknown(start)) - 3.0 - i % 5)
+        xs = [m.unknown(start) for start in starts]
+        for i, x in enumerate(xs):
+            m.equal(abs(x) - 3.0 - i % 5)
+        m.equal(functools.reduce(operator.add, xs) - m.unknown(0.0))
         signed = [math.copysign(3.0 + i % 5, start) for i, start in enumerate(starts)]
         for settings in (Settings(), Settings(pruning=False), Settings(together=False)):
-            assert solve(m.problem(), settings).values == pytest.approx(signed)
+            assert solve(m.problem(), settings).values == pytest.approx([*signed, sum(signed)])
 
     def test_no_branch_will_do(self) -> None:
         m = Model()
