@@ -54,7 +54,7 @@ class Way:
 
 WAYS = {
     FULL: Way("the solver as it is"),
-    "in-turn": Way("structures one by one, never all of a depth at once; so do all below", together=False),
+    "in-turn": Way("structures one by one, never all of a depth at once; so the next four", together=False),
     "paper": Way("the paper's: own geometry, translations by level, all else; no size is kept", Stages.PAPER),
     "level": Way("no preference for translations over the geometry of what lies deeper", Stages.LEVEL),
     "flat": Way("all constraints as one system, with everything free at once", Stages.FLAT),
@@ -177,8 +177,8 @@ def _solve(built: _Built, way: Way) -> tuple[str, float, Floats, int]:
 
 
 def _carried(values: Floats, built: _Built, meant: _Built) -> Floats:
-    """Returns values of one problem of a program as those of the other, whose unknowns the program makes in
-    the same order.
+    """Returns values of one problem of a program as those of the other. The program makes the unknowns of both
+    in the same order, as what it builds hangs on no comparison of boxes.
     """
     at = {unknown: number for number, unknown in enumerate(built.model.unknowns)}
     known = {at[u]: value for u, value in zip(built.lowered.unknowns, values.tolist(), strict=True)}
