@@ -177,8 +177,8 @@ def _solve(built: _Built, way: Way) -> tuple[str, float, Floats, int]:
 
 
 def _carried(values: Floats, built: _Built, meant: _Built) -> Floats:
-    """Returns values of one problem of a program as those of the other. The program makes the unknowns of both
-    in the same order, as what it builds hangs on no comparison of boxes.
+    """Returns values of one problem of a program as those of the other. The program makes the unknowns of
+    both in the same order, as what it builds hangs on no comparison of boxes.
     """
     at = {unknown: number for number, unknown in enumerate(built.model.unknowns)}
     known = {at[u]: value for u, value in zip(built.lowered.unknowns, values.tolist(), strict=True)}
