@@ -150,10 +150,10 @@ def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknow
     return frozenset(structures), frozenset(beside)
 
 
-def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ...]:
+def spelled_out(*roots: Expression, equal: bool = False, whole: bool = False) -> tuple[Expression, ...]:
     """Returns the expressions of one comparison with every side of a box spelled out. If they are the same
     sides of an assembly of parts and of one of these, and shall be `equal`, that part is the outermost: it is
-    not left out.
+    not left out. Where boxes are to be `whole`, nothing is.
     """
     if not any(root.is_open for root in roots):
         return roots
@@ -163,7 +163,8 @@ def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ..
         return roots
     flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, _Side)}) == 1
     flush = flush and all(isinstance(root.payload, _Side) for root in roots)
-    used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
+    boxed = (s for side in sides for s in side.box.sources if isinstance(s, Structure))
+    used = set() if whole else set(boxed)
     replaced: dict[Expression, Expression] = {}
     for node in order:
         if isinstance(node.payload, _Side):

@@ -133,7 +133,7 @@ class _Attempt:
 
     @cached_property
     def freezer(self) -> Freezer:
-        return Freezer(self.values, self.free)
+        return Freezer(self.values, self.free, self.settings.pruning)
 
     def run(self) -> Verdict:
         tolerance = self.settings.tolerance

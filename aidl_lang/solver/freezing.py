@@ -56,13 +56,14 @@ class Frozen:
 class Freezer:
     """Makes programs of rows with the unknowns `free`, for one branch after another. Parts that hang on no
     branch are worked out once. The nodes of the rows must be up to date, and those of them that do not change
-    with these unknowns may not change meanwhile.
+    with these unknowns may not change meanwhile. Without `pruning` no branch is chosen: operations that
+    branch are evaluated like all others, with the slopes of the branch that is active there.
 
     A form over free unknowns has the index of an unknown as its slot, or `width` and the number of a recipe.
     """
 
-    def __init__(self, values: Valuation, free: Iterable[int]) -> None:
-        self.values, self.free = values, frozenset(free)
+    def __init__(self, values: Valuation, free: Iterable[int], pruning: bool = True) -> None:
+        self.values, self.free, self.pruning = values, frozenset(free), pruning
         self.forms = values.forms(self.free)
         self.recipes: list[SlotRecipe] = []
         self.steady: dict[int, Form] = {}
@@ -154,7 +155,7 @@ class Choice:
 
     def freeze(self, roots: Sequence[Root]) -> Frozen:
         """Returns programs for `roots`; the values must be those of the choice, and up to date."""
-        if len(roots) >= MANY:
+        if len(roots) >= MANY and self.freezer.pruning:
             return _freeze_to_arrays(self.freezer.values, roots, self.free, self.flipped)
         whole = [self._whole(root) for root in roots]
         forms = [self.form(form) for form in whole]
@@ -234,7 +235,7 @@ class Choice:
         hangs = not self.hanging.isdisjoint(knot.below)
         parts = [self.form(part) for part in knot.parts]
         form = branched(op, parts) if op in BRANCHING else applied(op, parts)
-        if form is None and op in BRANCHING:
+        if form is None and op in BRANCHING and self.freezer.pruning:
             choice = self.chosen[slot] = self._choice(knot)
             form, hangs = self._taken(op, parts, choice), True
         elif form is None:

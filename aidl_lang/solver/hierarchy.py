@@ -140,7 +140,9 @@ class Hierarchy:
 
     def run(self, recollection: Recollection | None = None) -> None:
         """Solves the groups depth by depth, from below; recalls those that no change has reached."""
-        many = len(self.problem.rows.expression) >= MANY and self.settings.stages is Stages.FULL
+        settings = self.settings
+        usual = settings.together and settings.pruning and settings.stages is Stages.FULL
+        many = len(self.problem.rows.expression) >= MANY and usual
         turn = self._solve_together if many else self._solve_in_turn
         for depth in range(int(self._group_depths.max(initial=0)), -1, -1):
             known = np.zeros(len(self.problem.parent), dtype=np.bool_)

@@ -27,6 +27,9 @@ class Settings:
     iterations  Newton steps per attempt
     branches    re-choices of `min`/`max` branches per stage
     stages      what becomes free when
+    pruning     whether a branch of `min`, `max`, `abs`, `select` is chosen before each search (see
+                `freezing`); without it a search follows them as they bend, for comparison
+    together    whether all groups of a depth may be solved at once (see `levels`); for comparison, too
     seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
     """
 
@@ -35,4 +38,6 @@ class Settings:
     branches: int = 12
     seconds: float = 20.0
     stages: Stages = Stages.FULL
+    pruning: bool = True
+    together: bool = True
     explain: bool = True

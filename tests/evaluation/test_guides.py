@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from argparse import ArgumentParser
 
 import pytest
 
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Settings, compile
+from aidl_lang.tools.cli.eval import register
 from aidl_lang.tools.evaluation.plan import VARIANTS, Plan, Switches
 from aidl_lang.tools.evaluation.rendering import RenderedLanguage
 from aidl_lang.tools.evaluation.requirements import load
@@ -85,3 +87,11 @@ def test_help_can_be_switched_off() -> None:
         conversation.judge(first)
         verdict = conversation.finish(conversation.judge(last))
         assert ("solid d" in verdict.program) == restored
+
+
+def test_the_command_knows_the_same_variants() -> None:
+    """It repeats their names, so that it starts without the languages."""
+    parser = ArgumentParser()
+    register(parser)
+    choices = next(action.choices for action in parser._actions if action.dest == "variants")
+    assert sorted(choices or ()) == sorted(VARIANTS)

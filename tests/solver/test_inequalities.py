@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
+import math
+import operator
 import random
 
 import numpy as np
@@ -10,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.solver import solve
+from aidl_lang.solver import Settings, solve
 from aidl_lang.solver.analysis import analyse
 from tests.amount import tries
 
@@ -143,6 +146,32 @@ class TestBranches:
         assert_solved(problem, solution)
         x = solution.values
         assert max(x[0] + 3, x[2] + 2) + 1 == pytest.approx(min(x[4] - 1, x[6] - 4))
+
+    def test_without_pruning_a_search_follows_the_branches_as_far_as_slopes_lead(self) -> None:
+        """Both ways meet a maximum that is near; one whose own branch cannot move needs another branch."""
+        for far, status in ((5.0, "solved"), (1000.0, "partial")):
+            m = Model()
+            x, y = m.unknown(3.0), m.unknown(1.0)
+            m.equal(call("maximum", x, y * 0.0 + far) - far - 3.0)
+            m.equal(call("minimum", x, y) - 2.0)
+            problem = m.problem()
+            assert_solved(problem, solve(problem))
+            freely = solve(problem, Settings(pruning=False))
+            assert freely.status == status
+            if freely.status == "solved":
+                assert freely.values == pytest.approx([8.0, 2.0])
+
+    def test_without_pruning_many_rows_are_solved_as_well(self) -> None:
+        """Those that would go to arrays, which know chosen branches alone."""
+        m = Model()
+        starts = [(1.0 + i % 7) * (-1.0) ** i for i in range(420)]
+        xs = [m.unknown(start) for start in starts]
+        for i, x in enumerate(xs):
+            m.equal(abs(x) - 3.0 - i % 5)
+        m.equal(functools.reduce(operator.add, xs) - m.unknown(0.0))
+        signed = [math.copysign(3.0 + i % 5, start) for i, start in enumerate(starts)]
+        for settings in (Settings(), Settings(pruning=False), Settings(together=False)):
+            assert solve(m.problem(), settings).values == pytest.approx([*signed, sum(signed)])
 
     def test_no_branch_will_do(self) -> None:
         m = Model()

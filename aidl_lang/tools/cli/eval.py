@@ -12,6 +12,8 @@ from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampli
 from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
+    from aidl_lang.common.source import SourceFile
+    from aidl_lang.common.world import World
     from aidl_lang.tools.evaluation.plan import Plan
     from aidl_lang.tools.evaluation.recordings import Replay
     from aidl_lang.tools.evaluation.requirements import Prompt
@@ -28,7 +30,9 @@ _OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_token
 
 def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--out", default="evaluation", metavar="DIR", help="folder of the results (default: evaluation)"
+        "--out",
+        metavar="DIR",
+        help="folder of the results (default: evaluation; with --solver they are printed alone)",
     )
     parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
     parser.add_argument(
@@ -104,8 +108,8 @@ def register(parser: argparse.ArgumentParser) -> None:
     instead.add_argument(
         "--solver",
         nargs="+",
-        metavar="FILE",
-        help="ask nothing: solve these programs by other stages as well, and say what moved",
+        metavar="PLACE",
+        help="ask nothing: solve programs, or those of recordings, with parts of the solver left out as well",
     )
     add_provider(parser)
     parser.set_defaults(run=run)
@@ -134,10 +138,10 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.tools.evaluation.report import report
     from aidl_lang.tools.evaluation.store import Store, StoreError
 
-    if arguments.solver:
-        return _compare_stages(arguments.solver)
     try:
-        store = Store(Path(arguments.out))
+        if arguments.solver:
+            return _compare_ways(arguments.solver, arguments.out)
+        store = Store(Path(arguments.out or "evaluation"))
         left = _run(arguments, store)
         print(report(store, arguments.clip_weights, arguments.clip_model), end="")
     except (StoreError, RecordingError) as reason:
@@ -146,14 +150,32 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if left else 0
 
 
-def _compare_stages(names: list[str]) -> int:
-    """Solves programs by all stages and prints the tables; 1 if one of them is wrong."""
-    from aidl_lang.tools.evaluation import ablation
+def _compare_ways(names: list[str], out: str | None) -> int:
+    """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
+    RecordingError and StoreError.
+    """
+    from aidl_lang.tools.evaluation import ablation, ablation_table
+    from aidl_lang.tools.evaluation.recordings import SUFFIX
+    from aidl_lang.tools.evaluation.store import Store
 
-    programs = [(files.read(name), files.world(name)) for name in names]
-    solves = [solved for source, world in programs for solved in ablation.compare(source, world)]
-    print(ablation.markdown(solves), end="")
-    return 1 if any(solved.status == "wrong" for solved in solves) else 0
+    programs: list[tuple[SourceFile, World | None, str]] = []
+    for name in dict.fromkeys(names):
+        place = Path(name)
+        if place.is_dir() or place.suffix == SUFFIX:
+            programs += [(source, None, thing) for source, thing in ablation.recorded(place)]
+        else:
+            programs.append((files.read(name), files.world(name), name))
+    solves: list[ablation.Solved] = []
+    for number, (source, world, thing) in enumerate(programs, 1):
+        solves += ablation.compare(source, world, thing)
+        say(f"{number}/{len(programs)} {source.name}")
+    text = ablation_table.markdown(solves)
+    if out is not None:
+        store = Store(Path(out))
+        store.write("solver.md", text.encode())
+        store.write("solver.csv", ablation_table.to_csv(solves).encode())
+    print(text, end="")
+    return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:

@@ -13,7 +13,7 @@ from aidl_lang.tools.evaluation.requirements import Prompt
 from aidl_lang.tools.evaluation.svg import Svg
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.generation import Settings
-from aidl_lang.tools.llm.language import Conversation, Language
+from aidl_lang.tools.llm.language import Language, Wrapped
 
 VARIANTS: dict[str, Language] = {
     **{str(variant): Aidl(variant) for variant in Variant},
@@ -36,34 +36,14 @@ class Switches:
 
 
 @record()
-class Guideless:
+class Guideless(Wrapped):
     """A language without its guide."""
-
-    language: Language
-
-    @property
-    def name(self) -> str:
-        return self.language.name
-
-    @property
-    def suffix(self) -> str:
-        return self.language.suffix
-
-    @property
-    def fences(self) -> tuple[str, ...]:
-        return self.language.fences
 
     def guide(self) -> str:
         name = _NAMES.get(self.name, "AIDL")
         fence = self.fences[0]
         block = f"Answer with the whole program in one ```{fence} block."
         return f"You write programs in {name} that draw flat parts. {block}\n"
-
-    def reads(self, text: str) -> bool:
-        return self.language.reads(text)
-
-    def conversation(self, before: str | None = None) -> Conversation:
-        return self.language.conversation(before)
 
 
 _NAMES = {

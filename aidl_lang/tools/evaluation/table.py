@@ -36,7 +36,7 @@ def markdown(
         "In square brackets 95 % intervals: Wilson's for conversations, for the rest by drawing prompts with "
         f"replacement ({RESAMPLES:,} resamples). After ± the standard deviation; in round brackets what "
         "figures are taken over.",
-        _table([head, *lines]),
+        tabulated([head, *lines]),
         *_reasons(rows),
         *_differences(pairs),
         *_study(rows, pairs, study),
@@ -76,7 +76,18 @@ def _between(interval: Interval | None, times: float, digits: int) -> str:
 def _differences(pairs: Sequence[Pair]) -> list[str]:
     if not pairs:
         return []
-    head = ["", "languages", "difference", "prompts", "p", "p, Holm"]
+    return [
+        "## Pairs of languages",
+        "The first less the second, by prompt: each prompt that has the figure in both counts once (1.00 is "
+        "100 %). Two-sided p of the paired permutation test; Holm's correction is for the pairs of one "
+        "figure. Figures of valid programs compare only prompts where both languages came to one.",
+        compared(pairs, "languages", "prompts"),
+    ]
+
+
+def compared(pairs: Sequence[Pair], of: str, over: str) -> str:
+    """Returns the table of differences between pairs `of` something, `over` that by which they are drawn."""
+    head = ["", of, "difference", over, "p", "p, Holm"]
     lines = []
     for pair in pairs:
         found = pair.comparison
@@ -84,13 +95,7 @@ def _differences(pairs: Sequence[Pair]) -> list[str]:
         shown = f"{found.difference:+,.{digits}f}{_between(found.interval, 1, digits)}"
         chances = (_NONE if p is None else f"{p:.3f}" for p in (found.p, found.adjusted))
         lines.append([pair.figure, f"{pair.first} − {pair.second}", shown, str(found.prompts), *chances])
-    return [
-        "## Pairs of languages",
-        "The first less the second, by prompt: each prompt that has the figure in both counts once (1.00 is "
-        "100 %). Two-sided p of the paired permutation test; Holm's correction is for the pairs of one "
-        "figure. Figures of valid programs compare only prompts where both languages came to one.",
-        _table([head, *lines]),
-    ]
+    return tabulated([head, *lines])
 
 
 def _study(rows: Sequence[Row], pairs: Sequence[Pair], study: Study | None) -> list[str]:
@@ -152,7 +157,7 @@ def _by_prompt(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
     variants = [row.variant for row in rows]
     cells = {(row.prompt, row.variant): ", ".join(_parts(row)) for row in prompts}
     names = dict.fromkeys(row.prompt or "" for row in prompts)
-    return _table([["", *variants], *([n, *(cells.get((n, v), _NONE) for v in variants)] for n in names)])
+    return tabulated([["", *variants], *([n, *(cells.get((n, v), _NONE) for v in variants)] for n in names)])
 
 
 def _parts(row: Row) -> list[str]:
@@ -160,7 +165,8 @@ def _parts(row: Row) -> list[str]:
     return [f"{s.part}/{s.count}" if isinstance(s, Share) and s.count else _NONE for s in shares]
 
 
-def _table(lines: Sequence[Sequence[str]]) -> str:
+def tabulated(lines: Sequence[Sequence[str]]) -> str:
+    """Returns lines of cells as a table in Markdown, under the first of them."""
     cells = [[cell.replace("|", "\\|") for cell in line] for line in lines]
     head, *body = (f"| {' | '.join(line)} |" for line in cells)
     return "\n".join([head, "|---" * len(lines[0]) + "|", *body])

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.processes import Guarded, Limit
 from aidl_lang.common.records import record
-from aidl_lang.tools.llm.language import Conversation, Language, Verdict
+from aidl_lang.tools.llm.language import Conversation, Language, Verdict, Wrapped
 
 T = TypeVar("T")
 
@@ -61,26 +61,10 @@ _WHY = {
 
 
 @record()
-class Remote:
+class Remote(Wrapped):
     """A language whose programs are judged by a worker."""
 
-    language: Language
     worker: Worker
-
-    @property
-    def name(self) -> str:
-        return self.language.name
-
-    @property
-    def suffix(self) -> str:
-        return self.language.suffix
-
-    @property
-    def fences(self) -> tuple[str, ...]:
-        return self.language.fences
-
-    def guide(self) -> str:
-        return self.language.guide()
 
     def reads(self, text: str) -> bool:
         try:
