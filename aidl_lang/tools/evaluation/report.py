@@ -20,7 +20,7 @@ def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
     limit = attempts if isinstance(attempts, int) else WITHIN[-1]
     study = study_of(store, records)
     variants, prompts = (rows(records, scores, each, limit, study) for each in (False, True))
-    differences = pairs(variants, study)
+    differences = pairs(variants, study=study)
     text = table.markdown(variants, prompts, differences, recordings.notes(records, settings), study)
     outputs = {
         "recording.jsonl": recordings.written(records, settings),

@@ -204,37 +204,22 @@ class Pair:
     comparison: Comparison
 
 
-<<<<<<< HEAD
-def pairs(variants: Sequence[Row], study: Study | None = None) -> list[Pair]:
-    """Returns the comparisons of all pairs of languages, by figures."""
-    found, both = [], list(combinations([row.variant for row in variants], 2))
-    for name in COMPARED:
+def pairs(
+    variants: Sequence[Row],
+    figures: Iterable[str] = COMPARED,
+    against: str | None = None,
+    study: Study | None = None,
+) -> list[Pair]:
+    """Returns the comparisons of all pairs of languages, or of all with the one `against`, by figures."""
+    names = [row.variant for row in variants]
+    both = list(combinations(names, 2)) if against is None else [(v, against) for v in names if v != against]
+    found = []
+    for name in figures:
         of = {row.variant: by_prompt(_cases(row.figures.get(name))) for row in variants}
         found += _corrected(name, {(a, b): compared(of[a], of[b]) for a, b in both})
     if study is not None:
         over = {(a, b): compared(study.over(a, b), study.over(b, a)) for a, b in both}
         found += _corrected("preferred", over)
-=======
-def pairs(
-    variants: Sequence[Row], figures: Iterable[str] = COMPARED, against: str | None = None
-) -> list[Pair]:
-    """Returns the comparisons of all pairs of languages, or of all with the one `against`, by figures."""
-    found = []
-    for name in figures:
-        of = {row.variant: by_prompt(_cases(row.figures[name])) for row in variants}
-        both = combinations(of, 2) if against is None else ((v, against) for v in of if v != against)
-        own = [
-            Pair(name, first, second, comparison)
-            for first, second in both
-            if (comparison := compared(of[first], of[second])) is not None
-        ]
-        tested = [pair for pair in own if pair.comparison.p is not None]
-        adjusted = dict(zip(map(id, tested), holm([p.comparison.p or 0.0 for p in tested]), strict=True))
-        found += [
-            replace(pair, comparison=replace(pair.comparison, adjusted=adjusted.get(id(pair))))
-            for pair in own
-        ]
->>>>>>> ablation
     return found
 
 

@@ -129,7 +129,7 @@ def _preferred(rows: Sequence[Row], pairs: Sequence[Pair]) -> list[str]:
     variants = [row.variant for row in rows]
     lines = [[first, *(cells.get((first, second), _NONE) for second in variants)] for first in variants]
     how = "How often the language of the line was placed above that of the column, by prompt, ties a half."
-    return [how, _table([["", *variants], *lines])]
+    return [how, tabulated([["", *variants], *lines])]
 
 
 def _half(difference: float, low: float | None, high: float | None) -> str:
