@@ -193,7 +193,7 @@ shape rounded_rectangle(
         "the radius of the corners is at most half of the shorter side"
 }
 
-/// A rectangle whose corners are cut off at 45 degrees, by its centre, a corner or the middle of a side.
+/// A rectangle whose corners are cut off at 45 degrees, by its centre, a corner, the middle of a side or its sides.
 ///
 /// The cuts are `corner_bottom_left` and so on; `bottom_left` is where the sharp corner would be. `chamfer` is
 /// what each cut takes from a side.
@@ -291,6 +291,15 @@ fn chamfered_rectangle(
     angle = 0deg,
     rotatable = false
 ) = chamfered_rectangle(left_center, -1, 0, width, height, chamfer, angle, rotatable)
+
+/// By the coordinates of its sides.
+fn chamfered_rectangle(left: length, right: length, bottom: length, top: length, chamfer: length) =
+    chamfered_rectangle((left, bottom), -1, -1, right - left, top - bottom, chamfer)
+fn chamfered_rectangle(
+    left: length, bottom: length, width: length, height: length, chamfer: length
+) = chamfered_rectangle((left, bottom), -1, -1, width, height, chamfer)
+fn chamfered_rectangle(left: length, top: length, width: length, height: length, chamfer: length) =
+    chamfered_rectangle((left, top), -1, 1, width, height, chamfer)
 
 // By a point of its border, as the rectangle.
 shape chamfered_rectangle(

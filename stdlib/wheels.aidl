@@ -64,7 +64,8 @@ shape between_spokes(
 
 /// A round outline of `lobes` equal arcs that bulge outwards: a bottle cap, a flower, a pie crust, a cookie.
 ///
-/// The arcs, `edge[i]`, reach out to `outer_radius` and meet at `inner_radius`; the first begins at `angle`.
+/// The arcs, `edge[i]`, reach out to `outer_radius` and meet at `inner_radius`; the first begins at `angle`. Where arcs
+/// would run into each other, at a small `inner_radius`, they are pointed at their feet: petals, which are Béziers.
 ///
 /// Lies with the start of an arc on the right.
 ///
@@ -86,16 +87,29 @@ shape rosette(
     let bulge = outer_radius - inner_radius * cos(half)
     let radius = (chord ^ 2 + bulge ^ 2) / (2 * bulge)
     let opening = atan2(chord, radius - bulge)
-    assert inner_radius >= outer_radius * cos(half) / (1 + sin(half)),
+    let least = outer_radius * cos(half) / (1 + sin(half))
+    let has_petals = written(inner_radius) < written(least)
+    assert inner_radius > 0, "the lobes of a rosette meet outside of its center"
+    assert has_petals or inner_radius >= least,
         "the lobes of this rosette run into each other: it needs fewer, or an `inner_radius` just above what is asked"
     for i in 0..<lobes {
         let way = angle + half * (2 * i + 1)
-        edge[i] = arc(
-            center: center + polar(outer_radius - radius, way),
-            radius: radius,
-            start_angle: way - opening,
-            end_angle: way + opening
-        )
+        if has_petals {
+            let reach = (4 * outer_radius / cos(half) - inner_radius) / 3
+            edge[i] = bezier(
+                center + polar(inner_radius, way - half),
+                center + polar(reach, way - half),
+                center + polar(reach, way + half),
+                center + polar(inner_radius, way + half)
+            )
+        } else {
+            edge[i] = arc(
+                center: center + polar(outer_radius - radius, way),
+                radius: radius,
+                start_angle: way - opening,
+                end_angle: way + opening
+            )
+        }
     }
     let edges = edge
 }

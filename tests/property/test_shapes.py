@@ -14,6 +14,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
+import numpy as np
 import pytest
 from hypothesis import Phase, given
 from hypothesis import strategies as st
@@ -170,11 +171,12 @@ def rounded_by_sides(place: Callable[[float, float], str]) -> Form:
     return make
 
 
-FORMS += [
-    rounded_by_sides(lambda w, h: f"left: -3, right: {w - 3}, bottom: 2, top: {h + 2}"),
-    rounded_by_sides(lambda w, h: f"left: -3, bottom: 2, width: {w}, height: {h}"),
-    rounded_by_sides(lambda w, h: f"left: -3, top: 2, width: {w}, height: {h}"),
+BY_SIDES: list[Callable[[float, float], str]] = [
+    lambda w, h: f"left: -3, right: {w - 3}, bottom: 2, top: {h + 2}",
+    lambda w, h: f"left: -3, bottom: 2, width: {w}, height: {h}",
+    lambda w, h: f"left: -3, top: 2, width: {w}, height: {h}",
 ]
+FORMS += [rounded_by_sides(place) for place in BY_SIDES]
 
 
 @form
@@ -872,6 +874,43 @@ def rosette(n: Draw) -> tuple[str, float, float]:
     area, _ = segment_measures(lobe, sweep)
     call = f"rosette(outer_radius: {outer}, inner_radius: {r}, lobes: {lobes})"
     return call, lobes * (r**2 * sin(tau / lobes) / 2 + area), lobes * lobe * sweep
+
+
+@form
+def flower(n: Draw) -> tuple[str, float, float]:
+    outer, lobes = n(10, 40), 4 + int(n(0, 12))
+    half = math.pi / lobes
+    inner = n(0.1, 0.95) * outer * cos(half) / (1 + sin(half))
+    reach = (4 * outer / cos(half) - inner) / 3
+    feet = np.array(
+        [(r * cos(a), r * sin(a)) for r, a in ((inner, 0), (reach, 0), (reach, 2 * half), (inner, 2 * half))]
+    )
+    places, weights = np.polynomial.legendre.leggauss(60)
+    t = (places[:, None] + 1) / 2
+    p = (
+        (1 - t) ** 3 * feet[0]
+        + 3 * t * (1 - t) ** 2 * feet[1]
+        + 3 * t**2 * (1 - t) * feet[2]
+        + t**3 * feet[3]
+    )
+    legs = np.diff(feet, axis=0)
+    v = 3 * ((1 - t) ** 2 * legs[0] + 2 * t * (1 - t) * legs[1] + t**2 * legs[2])
+    area = weights @ (p[:, 0] * v[:, 1] - p[:, 1] * v[:, 0]) / 4
+    length = weights @ np.hypot(*v.T) / 2
+    call = f"rosette(outer_radius: {outer}, inner_radius: {inner}, lobes: {lobes})"
+    return call, lobes * float(area), lobes * float(length)
+
+
+def chamfered_by_sides(place: Callable[[float, float], str]) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h, c = n(10, 50), n(10, 50), n(0.1, 4.5)
+        call = f"chamfered_rectangle({place(w, h)}, chamfer: {c})"
+        return call, w * h - 2 * c**2, 2 * (w + h) - (8 - 4 * sqrt(2)) * c
+
+    return make
+
+
+FORMS += [chamfered_by_sides(place) for place in BY_SIDES]
 
 
 @form
