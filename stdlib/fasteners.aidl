@@ -28,9 +28,9 @@ solid bolt(
     length: length,
     head: text = "hex",
     thread: text = "lines",
-    thread_length: length = standard_thread(screw(size), head, length)
+    thread_length: length = standard_thread(metric(size), head, length)
 ) {
-    let s = screw(size)
+    let s = metric(size)
     let kind = choice(head, head_kinds)
     let lined = choice(thread, ["lines", "teeth", "none"]) != "none"
     let r = s.diameter / 2
@@ -39,8 +39,8 @@ solid bolt(
     let sunk = if kind == "countersunk" then sunk_height(s) else 0mm
     let begin = max(sunk + s.pitch / 2, length - thread_length)
     let turns = if lined then max(0, floor(written((length - depth - begin) / s.pitch))) else 0
+    assert thread_length >= 0, "a thread is not shorter than nothing"
     assert length > sunk + depth, "a screw is longer than its chamfered tip and a sunk head"
-    assert kind != "pan" or s.pan > 0mm, "pan heads end at M10 (ISO 7045)"
 
     seat = point(fixed((0, 0)))
     tip = point(fixed((0, -length)))
@@ -53,7 +53,7 @@ solid bolt(
                 [(s.head / 2, 0), (s.head / 2, top - r / 5), (s.head / 2 - r / 5, top)]
             )
         )
-    } else if kind == "pan" {
+    } else if kind == "pan" and s.pan > 0mm {
         cap = pan_head(s.pan / 2, s.pan_height, s.pan_crown)
     } else {
         cap = polygon(mirrored_corners([(r, -sunk), (s.countersink / 2, 0)]))
@@ -80,6 +80,10 @@ solid bolt(
     }
 }
 
+// A screw by its name, its record, or its diameter alone: no fastener is a hole that may be of another one.
+fn metric(size) = screw(size)
+fn metric(size: length) = screw("m" + str(written(size / 1mm)))
+
 // The depth of an external thread in pitches, ISO 68-1: 17/24 of the height of its triangle.
 let thread_depth = 17 / 24 * cos(30deg)
 
@@ -87,7 +91,12 @@ let head_kinds = ["hex", "socket", "pan", "countersunk"]
 
 fn head_height(
     s: record, kind: text
-) = if kind == "hex" then s.bolt_head else if kind == "socket" then s.diameter else if kind == "pan" then s.pan_height else 0mm
+) = if kind == "hex" then s.bolt_head else if kind == "socket" then s.diameter else if kind == "pan" then pan_height(
+    s
+) else 0mm
+fn pan_height(s: record) = if s.pan > 0mm then s.pan_height else refuse(
+    "pan heads end at M10, in ISO 7045: this one may be hex, socket or countersunk"
+)
 // Sunk heads have a right angle.
 fn sunk_height(s: record) = (s.countersink - s.diameter) / 2
 
@@ -120,7 +129,9 @@ shape hex_faces(flats: length, height: length, both: bool) {
     let half = hex_half(flats)
     let drop = hex_drop(flats)
     let low = if both then drop else 0mm
-    for i, x in enumerate([-half / 2, half / 2]) { edge[i] = line(fixed((x, low)), fixed((x, height - drop))) }
+    for i, x in enumerate([-half / 2, half / 2]) {
+        edge[i] = line(fixed((x, low)), fixed((x, height - drop)))
+    }
     for i in 0..2 {
         let ends = [[-1, -0.75, -0.5], [-0.5, 0, 0.5], [0.5, 0.75, 1]][i]
         over[i] = rounded_end(half, ends, height - drop, height)
@@ -203,8 +214,10 @@ solid wood_screw(diameter: length, length: length) {
     let pitch = 0.45 * diameter
     let begin = 0.4 * length
     let taper = length - 1.8 * diameter
-    let turns = floor(written((length - diameter / 2 - begin) / pitch))
-    assert length > 3 * diameter, "a wood screw is longer than three times its diameter"
+    let turns = if written(diameter) > 0mm then max(
+        1, floor(written((length - diameter / 2 - begin) / pitch))
+    ) else 1
+    assert 0 < diameter < length / 3, "a wood screw is longer than three times its diameter"
     // How much is left of a radius at a depth: the tip is a cone.
     fn left_of(radius, depth) = radius * min(1, max(0, (length - depth) / (length - taper)))
     fn flank(shift, turns) = [(2 * r, 0), (r, -r), (r, -begin)] + [(left_of(
@@ -244,7 +257,7 @@ solid wood_screw(diameter: length, length: length) {
 /// }
 /// ```
 solid nut(size) {
-    let s = screw(size)
+    let s = metric(size)
     seat = point(fixed((0, 0)))
     crown = point(fixed((0, s.nut_height)))
     body = polygon(hex_corners(s.nut, s.nut_height, true))
@@ -267,7 +280,7 @@ solid nut(size) {
 /// }
 /// ```
 solid washer(size) {
-    let s = screw(size)
+    let s = metric(size)
     seat = point(fixed((0, 0)))
     crown = point(fixed((0, s.washer_thickness)))
     body = rectangle(bottom_center: fixed((0, 0)), width: s.washer, height: s.washer_thickness)
