@@ -1,8 +1,8 @@
-"""The outlines that structures are clipped to: `@clip`, read when all geometry is there."""
+"""What structures are clipped to, outlines or the material of a solid: `@clip`, read when all geometry is there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
@@ -29,18 +29,24 @@ def state_clip(it: Interpreter, s: Structure, stated: StatedClip) -> None:
 
 
 def settle_clips(it: Interpreter) -> None:
-    """Gives structures the outlines that they are clipped to; those of copies come with the copies."""
+    """Gives structures what they are clipped to; copies get theirs with the copies."""
     for s, stated in it.clips.items():
-        s.clip = tuple(_outline(it, s, stated))
+        env = Env(stated.scope, s.parent or s, Reach.READ)
+        values = [evaluate(it, argument.value, env) for argument in stated.attribute.arguments]
+        if any(isinstance(value, Nothing) for value in values):
+            continue
+        match values:
+            case [Structure(kind="solid") as solid] if s.kind == "drawing":
+                s.ground = solid
+            case _:
+                s.clip = tuple(_outline(it, s, stated, values))
 
 
-def _outline(it: Interpreter, s: Structure, stated: StatedClip) -> Iterator[Geometry]:
+def _outline(
+    it: Interpreter, s: Structure, stated: StatedClip, values: Sequence[Value]
+) -> Iterator[Geometry]:
     """Yields the geometry that `@clip` names; reports what is no outline."""
     attribute = stated.attribute
-    env = Env(stated.scope, s.parent or s, Reach.READ)
-    values = [evaluate(it, argument.value, env) for argument in attribute.arguments]
-    if any(isinstance(value, Nothing) for value in values):
-        return
     found = list(_geometry(values[0])) if len(values) == 1 else []
     if found and all(g.type != "point" and not g.is_nameless for g in found):
         yield from found
@@ -49,6 +55,8 @@ def _outline(it: Interpreter, s: Structure, stated: StatedClip) -> Iterator[Geom
     if len(values) == 1:
         written = attribute.arguments[0].value.span.one_line
         if isinstance(values[0], Structure):
+            if s.kind == "drawing":
+                hints.append("a drawing is also clipped to the material of a solid: `@clip(plate)`")
             outline = next(iter(values[0].geometry), "outline")
             hints.append(f"name the outline in it, as in `@{attribute.name.text}({written}.{outline})`")
         elif found and all(g.type != "point" for g in found):
