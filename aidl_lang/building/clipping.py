@@ -1,4 +1,4 @@
-"""What structures are clipped to, outlines or the material of a solid: `@clip`, read when all geometry is there."""
+"""What structures are clipped to, outlines or material: `@clip`, read when all geometry is there."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def _outline(
             if s.kind == "drawing":
                 hints.append("a drawing is also clipped to the material of a solid: `@clip(plate)`")
             outline = next(iter(values[0].geometry), "outline")
-            hints.append(f"name the outline in it, as in `@{attribute.name.text}({written}.{outline})`")
+            if values[0].geometry or not hints:
+                hints.append(f"name the outline in it, as in `@{attribute.name.text}({written}.{outline})`")
         elif found and all(g.type != "point" for g in found):
             hints.append(f"give it a name that is not drawn: `construction outline = {written}`")
         else:

@@ -335,13 +335,16 @@ def _placed_within(check: Inference, node: ast.Call, identifier: ast.Identifier)
         gone = Span(node.span.source, node.arguments[k - 1].span.end, argument.span.end)
     else:
         after = node.arguments[1:2]
-        gone = Span(node.span.source, argument.span.start, after[0].span.start if after else argument.span.end)
+        gone = Span(
+            node.span.source, argument.span.start, after[0].span.start if after else argument.span.end
+        )
     end = node.span.end
     behind = Span(node.span.source, end, end)
     is_free = not text[end:].lstrip().startswith(("at ", "at("))
     check.report(
         "E0324",
-        f"`{node.callee.text}` has no parameter `{identifier.text}`: where a structure stands is said after its call",
+        f"`{node.callee.text}` has no parameter `{identifier.text}`: "
+        "where a structure stands is said after its call",
         identifier,
         hints=(f"as in `{node.callee.text}(…){place}`, which places its `origin`",),
         fix=Fix("place it behind the call", (Edit(gone, ""), Edit(behind, place))) if is_free else None,

@@ -1,6 +1,4 @@
-"""Drawings that are clipped to the material of a solid: what it and the bodies around it leave of it, once that
-is known.
-"""
+"""Drawings that are clipped to the material of a solid, once that is known."""
 
 from __future__ import annotations
 
