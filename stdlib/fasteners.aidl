@@ -64,7 +64,7 @@ solid bolt(
     shank = polygon(
         [fixed(p) for p in flank(begin, turns)] + flipped(flank(begin + s.pitch / 2, turns - 1))
     )
-    drawing detail {
+    drawing detail at fixed((0, 0)) {
         neck = line(fixed((-r, -sunk)), fixed((r, -sunk)))
         if kind == "hex" { faces = hex_faces(s.nut, top, false) }
         if kind == "socket" {
@@ -230,7 +230,7 @@ solid wood_screw(diameter: length, length: length) {
             flank(pitch * 3 / 4, turns - 1)
         )
     )
-    drawing detail {
+    drawing detail at fixed((0, 0)) {
         neck = line(fixed((-r, -r)), fixed((r, -r)))
         for i in 0..<turns - 1 {
             let y = begin + pitch * (i + 0.75)
@@ -261,7 +261,7 @@ solid nut(size) {
     seat = point(fixed((0, 0)))
     crown = point(fixed((0, s.nut_height)))
     body = polygon(hex_corners(s.nut, s.nut_height, true))
-    drawing detail { faces = hex_faces(s.nut, s.nut_height, true) }
+    drawing detail at fixed((0, 0)) { faces = hex_faces(s.nut, s.nut_height, true) }
 }
 
 /// A plain washer seen from the side (ISO 7089), a flat bar.

@@ -1,5 +1,5 @@
-"""Drawings on a solid with holes, in every format: as written they go on over the holes, and clipped to the solid
-they end there. What the files hold is read by other libraries.
+"""Drawings on a solid with holes, in every format: as written they go on over the holes, and clipped to the
+solid they end there. What the files hold is read by other libraries.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def test_nothing_is_seen_over_the_hole(read: Callable[[Model], Image.Image]) -> 
 
 
 def test_nested_drawings_and_copies_end_at_the_same_material() -> None:
-    """A copy that comes with its solid ends at the copy of that, one of the drawing alone at the same solid."""
+    """A copy that comes with its solid ends at the copy of that, the drawing alone at the same solid."""
     strokes = model(NESTED)._compiled.drawing.strokes  # type: ignore[union-attr]
     lengths: dict[str, float] = {}
     for s in strokes:
