@@ -28,17 +28,19 @@ solid bolt(
     length: length,
     head: text = "hex",
     thread: text = "lines",
-    thread_length: length = standard_thread(metric(size), head, length)
+    thread_length: length = standard_thread(metric(size), choice(head, head_kinds), length)
 ) {
     let s = metric(size)
     let kind = choice(head, head_kinds)
-    let lined = choice(thread, ["lines", "teeth", "none"]) != "none"
+    let cut = choice(thread, ["lines", "teeth", "none"])
     let r = s.diameter / 2
     let depth = thread_depth * s.pitch
     let top = head_height(s, kind)
     let sunk = if kind == "countersunk" then sunk_height(s) else 0mm
     let begin = max(sunk + s.pitch / 2, length - thread_length)
-    let turns = if lined then max(0, floor(written((length - depth - begin) / s.pitch))) else 0
+    let turns = if cut != "none" then max(
+        0, floor(written((length - depth - begin) / s.pitch))
+    ) else 0
     assert thread_length >= 0, "a thread is not shorter than nothing"
     assert length > sunk + depth, "a screw is longer than its chamfered tip and a sunk head"
 
@@ -58,7 +60,7 @@ solid bolt(
     } else {
         cap = polygon(mirrored_corners([(r, -sunk), (s.countersink / 2, 0)]))
     }
-    fn flank(begin, turns) = [(r, -sunk)] + (if thread == "teeth" then teeth(
+    fn flank(begin, turns) = [(r, -sunk)] + (if cut == "teeth" then teeth(
         r, depth, begin, s.pitch, turns
     ) else []) + [(r, depth - length), (r - depth, -length)]
     shank = polygon(
@@ -80,7 +82,7 @@ solid bolt(
     }
 }
 
-// A screw by its name, its record, or its diameter alone: no fastener is a hole that may be of another one.
+// A screw by its name, its record, or its diameter alone, which for a hole would be that of the hole.
 fn metric(size) = screw(size)
 fn metric(size: length) = screw("m" + str(written(size / 1mm)))
 
@@ -102,8 +104,8 @@ fn sunk_height(s: record) = (s.countersink - s.diameter) / 2
 
 // The length of thread that a standard asks for, on a screw that is long enough for it.
 fn standard_thread(
-    s: record, head: text, length: length
-) = if head == "pan" then if s.diameter > 3mm then 38mm else 25mm else if head != "hex" then 2 * s.diameter + 12mm else 2 * s.diameter + (if written(
+    s: record, kind: text, length: length
+) = if kind == "pan" then if s.diameter > 3mm then 38mm else 25mm else if kind != "hex" then 2 * s.diameter + 12mm else 2 * s.diameter + (if written(
     length
 ) > 200mm then 25mm else if written(length) > 125mm then 12mm else 6mm)
 
