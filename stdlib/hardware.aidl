@@ -8,6 +8,8 @@
 //   countersink  sharp diameter of a countersunk head: ISO 10642, below M3 ISO 7046
 //   nut          across flats, and nut_height, ISO 4032
 //   washer       outside diameter, and washer_thickness, ISO 7089; its hole is the close one
+//   bolt_head    height of a hexagon head, as wide across its flats as the nut, ISO 4014
+//   pan, pan_height, pan_crown   diameter, height and radius on top of a pan head, ISO 7045; none above M10
 fn screw_sizes(
     diameter: length,
     pitch: length,
@@ -21,7 +23,11 @@ fn screw_sizes(
     nut: length,
     nut_height: length,
     washer: length,
-    washer_thickness: length
+    washer_thickness: length,
+    bolt_head: length,
+    pan: length,
+    pan_height: length,
+    pan_crown: length
 ) = record(
     diameter: fixed(diameter),
     pitch: fixed(pitch),
@@ -35,20 +41,26 @@ fn screw_sizes(
     nut: fixed(nut),
     nut_height: fixed(nut_height),
     washer: fixed(washer),
-    washer_thickness: fixed(washer_thickness)
+    washer_thickness: fixed(washer_thickness),
+    bolt_head: fixed(bolt_head),
+    pan: fixed(pan),
+    pan_height: fixed(pan_height),
+    pan_crown: fixed(pan_crown)
 )
 
-//          d, pitch,  tap, close, clear, loose, head, bore, sunk, nut, height, washer, thickness
+//          d, pitch,  tap, close, clear, loose, head, bore, sunk, nut, height, washer, thickness, bolt head, pan, height, crown
 let screws = record(
-    m2: screw_sizes(2, 0.4, 1.6, 2.2, 2.4, 2.6, 3.8, 4.3, 4.4, 4, 1.6, 5, 0.3),
-    m2_5: screw_sizes(2.5, 0.45, 2.05, 2.7, 2.9, 3.1, 4.5, 5, 5.5, 5, 2, 6, 0.5),
-    m3: screw_sizes(3, 0.5, 2.5, 3.2, 3.4, 3.6, 5.5, 6.5, 6.72, 5.5, 2.4, 7, 0.5),
-    m4: screw_sizes(4, 0.7, 3.3, 4.3, 4.5, 4.8, 7, 8, 8.96, 7, 3.2, 9, 0.8),
-    m5: screw_sizes(5, 0.8, 4.2, 5.3, 5.5, 5.8, 8.5, 10, 11.2, 8, 4.7, 10, 1),
-    m6: screw_sizes(6, 1, 5, 6.4, 6.6, 7, 10, 11, 13.44, 10, 5.2, 12, 1.6),
-    m8: screw_sizes(8, 1.25, 6.8, 8.4, 9, 10, 13, 15, 17.92, 13, 6.8, 16, 1.6),
-    m10: screw_sizes(10, 1.5, 8.5, 10.5, 11, 12, 16, 18, 22.4, 16, 8.4, 20, 2),
-    m12: screw_sizes(12, 1.75, 10.2, 13, 13.5, 14.5, 18, 20, 26.88, 18, 10.8, 24, 2.5)
+    m2: screw_sizes(2, 0.4, 1.6, 2.2, 2.4, 2.6, 3.8, 4.3, 4.4, 4, 1.6, 5, 0.3, 1.4, 4, 1.6, 3.2),
+    m2_5: screw_sizes(2.5, 0.45, 2.05, 2.7, 2.9, 3.1, 4.5, 5, 5.5, 5, 2, 6, 0.5, 1.7, 5, 2.1, 4),
+    m3: screw_sizes(3, 0.5, 2.5, 3.2, 3.4, 3.6, 5.5, 6.5, 6.72, 5.5, 2.4, 7, 0.5, 2, 5.6, 2.4, 5),
+    m4: screw_sizes(4, 0.7, 3.3, 4.3, 4.5, 4.8, 7, 8, 8.96, 7, 3.2, 9, 0.8, 2.8, 8, 3.1, 6.5),
+    m5: screw_sizes(5, 0.8, 4.2, 5.3, 5.5, 5.8, 8.5, 10, 11.2, 8, 4.7, 10, 1, 3.5, 9.5, 3.7, 8),
+    m6: screw_sizes(6, 1, 5, 6.4, 6.6, 7, 10, 11, 13.44, 10, 5.2, 12, 1.6, 4, 12, 4.6, 10),
+    m8: screw_sizes(8, 1.25, 6.8, 8.4, 9, 10, 13, 15, 17.92, 13, 6.8, 16, 1.6, 5.3, 16, 6, 13),
+    m10: screw_sizes(10, 1.5, 8.5, 10.5, 11, 12, 16, 18, 22.4, 16, 8.4, 20, 2, 6.4, 20, 7.5, 16),
+    m12: screw_sizes(
+        12, 1.75, 10.2, 13, 13.5, 14.5, 18, 20, 26.88, 18, 10.8, 24, 2.5, 7.5, 0, 0, 0
+    )
 )
 
 // A screw may be named bare: `clearance_hole(m3)`.
@@ -65,7 +77,8 @@ let m12 = screws.m12
 /// The sizes of a metric screw from M2 to M12, its nut, its washer and its holes.
 ///
 /// They are `diameter`, `pitch`, `tap` (drill), `clearance` (and `close`, `loose`), `head`, `counterbore`, `countersink`, `nut`
-/// (across flats), `nut_height`, `washer`, `washer_thickness`, all in mm. `screws.m3` is the same as `screw("m3")`.
+/// (across flats), `nut_height`, `washer`, `washer_thickness`, `bolt_head` (height), `pan`, `pan_height`, `pan_crown`, all in mm.
+/// `screws.m3` is the same as `screw("m3")`. As seen from the side they are `bolt`, `nut` and `washer`.
 ///
 /// ```aidl
 /// solid washer {

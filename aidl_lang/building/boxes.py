@@ -229,7 +229,9 @@ def _structure(
         if not _lies_inside(primitive, whole, ignored):
             yield from _curve(primitive, here, side)
     for child in source.children:
-        is_clipped = bool(child.clip) and all(_is_in(g, whole, ignored) for g in child.clip)
+        is_clipped = child.ground is source or (
+            bool(child.clip) and all(_is_in(g, whole, ignored) for g in child.clip)
+        )
         if child.kind != "hole" and child not in ignored and not is_clipped:
             yield from _structure(child, whole, here, side, ignored)
 

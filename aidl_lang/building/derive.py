@@ -195,10 +195,14 @@ class Copier:
 
     def clip(self) -> None:
         """Gives copies of structures the outlines that their sources are clipped to, when these are known;
-        one outside of the source lies to the copy as it lies to the source.
+        one outside of the source lies to the copy as it lies to the source, and a solid outside where it is.
         """
         for source, copy in tuple(self.structures.items()):
-            if source.clip and copy not in self.it.clips:
+            if copy in self.it.clips:
+                continue
+            if source.ground is not None:
+                copy.ground = self.structures.get(source.ground, source.ground)
+            if source.clip:
                 seen = Copier(self.it, source, STILL, span=self.span)
                 copy.clip = tuple(
                     self.geometry(g if g.owner in self.structures else seen.geometry(g)) for g in source.clip
@@ -246,6 +250,8 @@ class Copier:
         for child in source.children:
             if all(g.owner is source for g in child.clip):
                 self.structures[child].clip = tuple(self.geometry(g) for g in child.clip)
+            if child.ground is source:
+                self.structures[child].ground = copy
         copy.is_complete = source.is_complete
         return copy
 

@@ -243,6 +243,7 @@ class Structure:
     scope       the names its body sees (see interp)
     finishes    fillets and chamfers of its geometry
     clip        the outline that all in it is drawn inside of; empty for none
+    ground      the solid on whose material alone all in a drawing is drawn
     """
 
     kind: str
@@ -264,6 +265,7 @@ class Structure:
     )
     finishes: list[Finish] = field(default_factory=list)
     clip: tuple[Geometry, ...] = ()
+    ground: Structure | None = None
     doc: str | None = None
     is_complete: bool = False
     is_nameless: ClassVar[bool] = False

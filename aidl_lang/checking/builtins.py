@@ -169,6 +169,7 @@ WORDS = frozenset(
         *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
         *("sharp", "miter", "round", "butt", "square", "here", "corner", "max"),
         *("close", "medium", "loose", "tabs", "notches"),
+        *("hex", "socket", "pan", "countersunk", "lines", "teeth", "none"),
     )
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""

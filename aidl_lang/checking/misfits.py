@@ -309,6 +309,9 @@ def _unknown_parameter(
             like = [synonyms[near[0]]]
             is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], free) == like
             fix = Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),), is_sure)
+        if isinstance(closest.node, ast.Structure) and fold(identifier.text) in ("at", "center"):
+            _placed_within(check, node, identifier)
+            continue
         hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
         if fold(identifier.text) == "length" and {"width", "height"} <= set(names):
             hints = ["its sizes are `width`, from left to right, and `height`, from bottom to top"]
@@ -321,6 +324,31 @@ def _unknown_parameter(
             fix=fix,
         )
     return bool(wrong)
+
+
+def _placed_within(check: Inference, node: ast.Call, identifier: ast.Identifier) -> None:
+    """Reports a place among the arguments of a template: it stands behind the call."""
+    k = next(k for k, argument in enumerate(node.arguments) if argument.name is identifier)
+    argument, text = node.arguments[k], node.span.source.text
+    place = f" at {argument.value.span.one_line}"
+    if k > 0:
+        gone = Span(node.span.source, node.arguments[k - 1].span.end, argument.span.end)
+    else:
+        after = node.arguments[1:2]
+        gone = Span(
+            node.span.source, argument.span.start, after[0].span.start if after else argument.span.end
+        )
+    end = node.span.end
+    behind = Span(node.span.source, end, end)
+    is_free = not text[end:].lstrip().startswith(("at ", "at("))
+    check.report(
+        "E0324",
+        f"`{node.callee.text}` has no parameter `{identifier.text}`: "
+        "where a structure stands is said after its call",
+        identifier,
+        hints=(f"as in `{node.callee.text}(…){place}`, which places its `origin`",),
+        fix=Fix("place it behind the call", (Edit(gone, ""), Edit(behind, place))) if is_free else None,
+    )
 
 
 _ANSWERS = (

@@ -68,9 +68,10 @@ def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagn
 
 
 def _nothing_left(s: SolvedStructure) -> Diagnostic:
+    of = f"the material of `{s.ground}`" if s.ground is not None else named([g.name for g in s.clip])
     return Diagnostic(
         "E0339",
-        f"nothing of `{s.path}` lies inside {named([g.name for g in s.clip])}, to which it is clipped",
+        f"nothing of `{s.path}` lies inside {of}, to which it is clipped",
         s.span,
         "nothing is drawn of this",
         hints=("place the two so that they overlap, as they shall in the drawing",),

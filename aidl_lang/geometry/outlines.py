@@ -96,7 +96,7 @@ class _Outliner:
             if g.construction:
                 self._finished([_shown(self._drawn(g))], s.finishes, s)
         if s.kind == "drawing" and inside is not None:
-            finished = _clipped(finished, inside)
+            finished = clipped_ink(finished, inside)
         return replace(
             s,
             geometry=geometry,
@@ -417,7 +417,7 @@ def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result)
 # --- Small things ----------------------------------------------------------------------------------
 
 
-def _clipped(geometry: Sequence[SolvedGeometry], region: Region) -> list[SolvedGeometry]:
+def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[SolvedGeometry]:
     """Returns the geometry of a drawing as far as it lies in a region or along its border: parts of curves,
     and the outlines of what is left of filled letters.
     """

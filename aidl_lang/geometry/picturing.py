@@ -39,6 +39,11 @@ def pictured(
         model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
         model, wrong = _completed(model)
         drawing, notes = draw(model)
+        if any(s.ground is not None for s in model.root.walk()):
+            from aidl_lang.geometry.grounds import on_material
+
+            model = on_material(model, drawing)
+            drawing, notes = draw(model)
     return model, evaluator, drawing, [*placeless, *wrong, *notes]
 
 

@@ -178,6 +178,7 @@ class _Reader:
             finishes=tuple(self._finish(s, f) for f in s.finishes),
             doc=s.doc,
             clip=tuple(map(self.geometry, s.clip)),
+            ground=s.ground.path if s.ground is not None else None,
         )
 
     def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:

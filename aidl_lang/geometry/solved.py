@@ -139,7 +139,7 @@ class SolvedStructure:
     counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
     that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`. `clip`: the geometry that
     all in it is drawn inside of; `inside` is what it encloses, as far as that lies in those around it, once
-    it is worked out.
+    it is worked out. `ground`: the path of the solid on whose material alone a drawing is drawn.
     """
 
     name: str
@@ -161,6 +161,7 @@ class SolvedStructure:
     finished: tuple[SolvedGeometry, ...] | None = None
     clip: tuple[SolvedGeometry, ...] = ()
     inside: Region | None = None
+    ground: str | None = None
 
     @property
     def drawn(self) -> tuple[SolvedGeometry, ...]:

@@ -132,7 +132,18 @@ TOPICS = (
     *("arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "path", "spline", "text"),
     *("outlines", "patterns", "operations"),
     *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
-    *("clearance", "joints", "hardware", "mounts", "gear", "dimensions", "numbers", "colors", "exactness"),
+    *(
+        "clearance",
+        "joints",
+        "hardware",
+        "fasteners",
+        "mounts",
+        "gear",
+        "dimensions",
+        "numbers",
+        "colors",
+        "exactness",
+    ),
 )
 """Topics that come first, in this order; the others follow by name."""
 
