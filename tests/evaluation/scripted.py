@@ -305,14 +305,18 @@ MISTAKES: Mapping[str, Sequence[Mistake]] = {
 """What is wrong in a first reply; the second is right. A third mistake is to answer without a program."""
 
 
+def mistake(name: str) -> int:
+    """Returns which mistake the first reply to a prompt has, where it has one."""
+    return PROMPTS.index(name) // 2 % 3
+
+
 def replies(name: str, variant: str) -> list[str]:
     """Returns the replies of a conversation: every other one has a mistake first, all kinds in turn."""
-    program, number = WRITERS[variant](name), PROMPTS.index(name)
+    program = WRITERS[variant](name)
     right = _fenced(program, variant)
-    if number % 2 == 0:
+    if PROMPTS.index(name) % 2 == 0:
         return [right]
-    kinds = MISTAKES[variant]
-    kind = number // 2 % (len(kinds) + 1)
+    kinds, kind = MISTAKES[variant], mistake(name)
     wrong = "First I think about it." if kind == len(kinds) else _fenced(kinds[kind](program), variant)
     return [wrong, right]
 

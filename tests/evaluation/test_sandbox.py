@@ -107,7 +107,7 @@ def test_what_reaches_out_is_refused(name: str, tmp_path: Path) -> None:
 
 
 LIMITED = {
-    "hungry": "held = []\nwhile True: held.append(bytearray(1 << 28))",
+    "hungry": "held = bytearray(1 << 40)",
     "endless": "while True: pass",
     "deep": "def f(): f()\nf()",
     "many": "for number in range(5000): show_object({shape})",
