@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 from PIL import Image
 
 from aidl_lang.geometry.measures import area, region_bounds
-from aidl_lang.tools.evaluation import pictures, rendering
+from aidl_lang.tools.evaluation import openscad, pictures, rendering
 from aidl_lang.tools.evaluation.openscad import OpenScad, knobs, parts, render, structures
+from aidl_lang.tools.evaluation.sandbox import fence
 from aidl_lang.tools.evaluation.shapes import PIXELS
 
 needs_openscad = pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
@@ -65,6 +67,7 @@ def test_a_program_is_drawn_with_its_holes() -> None:
         ("x = 3;", ("error: nothing is drawn",)),
         ("", ("error: nothing is drawn",)),
         ("square(0);", ("error: nothing is drawn",)),
+        ("square(1e12);", ("error: a coordinate is not a finite number, or too large",)),
         ('square([1, 1]);\nassert(false, "no");', ("error (line 2): Assertion 'false' failed: \"no\"",)),
     ],
 )
@@ -102,6 +105,72 @@ def test_a_comment_about_files_is_no_offence() -> None:
 def test_a_program_without_end_is_stopped(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rendering, "SECONDS", 2)
     assert not render(program).ok
+
+
+@needs_openscad
+@pytest.mark.parametrize(
+    ("program", "error"),
+    [
+        (
+            "for (i = [0 : 1e9]) square(i);",
+            "warning (line 1): Bad range parameter in for statement: too many elements",
+        ),
+        ("for (i = [0 : 9e3]) for (j = [0 : 9e3]) square(i + j);", "error: rendering took longer than 2 s"),
+        (
+            "minkowski() { circle(3, $fn = 9999); circle(4, $fn = 9999); }",
+            "error: rendering took longer than 2 s",
+        ),
+        ("module m() { m(); square(1); } m();", "error (line 1): Recursion detected calling module 'm'"),
+    ],
+)
+def test_what_takes_too_much_is_told(program: str, error: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rendering, "SECONDS", 2)
+    said = OpenScad().conversation().judge(program)
+    assert not said.ok
+    assert any(line.startswith(error) for line in said.feedback.splitlines()), said.feedback
+
+
+@needs_openscad
+@pytest.mark.parametrize(
+    ("limit", "value", "program"),
+    [
+        (
+            "MEMORY",
+            1 << 29,
+            "x = [for (i = [0 : 9e5]) [for (j = [0 : 99]) j]]; square(len(x));",
+        ),
+        ("OUTPUT", 1 << 12, "for (i = [0 : 999]) translate([2 * i, 0]) square(1);"),
+        ("OUTPUT", 1 << 12, "for (i = [0 : 9000]) echo(i); square(1);"),
+    ],
+)
+def test_memory_and_output_are_limited(
+    limit: str, value: int, program: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rendering, limit, value)
+    (error,) = render(program).errors
+    assert error.startswith("error: OpenSCAD was stopped (signal ")
+
+
+@needs_openscad
+@pytest.mark.skipif(not fence.version(), reason="this kernel has no Landlock")
+def test_openscad_itself_cannot_read_what_is_not_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs with these words are refused before; here they come as far as OpenSCAD."""
+    monkeypatch.setattr(openscad, "_FILES", re.compile(r"\Z\A."))
+    outside = tmp_path / "a.svg"
+    outside.write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>')
+    (error,) = render(f'import("{outside}");').errors
+    assert error.startswith("error: Can't open file")
+    monkeypatch.setattr(fence, "fence", lambda folder: None)
+    assert render(f'import("{outside}");').ok
+    library = tmp_path / "a.scad"
+    library.write_text("module a() square(5);")
+    assert render(f"use <{library}>\na();").ok
+    monkeypatch.undo()
+    monkeypatch.setattr(openscad, "_FILES", re.compile(r"\Z\A."))
+    assert not render(f"use <{library}>\na();").ok
+    assert render('text("a");').ok  # its fonts are
 
 
 @needs_openscad

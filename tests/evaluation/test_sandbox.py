@@ -7,6 +7,7 @@ audit hook refuses is tried past it as well, so that the guards below it are tes
 from __future__ import annotations
 
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -19,6 +20,8 @@ from aidl_lang.geometry.measures import area
 from aidl_lang.tools.evaluation import rendering, sandboxed
 from aidl_lang.tools.evaluation.python_cad import PythonCad
 from aidl_lang.tools.evaluation.rendering import Rendered
+from aidl_lang.tools.evaluation.sandbox import fence
+from tests.documents import ROOT
 
 FAKE = PythonCad("statistics")
 SANDBOX = Path(sandboxed.__file__).parent / "sandbox"
@@ -103,6 +106,64 @@ def test_what_reaches_out_is_refused(name: str, tmp_path: Path) -> None:
     assert victim.exists()
 
 
+LIMITED = {
+    "hungry": "held = bytearray(1 << 40)",
+    "endless": "while True: pass",
+    "deep": "def f(): f()\nf()",
+    "many": "shape = {shape}\nshow_object([shape] * 5000)",
+    "solid": "show_object({solid})",
+    "library's own files": "{export}",
+}
+
+
+@pytest.mark.parametrize(
+    ("library", "words"),
+    [
+        (
+            "build123d",
+            {
+                "shape": "Rectangle(1, 1)",
+                "solid": "Box(1, 1, 1)",
+                "export": "export_step(Box(1, 1, 1), '{new}')",
+            },
+        ),
+        (
+            "cadquery",
+            {
+                "shape": "cq.Sketch().rect(1, 1)",
+                "solid": "cq.Workplane().box(1, 1, 1)",
+                "export": "cq.exporters.export(cq.Workplane().box(1, 1, 1), '{new}')",
+            },
+        ),
+    ],
+)
+def test_the_libraries_themselves_reach_nothing(
+    library: str, words: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if reason := PythonCad(library).missing():
+        pytest.skip(reason)
+    victim, new = tmp_path / "victim", tmp_path / "new.step"
+    victim.write_text("here")
+    head = {"build123d": "from build123d import *\n", "cadquery": "import cadquery as cq\n"}[library]
+    words = {name: word.format(new=new) for name, word in words.items()}
+    tried = {name: text.format(victim=victim, pid=os.getpid()) for name, text in HOSTILE.items()}
+    tried |= {name: text.format(**words) for name, text in LIMITED.items()}
+    found = dict(
+        zip(tried, sandboxed.run(library, [head + text for text in tried.values()], 20), strict=True)
+    )
+    errors = {name: rendered.errors[0] for name, rendered in found.items()}
+    assert not any(new.parent.glob("new*"))
+    assert victim.read_text() == "here"
+    for name in HOSTILE:
+        assert re.match(r"error \(line [23]\): (PermissionError|KeyError)", errors[name]), errors
+    assert errors["hungry"] == "error: the program took more than 4 GB of memory"
+    assert errors["endless"] == "error: the program took longer than 20 s"
+    assert "RecursionError" in errors["deep"]
+    assert errors["many"] == "error: more than 4000 faces and lines are shown"
+    assert errors["solid"].startswith("error: the drawing must be flat")
+    assert errors["library's own files"].startswith("error")
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="system calls are filtered on Linux")
 def test_the_kernel_refuses_what_gets_past_the_hook(tmp_path: Path) -> None:
     """In a locked process without the audit hook nothing can be opened, started, removed or killed."""
@@ -138,6 +199,59 @@ for name, attempt in tries.items():
     assert done.stdout.splitlines() == [
         f"{name} 1" for name in ["open", "write", "socket", "fork", "exec", "remove", "kill", "pipe", "chmod"]
     ]
+    assert victim.read_text() == "here"
+
+
+FENCED = """
+import ctypes, os, socket, subprocess, sys, threading
+from aidl_lang.tools.evaluation.sandbox import fence
+fence.fence({folder!r})
+def threaded():
+    thread = threading.Thread(target=lambda: None)
+    thread.start()
+    thread.join()
+tries = {{
+    "thread": threaded,
+    "own": lambda: open({folder!r} + "/new", "w").close(),
+    "system": lambda: os.listdir("/usr"),
+    "read": lambda: open({victim!r}),
+    "list": lambda: os.listdir({outside!r}),
+    "write": lambda: open({victim!r}, "w"),
+    "new": lambda: open({outside!r} + "/new", "w"),
+    "remove": lambda: os.remove({victim!r}),
+    "passwd": lambda: open("/etc/passwd"),
+    "process": lambda: open("/proc/self/environ"),
+    "socket": socket.socket,
+    "fork": os.fork,
+    "spawn": lambda: subprocess.run(["/bin/true"]),
+    "kill": lambda: os.kill({pid}, 0),
+    "renumbered": lambda: fence._done(ctypes.CDLL(None, use_errno=True).syscall(0x40000029, 1, 1, 0)),
+}}
+for name, attempt in tries.items():
+    try:
+        attempt()
+        print(name, "done")
+    except OSError as error:
+        print(name, error.errno)
+"""
+
+
+@pytest.mark.skipif(not fence.version(), reason="this kernel has no Landlock")
+def test_a_fenced_process_has_the_system_and_one_folder(tmp_path: Path) -> None:
+    folder, outside = tmp_path / "own", tmp_path / "outside"
+    folder.mkdir()
+    outside.mkdir()
+    victim = outside / "victim"
+    victim.write_text("here")
+    said = {"folder": str(folder), "outside": str(outside), "victim": str(victim), "pid": os.getpid()}
+    done = subprocess.run(
+        [sys.executable, "-c", FENCED.format(**said)], capture_output=True, text=True, check=False, cwd=ROOT
+    )
+    assert done.stderr == ""
+    refused = {"read": 13, "list": 13, "write": 13, "new": 13, "remove": 13, "passwd": 13, "process": 13}
+    calls = dict.fromkeys(("socket", "fork", "spawn", "kill", "renumbered"), 1)
+    expected = dict.fromkeys(("thread", "own", "system"), "done") | refused | calls
+    assert dict(line.split() for line in done.stdout.splitlines()) == {k: str(v) for k, v in expected.items()}
     assert victim.read_text() == "here"
 
 

@@ -12,6 +12,10 @@ from aidl_lang.tools.evaluation.svg import Svg, render
 pytestmark = pytest.mark.skipif(Svg().missing() is not None, reason=str(Svg().missing()))
 
 
+LINE = '<path d="{}" fill="none" stroke="red" stroke-width="2" {}/>'
+"""A line two wide."""
+
+
 def drawing(inner: str, root: str = "") -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" {root}>{inner}</svg>'
 
@@ -24,7 +28,16 @@ def drawing(inner: str, root: str = "") -> str:
         ('<g transform="translate(10 0) scale(2)"><rect width="3" height="4"/></g>', 48, (10, -8, 16, 0)),
         ('<path fill-rule="evenodd" d="M0 0H10V10H0Z M2 2H8V8H2Z"/>', 64, (0, -10, 10, 0)),
         ('<path d="M0 0H10V10H0Z M2 2H8V8H2Z"/>', 100, (0, -10, 10, 0)),
-        ('<path d="M0 0H10" fill="none" stroke="red" stroke-width="2"/>', 20 + math.pi, (-1, -1, 11, 1)),
+        (LINE.format("M0 0H10", ""), 20, (0, -1, 10, 1)),
+        (LINE.format("M0 0H10", 'stroke-linecap="round"'), 20 + math.pi, (-1, -1, 11, 1)),
+        (LINE.format("M0 0H10", 'style="stroke-linecap:square"'), 24, (-1, -1, 11, 1)),
+        (LINE.format("M0 0H10V10", ""), 40, (0, -10, 11, 1)),
+        (LINE.format("M0 0H10V-10", ""), 40, (0, -1, 11, 10)),
+        (LINE.format("M0 0H10V10", 'stroke-linejoin="bevel"'), 39.5, (0, -10, 11, 1)),
+        (LINE.format("M0 0H10V10", 'stroke-linejoin="round"'), 39 + math.pi / 4, (0, -10, 11, 1)),
+        (LINE.format("M0 0H10V10", 'stroke-miterlimit="1"'), 39.5, (0, -10, 11, 1)),
+        (LINE.format("M0 0H10V10H0Z", ""), 144 - 64, (-1, -11, 11, 1)),
+        ('<circle r="10" fill="none" stroke="red" stroke-width="2"/>', 40 * math.pi, (-11, -11, 11, 11)),
         ('<defs><rect id="a" width="2" height="2"/></defs><use href="#a" x="5"/>', 4, (5, -2, 7, 0)),
         ('<rect width="2" height="2"/><rect width="9" height="9" display="none"/>', 4, (0, -2, 2, 0)),
         ('<rect width="2" height="2"/><rect width="9" height="9" fill="none"/>', 4, (0, -2, 2, 0)),
@@ -63,6 +76,54 @@ def test_parts_have_their_colours_and_their_order() -> None:
 )
 def test_what_cannot_be_read_is_told(text: str, error: str) -> None:
     assert render(text).errors == (error,)
+
+
+USES = "".join(f'<g id="a{n + 1}">' + 5 * f'<use href="#a{n}"/>' + "</g>" for n in range(6))
+LINK = 'xmlns:xlink="http://www.w3.org/1999/xlink"'
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        (
+            drawing(f'<defs><rect id="a0" width="1" height="1"/>{USES}</defs>'),
+            "there are more than 4000 elements",
+        ),
+        (drawing('<rect width="1" height="1"/>' * 5000), "there are more than 4000 elements"),
+        (drawing("<a/>" * 1_000_000), "the program has more than 2000000 characters"),
+        (drawing('<g id="a"><use href="#a"/></g>'), "a `use` repeats what it is in itself"),
+        (drawing('<g id="a"><use xlink:href="#a"/></g>', LINK), "a `use` repeats what it is in itself"),
+        (drawing("<g>" * 20_000 + "</g>" * 20_000), "elements are nested too deep"),
+        (drawing('<path d="M0 0' + " l1 1 1-1" * 6000 + 'z"/>'), "outlines have more than 20000 numbers"),
+        (drawing('<polygon points="' + "0,1.5e3 " * 10_001 + '"/>'), "outlines have more than 20000 numbers"),
+        (
+            drawing('<path d="M0 0 A 1e-300 1e300 0 1 1 5 5z"/>'),
+            "it cannot be read as SVG: float division by zero",
+        ),
+        (
+            drawing('<rect width="' + "9" * 5000 + '" height="1"/>'),
+            "it cannot be read as SVG: a coordinate is not",
+        ),
+        (
+            drawing('<rect width="1" height="1" transform="scale(1e308) scale(1e308)"/>'),
+            "it cannot be read as SVG",
+        ),
+        ("<!DOCTYPE x SYSTEM 'file:///etc/passwd'><svg/>", "entities and document types are not read"),
+        (drawing("&#x0;"), "it is not well-formed XML"),
+    ],
+)
+def test_what_is_too_much_is_told(text: str, error: str) -> None:
+    (said,) = render(text).errors
+    assert said.startswith(f"error: {error}")
+
+
+def test_links_lead_nowhere() -> None:
+    linked = (
+        '<use href="file:///etc/passwd#a"/><rect width="2" height="2" fill="url(http://example.com/#a)"/>'
+    )
+    style = '<style>@import url("http://example.com/a.css");</style><rect width="1" height="1"/>'
+    drawn = render(drawing(linked + style))
+    assert (drawn.errors, len(drawn.regions.parts)) == ((), 2)
 
 
 def test_what_is_left_out_is_told() -> None:

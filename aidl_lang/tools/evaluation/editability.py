@@ -12,7 +12,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.ends.values import Value, allowed, rounded
 from aidl_lang.tools.evaluation.regions import Regions, of_drawing
-from aidl_lang.tools.evaluation.rendering import RenderedLanguage
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage, as_written
 from aidl_lang.tools.evaluation.requirements import Prompt, Status, examine_regions
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.language import Language
@@ -86,8 +86,8 @@ def of_rendered(language: RenderedLanguage, program: str, prompt: Prompt) -> Edi
         for value in dict.fromkeys(_whole(aim, written) for aim in _numbers(written))
         if value != written
     ]
-    before, *after = language.run(program, [{}, *({name: value} for name, value in tried)])
-    met = _met(prompt, before.regions)
+    met = _met(prompt, as_written(language, program).regions)
+    after = language.run(program, [{name: value} for name, value in tried]) if tried else []
     edits = [
         Edit(
             name,

@@ -12,7 +12,7 @@ from aidl_lang.tools.evaluation import editability, pictures, shapes
 from aidl_lang.tools.evaluation.editability import Edits
 from aidl_lang.tools.evaluation.plan import VARIANTS
 from aidl_lang.tools.evaluation.regions import Regions, of_drawing
-from aidl_lang.tools.evaluation.rendering import RenderedLanguage
+from aidl_lang.tools.evaluation.rendering import RenderedLanguage, as_written
 from aidl_lang.tools.evaluation.requirements import Prompt, Result, examine, examine_regions
 from aidl_lang.tools.evaluation.whole import pieces
 from aidl_lang.tools.llm.aidl import counted
@@ -52,7 +52,7 @@ def _draw_aidl(language: Language, program: str, prompt: Prompt) -> DrawnProgram
 
 
 def _draw(language: RenderedLanguage, program: str, prompt: Prompt) -> DrawnProgram:
-    (rendered,) = language.run(program)
+    rendered = as_written(language, program)
     if not rendered.ok:
         raise ValueError(f"the program was judged valid, and is not: {rendered.errors[0]}")
     drawn = rendered.regions

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,8 @@ from aidl_lang.common.colors import hexadecimal
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation import rendering
 from aidl_lang.tools.evaluation.regions import Part, Regions, of_outlines
-from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered, RenderedConversation
+from aidl_lang.tools.evaluation.rendering import NOTHING, UNBOUNDED, Rendered, RenderedConversation
+from aidl_lang.tools.evaluation.sandbox import fence
 
 COMMAND = "openscad"
 _MOST = 48
@@ -44,7 +46,8 @@ class OpenScad:
     fences: tuple[str, ...] = ("openscad", "scad")
 
     def missing(self) -> str | None:
-        return None if shutil.which(COMMAND) else "it is not installed"
+        path = shutil.which(COMMAND)
+        return _unlockable(path) if path else "it is not installed"
 
     def guide(self) -> str:
         return rendering.guide(self.name)
@@ -64,7 +67,15 @@ class OpenScad:
     def run(
         self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
     ) -> list[Rendered]:
-        return [(_parted if parted else render)(program, edit) for edit in edits]
+        drawn = _parted if parted else _united
+        return [drawn(program, edit) for edit in edits]
+
+
+@cache
+def _unlockable(path: str) -> str | None:
+    """Returns the reason why an OpenSCAD does not run locked in; None if it does."""
+    errors = render("square(1);").errors
+    return f"`{path}` does not run locked in ({errors[0]})" if errors else None
 
 
 def structures(program: str) -> int:
@@ -106,6 +117,10 @@ def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
     return _outlined(drawn, errors, warnings)
 
 
+def _united(program: str, knobs: Mapping[str, float]) -> Rendered:
+    return replace(render(program, knobs), is_parted=False)
+
+
 def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int | None, str, str]:
     """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
     with tempfile.TemporaryDirectory() as folder:
@@ -121,7 +136,7 @@ def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int 
                     stdout=file,
                     stderr=subprocess.STDOUT,
                     timeout=rendering.SECONDS,
-                    preexec_fn=_limit,
+                    preexec_fn=partial(_limit, folder),
                 ).returncode
         except subprocess.TimeoutExpired:
             return None, "", ""
@@ -129,14 +144,14 @@ def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int 
         return code, text, "" if code or not drawing.exists() else drawing.read_text("utf-8")
 
 
-def _parted(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
+def _parted(program: str, knobs: Mapping[str, float]) -> Rendered:
     """Runs a program as `render` does, and draws what stands side by side in it as parts of their own, in
     the order of writing: OpenSCAD itself unites them and drops their colours.
     """
     whole = render(program, knobs)
     if not whole.ok:
         return whole
-    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
+    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
     code, _, tree = _called(program, "tree.csg", values)
     pieces = parts(tree) if code == 0 and len(tree) <= _TREE else []
     if len(pieces) < 2:
@@ -208,7 +223,8 @@ def _statements(lines: Sequence[str]) -> list[tuple[str, ...]]:
     return found
 
 
-def _limit() -> None:
+def _limit(folder: str) -> None:
+    fence.fence(folder)
     resource.setrlimit(resource.RLIMIT_CPU, (rendering.SECONDS,) * 2)
     resource.setrlimit(resource.RLIMIT_AS, (rendering.MEMORY,) * 2)
     resource.setrlimit(resource.RLIMIT_FSIZE, (rendering.OUTPUT,) * 2)
@@ -249,6 +265,6 @@ def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> R
     ]
     if not outlines:
         return Rendered(errors=(*errors, NOTHING), warnings=warnings)
-    if not all(np.isfinite(outline).all() for outline in outlines):
-        return Rendered(errors=(*errors, "error: a coordinate is not a finite number"), warnings=warnings)
+    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
+        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
     return Rendered(of_outlines([(outlines, None)]), errors, warnings)

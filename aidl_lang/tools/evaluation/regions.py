@@ -12,13 +12,14 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.boolean import common
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Polygon
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import stacked
 from aidl_lang.geometry.tessellate import region_polygons
 from aidl_lang.tools.evaluation import shapes
+from aidl_lang.tools.evaluation.things import covered, drawn
 
 FINE = 2e-4
 """Distance of chords from curves, as a share of the drawing's size."""
@@ -75,28 +76,35 @@ def of_outlines(parts: Iterable[tuple[Sequence[Polygon], str | None]]) -> Region
 
 
 def of_drawing(model: SolvedModel, drawing: Drawing) -> Regions:
-    """Returns the bodies of AIDL's drawing, each followed by the solids that it was united of, as far as they
-    are seen in it; and strokes as lines.
+    """Returns the bodies of AIDL's drawing, each taken apart into the outlines that it was united of, as far
+    as they are seen in it; and strokes as lines.
+
+    Other languages unite no shapes that stand side by side, so what is united without a word counts by
+    outline: a drawing of one solid has as many parts as the same outlines in a solid each.
     """
     bodies = {body.path: body.region for body in drawing.bodies}
     parts = list[Part]()
     for structure in stacked(model.root):
         if structure.path in bodies:
-            parts.append(Part(bodies[structure.path], _color(drawing, structure.path)))
-            parts += _within(structure, bodies[structure.path], drawing)
+            body = bodies[structure.path]
+            found = tuple(_within(structure, body, drawing, is_cut=False))
+            parts += found if len(found) > 1 else (Part(body, _color(drawing, structure.path)),)
     lines = tuple(stroke.pieces for stroke in drawing.strokes if stroke.pieces)
     return Regions(tuple(parts), lines)
 
 
-def _within(structure: SolvedStructure, body: Region, drawing: Drawing) -> Iterator[Part]:
+def _within(structure: SolvedStructure, body: Region, drawing: Drawing, *, is_cut: bool) -> Iterator[Part]:
+    """Yields the outlines in a structure and what it holds. Where holes are cut they are one part, as in a
+    difference of their union, so that the edge of a hole is there once.
+    """
+    if structure.kind == "solid":
+        is_cut = is_cut or any(child.kind == "hole" for child in structure.structures)
+        outlines = drawn(structure)
+        for group in (outlines,) if is_cut else zip(outlines):
+            if seen := common(covered(group), body):
+                yield Part(seen, _color(drawing, structure.path))
     for child in structure.structures:
-        own = drawing.regions.get(child.path)
-        if child.kind != "solid" or not own:
-            continue
-        seen = common(own, body)
-        if seen and area(seen) < (1 - 1e-9) * area(body):
-            yield Part(seen, _color(drawing, child.path))
-        yield from _within(child, body, drawing)
+        yield from _within(child, body, drawing, is_cut=is_cut)
 
 
 def _color(drawing: Drawing, path: str) -> str | None:

@@ -20,7 +20,12 @@ SECONDS = 30
 """Seconds that a program may run."""
 MEMORY, OUTPUT = 4 << 30, 32 << 20
 """Most bytes of memory that it may take, and that it may write."""
-NOTHING = "error: nothing is drawn"
+LARGEST = 1e9
+"""What a coordinate must stay below."""
+NOTHING, UNBOUNDED = (
+    "error: nothing is drawn",
+    "error: a coordinate is not a finite number, or too large",
+)
 _SHOWN = 8
 """Most messages that the model is shown."""
 
@@ -32,6 +37,8 @@ class Rendered:
     regions: Regions = field(default_factory=Regions)
     errors: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    is_parted: bool = True
+    """False if all that is drawn was handed over as one part."""
 
     @property
     def ok(self) -> bool:
@@ -57,6 +64,23 @@ class RenderedLanguage(Language, Protocol):
         """
 
 
+_last: list[tuple[RenderedLanguage, str, Rendered]] = []
+"""The last program that was valid in this process."""
+
+
+def as_written(language: RenderedLanguage, program: str, parted: bool = True) -> Rendered:
+    """Returns what a program draws as it is written. It is judged, drawn and edited in turn, and is run once
+    for all of them.
+    """
+    for known, text, rendered in _last:
+        if (known, text) == (language, program) and rendered.is_parted >= parted:
+            return rendered
+    (rendered,) = language.run(program, parted=parted)
+    if rendered.ok:
+        _last[:] = [(language, program, rendered)]
+    return rendered
+
+
 @record(frozen=False)
 class RenderedConversation:
     """Judges each program by itself; a remark is made once."""
@@ -65,7 +89,7 @@ class RenderedConversation:
     told: set[str] = field(default_factory=set)
 
     def judge(self, program: str) -> Verdict:
-        (rendered,) = self.language.run(program, parted=False)
+        rendered = as_written(self.language, program, parted=False)
         said = "\n".join((*rendered.errors, *rendered.warnings)[:_SHOWN])
         if rendered.ok and said in self.told:
             said = ""

@@ -22,12 +22,11 @@ from aidl_lang.geometry.sections import Polygon
 from aidl_lang.geometry.tessellate import polygon_area
 from aidl_lang.tools.evaluation import rendering, shapes
 from aidl_lang.tools.evaluation.regions import Part, Regions
-from aidl_lang.tools.evaluation.rendering import NOTHING, Rendered
+from aidl_lang.tools.evaluation.rendering import NOTHING, UNBOUNDED, Rendered
 
 _HOST = Path(__file__).with_name("sandbox") / "host.py"
 _START = 60
 """Seconds in which a library must have been loaded."""
-_LARGEST = 1e9
 
 
 def interpreter(library: str) -> str:
@@ -120,7 +119,7 @@ def _rendered(said: Mapping[str, Any], seconds: float) -> Rendered:
     try:
         drawn = _regions(said)
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
-        return Rendered(errors=("error: a coordinate is not a finite number, or too large",))
+        return Rendered(errors=(UNBOUNDED,))
     return Rendered(drawn) if drawn else Rendered(errors=(f"{NOTHING}: hand it to `show_object(…)`",))
 
 
@@ -144,7 +143,7 @@ def _directed(face: Sequence[object]) -> Iterator[Polygon]:
 
 def _points(outline: object) -> Polygon:
     points = np.array(outline, float).reshape(-1, 2)
-    if not (np.abs(points) < _LARGEST).all():
+    if not (np.abs(points) < rendering.LARGEST).all():
         raise ValueError
     return points
 

@@ -94,6 +94,11 @@ def _region(group: Group, drawing: Drawing) -> Region:
     match group:
         case (SolvedStructure(path=path),) if path in drawing.regions:
             return drawing.regions[path]
+    return covered(group)
+
+
+def covered(group: Group) -> Region:
+    """Returns what parts cover when nothing else is drawn."""
     return draw(_alone(group))[0].regions.get("it", Region())
 
 

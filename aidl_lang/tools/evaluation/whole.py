@@ -12,7 +12,7 @@ from aidl_lang.geometry.boolean import common, overlap_area
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import inward, points
-from aidl_lang.geometry.measures import area, measure, region_bounds
+from aidl_lang.geometry.measures import area, loop_area, measure, region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.tessellate import polygon_area
@@ -72,8 +72,11 @@ def _seen(region: Region, x: float, *, mirrored: bool) -> Region:
 
 
 def openings(whole: Region) -> float:
-    """Counts the holes that material surrounds."""
-    return float(sum(len(face.holes) for face in whole.faces))
+    """Counts the holes that material surrounds. Gaps between outlines that were to touch do not count."""
+    if not whole:
+        return 0.0
+    least = (_SLIVER * _size(whole)) ** 2
+    return float(sum(abs(loop_area(hole)) > least for face in whole.faces for hole in face.holes))
 
 
 def teeth(whole: Region) -> float:

@@ -19,8 +19,7 @@ import os
 import platform
 import resource
 import sys
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 _X86_64: dict[str, int] = {
     "read": 0, "write": 1, "close": 3, "fstat": 5, "lseek": 8, "mmap": 9, "mprotect": 10, "munmap": 11,
@@ -43,7 +42,11 @@ _MACHINES = {"x86_64": (0xC000003E, _X86_64), "aarch64": (0xC00000B7, _ARM64)}
 _NEWNET, _NEWUSER = 0x40000000, 0x10000000
 _NO_NEW_PRIVILEGES, _SECCOMP, _FILTER = 38, 22, 2
 _ALLOW, _REFUSE, _KILL = 0x7FFF0000, 0x00050001, 0x80000000
-_LOAD, _EQUAL, _RETURN = 0x20, 0x15, 0x06
+_UNKNOWN = 0x00050026
+_LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_CLONE3, _CLONE, _THREAD = 435, {0xC000003E: 56, 0xC00000B7: 220}, 0x10000
+_OTHER_NUMBERS = 0x40000000
+"""From here on x86-64 has the same calls by other numbers (x32)."""
 
 _REFUSED = (
     "open", "socket.", "subprocess.", "os.", "ctypes.", "shutil.", "tempfile.", "pty.", "fcntl.", "signal.",
@@ -91,12 +94,12 @@ def _hook(event: str, arguments: Sequence[object]) -> None:
         raise PermissionError(f"`{event}` is not allowed: no files, no network, no other processes")
 
 
-def _filter() -> Any:
+def _filter() -> Callable[[], None]:
     """Returns what makes the kernel refuse all system calls but those that computing takes."""
     mark, calls = _MACHINES[platform.machine()]
     numbers = list(calls.values())
     count = len(numbers)
-    steps: Iterable[tuple[int, int, int, int]] = [
+    return sealed(
         (_LOAD, 0, 0, 4),
         (_EQUAL, 1, 0, mark),
         (_RETURN, 0, 0, _KILL),
@@ -104,7 +107,35 @@ def _filter() -> Any:
         *((_EQUAL, count - place, 0, number) for place, number in enumerate(numbers)),
         (_RETURN, 0, 0, _REFUSE),
         (_RETURN, 0, 0, _ALLOW),
-    ]
+    )
+
+
+def refuse(numbers: Iterable[int]) -> None:
+    """Has the kernel refuse these system calls, and new processes, to this one and what it becomes. Raises
+    OSError.
+    """
+    mark, _ = _MACHINES[platform.machine()]
+    sealed(
+        (_LOAD, 0, 0, 4),
+        (_EQUAL, 1, 0, mark),
+        (_RETURN, 0, 0, _KILL),
+        (_LOAD, 0, 0, 0),
+        (_EQUAL, 0, 1, _CLONE3),
+        (_RETURN, 0, 0, _UNKNOWN),  # its flags cannot be read; `clone` is used instead
+        (_EQUAL, 0, 4, _CLONE[mark]),
+        (_LOAD, 0, 0, 16),
+        (_ANY_BIT, 1, 0, _THREAD),
+        (_RETURN, 0, 0, _REFUSE),
+        (_RETURN, 0, 0, _ALLOW),
+        *(step for number in numbers for step in ((_EQUAL, 0, 1, number), (_RETURN, 0, 0, _REFUSE))),
+        (_AT_LEAST, 0, 1, _OTHER_NUMBERS),
+        (_RETURN, 0, 0, _REFUSE),
+        (_RETURN, 0, 0, _ALLOW),
+    )()
+
+
+def sealed(*steps: tuple[int, int, int, int]) -> Callable[[], None]:
+    """Returns what has the kernel run these steps, for good, at each system call of this process."""
 
     class Step(ctypes.Structure):
         _fields_ = [
@@ -117,7 +148,7 @@ def _filter() -> Any:
     class Program(ctypes.Structure):
         _fields_ = [("length", ctypes.c_ushort), ("steps", ctypes.POINTER(Step))]
 
-    held = (Step * (count + 6))(*(Step(*step) for step in steps))
+    held = (Step * len(steps))(*(Step(*step) for step in steps))
     program = Program(len(held), held)
     control = ctypes.CDLL(None, use_errno=True).prctl
     control.argtypes = [ctypes.c_int, *[ctypes.c_ulong] * 4]
