@@ -734,7 +734,7 @@ export const about: Record<string, string> = {
   "rectangle": "A rectangle, by its centre, a corner, the middle of a side, two opposite corners, or where its sides are.",
   "frame": "A frame: the area between two rectangles about one centre.",
   "rounded_rectangle": "A rectangle with round corners, by its centre, a corner, the middle of a side or its sides, with one radius or four.",
-  "chamfered_rectangle": "A rectangle whose corners are cut off at 45 degrees, by its centre, a corner or the middle of a side.",
+  "chamfered_rectangle": "A rectangle whose corners are cut off at 45 degrees, by its centre, a corner, the middle of a side or its sides.",
   "trapezoid": "A trapezoid: two level sides, symmetric about its vertical axis.",
   "right_trapezoid": "A trapezoid whose left side is upright, by its lower left corner.",
   "parallelogram": "A parallelogram with level sides, the upper one shifted to the right by `shift`.",
