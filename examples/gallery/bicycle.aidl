@@ -18,7 +18,7 @@ assembly bicycle {
     /// A bar between two points; light falls on its left, or on top.
     @color(tint) @shade(round, written(atan2(b.y - a.y, b.x - a.x)) - 90deg)
     solid tube(a = (0, 0), b = (10, 0), size = 3.6, tint = paint) { v = slot(a, b, size) }
-    @color(tint) @shade(fade) solid band(tint = "gray", fade = "gray", low = 0, high = 9) {
+    @color(tint) @shade(to) solid band(tint = "gray", to = "gray", low = 0, high = 9) {
         v = rectangle(left: -r - 24, right: wheelbase + r + 24, bottom: low, top: high)
     }
     sky = band("#a8d3ea", "#f6f3e4", -r, r + 56)

@@ -16,12 +16,8 @@ assembly chess_rook {
         v = rectangle(left: -156 * u, right: 156 * u, bottom: low, top: high)
     }
     wall = bar(low: -62 * u, high: 1.4 * height)
-    for i in 0..3 {
-        @color("#ffdf9a") @opacity(0.07) @stroke(none)
-        solid glow[i] {
-            v = clip(circle((0, 58 * h), 0.3 * height + (16 + 22 * i) * u), by: wall.v)
-        }
-    }
+    @color("#ffdf9a") @shade(fade) @opacity(0.6) @stroke(none) @clip(wall.v)
+    solid glow { v = circle((0, 58 * h), 0.35 * height + 90 * u) }
     @color("#a17c50") @shade("#e9cb98", -90deg) solid board {
         v = polygon([(-156 * u, -48 * u), (156 * u, -48 * u), knot(8.3, 5.2), knot(-0.3, 5.2)])
     }
@@ -38,12 +34,8 @@ assembly chess_rook {
             n[i] = text(s, start: (35 * u * (i - 3.55), -57.5 * u), height: 8 * u)
         }
     }
-    for i in 0..2 {
-        @color("black") @opacity(0.3) @stroke(none)
-        solid shadow[i] {
-            v = ellipse((24 * u, 2 * u), (86 - 9 * i) * u, (15 - 3 * i) * u, angle: 4)
-        }
-    }
+    @color("black") @shade(fade) @stroke(none)
+    solid shadow { v = ellipse((24 * u, 2 * u), 100 * u, 22 * u, angle: 4) }
     @color("#241810") @shade(dark, 0deg)
     solid inside { far_side = rectangle((0, height), 70 * u, 9 * h) }
     /// What a profile makes on the lathe, from its radius at the foot.

@@ -19,16 +19,14 @@ assembly coffee_mug {
         board = rectangle(left: -128 * w, right: 128 * w, bottom: -58 * w, top: 28 * w)
         @stroke(0.25 * w) drawing d { v = planks(board, width: 21.5 * w, length: 130 * w) }
     }
-    for i in 0..1 {
-        @color("#2a1405") @opacity(0.3) @stroke(none)
-        solid cast[i] { v = ellipse((9 * w, -9 * w), (110 - 5 * i) * w, (28 - 2 * i) * w) }
-    }
+    @color("#2a1405") @shade(fade) @stroke(none) @clip(table.board)
+    solid cast { v = ellipse((10 * w, -12 * w), 156 * w, 46 * w) }
     underside = dish(104 * w, "#b9b2a3")
     saucer = dish(104 * w, "#f4efe4")
     @color(glaze) drawing ring_ { v = ellipse((0, 0), 96 * w, 22 * w) }
     well = dish(62 * w, "#ddd6c6")
-    @color("#2a1405") @opacity(0.25) @stroke(none)
-    solid mug_shadow { v = ellipse((14 * w, -3 * w), 58 * w, 12 * w) }
+    @color("#2a1405") @shade(fade) @opacity(0.7) @stroke(none)
+    solid mug_shadow { v = ellipse((14 * w, -3 * w), 66 * w, 14 * w) }
     @color(glaze) @shade(slope, -60deg) solid handle {
         way = path(
             (46 * w, 82 * h), bezier_to((90 * w, 92 * h), (88 * w, 26 * h), (43 * w, 20 * h))

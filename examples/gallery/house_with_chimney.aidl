@@ -53,7 +53,7 @@ assembly house_with_chimney {
         @color(darker(roof_color)) @stroke(0.5)
         drawing cover { v = shingles(slope, width: 9, height: 6) }
     }
-    @color("black") @opacity(0.35) @stroke(none)
+    @color("black") @shade(fade, -90deg) @opacity(0.7) @stroke(none)
     solid eaves { v = rectangle((0, wall_height - 3), width, 7) }
     gutter = block(width + 18, 3)
     plinth = block(width + 6, 6, "#8b9096")

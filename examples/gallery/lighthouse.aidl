@@ -25,13 +25,13 @@ assembly lighthouse {
             (97 * i * i % 250 - 105, 30 + 61 * i * i % (tower_height + 20)), 2.2, 0.9, 4
         ) for i in 1..16]
     }
-    @color("#fff2b0") @opacity(0.5) @stroke(none) assembly light {
-        @shade("#36365a", 0deg) solid beams {
+    @color("#fff2b0") @stroke(none) assembly light {
+        @shade(fade, 0deg) @opacity(0.8) solid beams {
             let ways = [56 / rays * (i - (rays - 1) / 2) for i in 0..<rays]
             v = [strip(origin, polar(108, a), 4, 120 / rays / 1.6) for a in ways]
         }
         left = mirror(beams, about: y_axis)
-        solid glow { v = circle(radius: 26) }
+        @shade(fade) solid glow { v = circle(radius: 34) }
     }
     @color("#7a858e") @shade(slope) solid rock {
         let shore = [(-60, -8), (-46, -5), (-40, 0), (106, 0), (114, -10), (124, -24)]

@@ -46,15 +46,15 @@ assembly mailbox {
             left: -64, right: depth + 50, bottom: -post_height - 22, top: 16 - post_height
         )
     }
-    @color("#1f3d16") @opacity(0.35) @stroke(none)
-    solid shadow { v = ellipse((0.42 * depth + 16, -post_height), 0.7 * depth, 6) }
+    @color("#1f3d16") @shade(fade) @stroke(none)
+    solid shadow { v = ellipse((0.42 * depth + 16, -post_height), 0.8 * depth, 7) }
     @color("#a87a4f") @shade(round) solid post {
         beam = rectangle(
             bottom_center: (0.42 * depth, -post_height), width: 18, height: post_height + 20
         )
         @color("#7a5431") drawing grain { v = wood_grain(beam, pitch: 3, angle: 90) }
     }
-    @color("black") @opacity(0.3) @stroke(none) solid dusk {
+    @color("black") @shade(fade, -90deg) @opacity(0.5) @stroke(none) solid dusk {
         v = polygon([(0.42 * depth + x, y) for x, y in [[-9, 0], [-9, -18], [9, -13], [9, 0]]])
     }
     @color("#8a6039") @shade(slope) solid shelf {

@@ -15,10 +15,8 @@ assembly old_school_telephone {
     solid bar(tint = ink, wide = 10, high = 4, light = "round", way = 90deg) {
         v = rounded_rectangle((0, 0), wide, high, min(wide, high) / 2.2)
     }
-    for i in 0..4 {
-        @color("black") @opacity(0.07) @stroke(none)
-        solid pool[i] { v = ellipse((4 * w, -6), (76 - 4 * i) * w, (7 - i) * w) }
-    }
+    @color("black") @shade(fade) @opacity(0.6) @stroke(none)
+    solid pool { v = ellipse((4 * w, -6), 76 * w, 9 * w) }
     @color(ink) @shade(round, 60deg) solid cord {
         swing = arc((-50 * w, height + 2), (-45 * w, 6), mid: (-60 * w - 20, 42 * h))
         wire = thick(swing, 2)

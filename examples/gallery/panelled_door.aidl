@@ -55,8 +55,8 @@ assembly panelled_door {
         let y = (i - (rows - 1) / 2) * (cell + 8 * u) + 4 * u
         for s in [-1, 1] { panels[i][s] = panel(34 * u, cell) at (21 * s * u, y) }
     }
-    @color("black") @opacity(0.3) @stroke(none)
-    solid reveal { v = rectangle(width: width, height: 4 * u) }
+    @color("black") @shade(fade, -90deg) @opacity(0.6) @stroke(none)
+    solid reveal { v = rectangle(width: width, height: 6 * u) }
     @color("#dcae4a") @shade(slope) assembly brasses {
         let edge = -side * 44 * u
         solid plate { v = slot(center: (edge, rail), length: 22 * u, width: 7 * u, angle: 90deg) }

@@ -14,10 +14,7 @@ assembly robot_face {
     let ink = "#22303c"
     @color(tint) @shade(ball)
     solid ball(tint = brass, radius = 3.6 * w) { v = circle(origin, radius) }
-    for i in 0..2 {
-        @color("#ff8a80") @opacity(0.16) @stroke(none)
-        solid glow[i] { v = circle(radius: (9 + 3 * i) * w) }
-    }
+    @color("#ff8a80") @shade(fade) @stroke(none) solid glow { v = circle(radius: 17 * w) }
     bulb = ball("#e5484d", 6 * w)
     @color(brass) @detached solid waves {
         right = [thick(arc(origin, r * w, -35deg, 35deg), 1.6 * w, "butt") for r in [11, 16, 21]]
@@ -87,7 +84,7 @@ assembly robot_face {
     @color("#fff8e4") @shade(slope)
     solid grin { v = ribs(mouth.v, 56 * w / teeth, 46 * w / teeth, margin: 2.5 * w) }
     constrain {
-        for g in glow { g.center == bulb.center }
+        glow.center == bulb.center
         waves.origin == bulb.center
         for i, b in enumerate(buttons) { b.center == collar.center + (12 * (i - 2) * w, 0) }
         column(bulb, antenna, head, neck, collar, gap: 0, align: center)

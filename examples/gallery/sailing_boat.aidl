@@ -23,10 +23,8 @@ assembly sailing_boat {
     solid cloud(size = 9) { v = [circle((size * x, 0), size - 2 * abs(x)) for x in -2..2] }
     @color("#7fb6de") @shade("#f6ead2")
     solid sky { v = rectangle(left: -95 * l, right: 95 * l, bottom: -20, top: mast_height + 24) }
-    for i in 0..3 {
-        @color("#fff0b0") @opacity(0.3) @stroke(none)
-        solid halo[i] at (-66 * l, 84 * m) { v = circle(radius: 14 + 3 * i) }
-    }
+    @color("#fff0b0") @shade(fade) @stroke(none) @clip(sky.v)
+    solid halo at (-66 * l, 84 * m) { v = circle(radius: 36) }
     @stroke(none) sun = roundel("#ffe37a", 12, "#ffb733") at (-66 * l, 84 * m)
     near_cloud = cloud() at (66 * l, 84 * m)
     far_cloud = cloud(7) at (-74 * l, 56 * m)
@@ -82,8 +80,8 @@ assembly sailing_boat {
     @color("gold")
     drawing name { v = text("AURORA", start: (22 * l, 5), height: 3 * l, bold: true) }
     near_sea = sea(high: -3, waves: 6)
-    @color("#14344a") @opacity(0.25) @stroke(none)
-    solid under { v = ellipse((2 * l, -13), 44 * l, 5) }
+    @color("#14344a") @shade(fade) @opacity(0.6) @stroke(none)
+    solid under { v = ellipse((2 * l, -13), 52 * l, 6) }
     front_sea = sea("#3a80b2", high: -15, waves: 5)
     @color("white") @opacity(0.6) @stroke(none) @detached
     solid foam {

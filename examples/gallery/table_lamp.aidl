@@ -29,18 +29,17 @@ assembly table_lamp {
     wall = part(wide, h + stem_height + 96, 0, "#413a58")
     @color("#534b6c") @shade("#2f2943") @stroke(none)
     solid paper { v = ribs(wall.v, pitch: 18, width: 8) }
-    for i in 0..5 {
-        @color("#ffc765") @opacity(0.09) @stroke(none) @clip(wall.v)
-        solid halo[i] { v = circle(radius: (0.95 + 0.1 * i) * s) }
-    }
-    @color("#fff3c4") @shade("#8c6f58") @opacity(0.75) @stroke(none) solid glow {
+    @color("#ffc765") @shade(fade) @opacity(0.8) @stroke(none) @clip(wall.v)
+    solid halo { v = circle(radius: 1.7 * s) }
+    @color("#fff3c4") @shade(fade, -90deg) @opacity(0.8) @stroke(none) solid glow {
         v = trapezoid(bottom_width: 3.4 * s, top_width: 1.84 * s, height: stem_height + 13)
     }
     table = part(wide, 10, 2, "#c08650")
     @color("#8a5c34") drawing grain { v = wood_grain(table.v, pitch: 3.5) }
-    @color("#fff0c0") @opacity(0.5) @stroke(none) solid pool { v = ellipse((0, 0), 1.6 * s, 3.4) }
+    @color("#fff0c0") @shade(fade) @stroke(none) solid pool { v = ellipse((0, 0), 1.8 * s, 4.5) }
     front = part(wide - 12, 32, 1, "#8a5c3c")
-    @color("black") @opacity(0.3) @stroke(none) solid ledge { v = rectangle((0, 0), wide - 12, 4) }
+    @color("black") @shade(fade, -90deg) @opacity(0.5) @stroke(none)
+    solid ledge { v = rectangle((0, 0), wide - 12, 4) }
     drawer = part(120, 22, 2, "#a8754d")
     knob = part(9, 9, 4.5, "#d9b25f", "ball")
     foot = part(70, 6, 3, bronze, "round")
@@ -64,10 +63,8 @@ assembly table_lamp {
             glass_[i] = pane(a, b, if i % 2 == 0 then glass else mix(glass, "#ffe9b0", 0.7))
             jewels[i] = jewel(s * (b - a)) at (0.49 * s * (a + b), 0.14 * h)
         }
-        for i in 1..4 {
-            @color("#fff6d0") @opacity(0.14) @stroke(none)
-            solid shine[i] { v = ellipse((0, 0.42 * h), 0.18 * s * i, 0.1 * h * i) }
-        }
+        @color("#fff6d0") @shade(fade) @opacity(0.7) @stroke(none)
+        solid shine { v = ellipse((0, 0.42 * h), 0.8 * s, 0.42 * h) }
     }
     rim = part(shade_width + 4, 5, 2.5, bronze, "round")
     cap = part(0.2 * shade_width, 5, 2, bronze, "round")
@@ -84,7 +81,7 @@ assembly table_lamp {
     constrain {
         column(finial, cap, shade, rim, socket, collar, stem, foot, table, gap: -1, align: center)
         wall.above(table, gap: 0, align: center)
-        for each in halo { each.center == shade.center }
+        halo.center == shade.center
         front.below(table, gap: 0, align: center)
         drawer.centered_in(front)
         knob.centered_in(drawer)

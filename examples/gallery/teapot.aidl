@@ -24,10 +24,8 @@ assembly teapot {
     @color("#efe7da") @shade("#cbbda6") @detached
     solid tray { v = ellipse((10 * w, -8), 96 * w, 15) }
     @color("#fffdf8") @opacity(0.6) drawing border { v = ellipse((10 * w, -7), 90 * w, 12.5) }
-    for i in 0..3 {
-        @color("#4a3a28") @opacity(0.13) @stroke(none)
-        solid pool[i] { v = ellipse(((10 - i) * w, -5.5), (60 - 6 * i) * w, 8 - i) }
-    }
+    @color("#4a3a28") @shade(fade) @opacity(0.8) @stroke(none)
+    solid pool { v = ellipse((9 * w, -5.5), 66 * w, 9) }
     @color(glaze) @shade(ball) solid handle {
         way = path(
             (-36 * w, 76 * h),

@@ -15,10 +15,8 @@ assembly tractor {
         v = rectangle(left: west, right: east, bottom: low, top: high)
     }
     sky = strip_(high: floor + max(cab, 74) + 58)
-    for i in 0..3 {
-        @color("#ffe9a0") @opacity(0.3) @stroke(none)
-        solid halo[i] { v = circle((nose + 30, floor + cab + 26), 15 + 4 * i) }
-    }
+    @color("#ffe9a0") @shade(fade) @stroke(none) @clip(sky.v)
+    solid halo { v = circle((nose + 30, floor + cab + 26), 40) }
     @color("#ffe37a") @shade("#ffb733") @stroke(none)
     solid sun { v = circle((nose + 30, floor + cab + 26), 14) }
     @color("#a9cf8c") @shade("#6f9f63") @stroke(none)
