@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from aidl_lang.tools.evaluation.openscad import OpenScad
 from aidl_lang.tools.evaluation.recordings import RecordingError, load
 from aidl_lang.tools.evaluation.summary import Share
 from aidl_lang.tools.evaluation.table import shown
@@ -163,3 +164,16 @@ def test_the_recording_of_version_0_1(evaluation: Evaluation) -> None:
     assert evaluation.figures("full")["valid at first"]["part"] == 1
     page = (ROOT / "docs" / "evaluation.md").read_text("utf-8")
     assert f"| valid at first | {shown(Share(8, 9))} | {shown(Share(9, 9))} |" in page
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
+def test_the_table_of_version_0_1_is_what_its_command_gives(evaluation: Evaluation) -> None:
+    assert _replay(evaluation, TRIAL, "--time-limit", "600").code == 0
+    page = (ROOT / "docs" / "evaluation.md").read_text("utf-8")
+    text = (evaluation.out / "evaluation.md").read_text("utf-8")
+    figures, pairs = (part.split("\n\n")[0] for part in text.split("\n|  | ")[1:3])
+    assert "edits hold" in figures
+    assert "full − openscad" in pairs
+    assert figures in page
+    assert pairs in page
