@@ -1,38 +1,6 @@
 // Outlines written as a pen draws them, one step after the other. A step is a record: what `kind` it is and where it
 // goes; the path turns steps into segments that share their ends.
 
-/// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
-///
-/// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
-/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `wave_to`, `zigzag_to`,
-/// `scallops_to`, `close` and `mirrored`; a plain point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
-/// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
-/// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
-///
-/// ```aidl
-/// solid tag {
-///     edge = path(
-///         from: (0, 0),
-///         line_to((40, 0)),
-///         arc_to((40, 20), radius: 10),
-///         line_to((0, 20)),
-///         close()
-///     )
-/// }
-/// ```
-fn path(steps: list, from: point, closed: bool = false) = path(steps, from, 0deg, false, closed)
-fn path(steps: list, from: point, heading: angle, closed: bool = false) =
-    path(steps, from, heading, true, closed)
-
-/// By `start:`, or with the start as the first argument.
-fn path(steps: list, start: point, closed: bool = false) = path(steps, from: start, closed: closed)
-fn path(steps: list, start: point, heading: angle, closed: bool = false) =
-    path(steps, from: start, heading: heading, closed: closed)
-fn path(steps: list, closed: bool = false) =
-    path([steps[i] for i in 1..<len(steps)], from: steps[0], closed: closed)
-fn path(steps: list, heading: angle, closed: bool = false) =
-    path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
-
 // With a heading that was stated or not: a curve at the beginning sets out as it likes best unless it was.
 shape path(steps: list, from: point, heading: turn, is_aimed: bool, closed: bool) {
     let drawn = [as_step(s) for s in steps if not as_step(s).kind in last_kinds]
@@ -207,6 +175,38 @@ shape path(steps: list, from: point, heading: turn, is_aimed: bool, closed: bool
     let points = corner
     let edges = segment
 }
+
+/// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
+///
+/// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
+/// `arc_by`, `tangent_arc_to`, `smooth_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `wave_to`, `zigzag_to`,
+/// `scallops_to`, `close` and `mirrored`; a plain point is a `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
+/// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
+/// `heading` is the direction before the first step. Steps that recur stand in `for i in 0..9 { … }` among the others.
+///
+/// ```aidl
+/// solid tag {
+///     edge = path(
+///         from: (0, 0),
+///         line_to((40, 0)),
+///         arc_to((40, 20), radius: 10),
+///         line_to((0, 20)),
+///         close()
+///     )
+/// }
+/// ```
+fn path(steps: list, from: point, closed: bool = false) = path(steps, from, 0deg, false, closed)
+fn path(steps: list, from: point, heading: angle, closed: bool = false) =
+    path(steps, from, heading, true, closed)
+
+/// By `start:`, or with the start as the first argument.
+fn path(steps: list, start: point, closed: bool = false) = path(steps, from: start, closed: closed)
+fn path(steps: list, start: point, heading: angle, closed: bool = false) =
+    path(steps, from: start, heading: heading, closed: closed)
+fn path(steps: list, closed: bool = false) =
+    path([steps[i] for i in 1..<len(steps)], from: steps[0], closed: closed)
+fn path(steps: list, heading: angle, closed: bool = false) =
+    path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
     "line_to",

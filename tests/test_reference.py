@@ -272,7 +272,7 @@ def test_forms_are_written_as_few() -> None:
     lines = guide().splitlines()
     for line in (
         "dome(…/bottom_center, width, height) →",
-        "chamfered_rectangle(…/bottom_left/…, width, height, chamfer) →",
+        "kite(…/bottom_corner/top_corner, width, height, shoulder) → as rhombus",
         "arch(…/bottom_center, width, height, rise?) →",
         "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height,",
         "path(steps, from/start?, heading?, closed?)",

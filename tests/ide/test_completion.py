@@ -42,8 +42,8 @@ solid plate {
 }
 """
 PARTS = """\
-/// A bolt of a size.
-hole bolt(size = 4, head = 8) { edge = circle(radius: size / 2) }
+/// A rivet of a size.
+hole rivet(size = 4, head = 8) { edge = circle(radius: size / 2) }
 fn twice(x) = 2 * x
 param play = 0.2
 """
@@ -86,7 +86,7 @@ def put(text: str, completion: Completion) -> str:
         ("constrain { bore.edge.¦ == 3 }", {"radius", "center"}, {"edge"}),
         ("constrain { peg[1].¦\n rim.radius == 3 }", {"edge", "width"}, {"peg"}),
         ("constrain { peg.¦ }", {"edge", "left", "width"}, {"peg"}),
-        ("x = parts.¦", {"bolt", "twice", "play"}, {"circle", "width"}),
+        ("x = parts.¦", {"rivet", "twice", "play"}, {"circle", "width"}),
         ("x = polar_array(rim, n: 3, radius: 9).¦", {"center", "radius"}, {"above"}),
         ("x = 3.¦", set(), {"mm", "x", "center"}),
     ],
@@ -305,8 +305,8 @@ def test_units_that_fit(marked: str, first: str) -> None:
         ("alias flat = ¦", {"horizontal", "parallel"}),
         ("import ¦", {"parts.aidl"}),
         ('import "¦"', {"parts.aidl"}),
-        ('import ¦ from "parts.aidl"', {"bolt", "twice", "play"}),
-        ('import bolt, ¦ from "parts.aidl"', {"twice", "play"}),
+        ('import ¦ from "parts.aidl"', {"rivet", "twice", "play"}),
+        ('import rivet, ¦ from "parts.aidl"', {"twice", "play"}),
     ],
 )
 def test_words(marked: str, has: set[str]) -> None:
@@ -356,17 +356,17 @@ def test_the_beginning_of_a_statement() -> None:
 
 def test_what_other_files_define_comes_with_its_import() -> None:
     template = "// about\nsolid a {\n    x = %s\n}\n"
-    text, offset = cursor(template.replace("%s", "bo¦"))
+    text, offset = cursor(template.replace("%s", "ri¦"))
     folder = Path("/project")
     view = seen(text, parts=PARTS)
     listed = complete(view, offset, lambda: [folder / "parts.aidl", Path("/elsewhere/o.aidl")])
-    bolt = next(c for c in listed if c.label == "bolt")
-    (edit,) = bolt.extra
-    made = put(text, bolt)
+    rivet = next(c for c in listed if c.label == "rivet")
+    (edit,) = rivet.extra
+    made = put(text, rivet)
     made = made[: edit.span.start] + edit.replacement + made[edit.span.end :]
-    assert 'import bolt from "parts.aidl"' in made
+    assert 'import rivet from "parts.aidl"' in made
     assert not has_errors(seen(made, parts=PARTS).found)
-    assert "A bolt of a size." in bolt.documentation
+    assert "A rivet of a size." in rivet.documentation
 
 
 # --- Everywhere ------------------------------------------------------------------------------------
