@@ -248,7 +248,7 @@ class Copier:
             self.structure(child, copy, child.name, self._inner(child.frame))
         self._members(source, copy)
         for child in source.children:
-            if all(g.owner is source for g in child.clip):
+            if child.clip and all(g.owner is source for g in child.clip):
                 self.structures[child].clip = tuple(self.geometry(g) for g in child.clip)
             if child.ground is source:
                 self.structures[child].ground = copy

@@ -80,8 +80,7 @@ def _plain(mark: Mark) -> Mark | None:
         case Area(ink=ink):
             if mark.is_sign:
                 return replace(mark, fill=_BLACK, opacity=1.0)
-            is_fading = mark.gradient is not None and mark.gradient.fades
-            is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH and not is_fading
+            is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH and not mark.fades
             fill = _WHITE if is_hiding else None
             line = None if ink is None else _solid(ink)
             return replace(mark, fill=fill, opacity=1.0, ink=line, gradient=None)

@@ -15,8 +15,8 @@ CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
 
 HALO = "halo"
-LETTERS = "letters"
 """The role of what has the colour of the paper: a gap around what lies in front."""
+LETTERS = "letters"
 
 
 @record()
@@ -68,6 +68,11 @@ class Area:
     role: str = ""
     opacity: float = 1.0
     gradient: Gradient | None = None
+
+    @property
+    def fades(self) -> bool:
+        """Whether its fill goes over into nothing."""
+        return self.gradient is not None and self.gradient.fades
 
     @property
     def is_sign(self) -> bool:

@@ -63,8 +63,7 @@ def _(mark: Area, theme: Theme) -> Mark:
     if mark.is_sign:
         return replace(mark, fill=theme.line)
     ink = None if mark.ink is None else _ink(mark.ink, theme)
-    is_clear = mark.opacity < 1 or (mark.gradient is not None and mark.gradient.fades)
-    fill = theme.fill if mark.fill and not is_clear else None
+    fill = theme.fill if mark.fill and mark.opacity == 1.0 and not mark.fades else None
     return replace(mark, fill=fill, ink=ink, opacity=1.0, gradient=None)
 
 

@@ -300,23 +300,31 @@ class _Reader:
 
     def _text(self, g: Geometry) -> SolvedGeometry:
         """Returns a text with its characters as parts, and the curves of each as theirs."""
-        (x, y), height = self._at(g.fields["start"], g.owner), self._number(g.fields["height"])
-        c, s = ex.exact_turn(self._direction(g))
-        up = -1.0 if clockwise(g, self.model.root) else 1.0
-
-        def at(p: Vec) -> Vec:
-            u, v = height * p[0], up * height * p[1]
-            return x + u * c - v * s, y + u * s + v * c
-
+        height = self._number(g.fields["height"])
+        start, turn, _, at = self._placing(g, height)
         outlines = [_outline(glyph, self._bridge(g, height)) for glyph in g.glyphs]
         glyphs = tuple(
             replace(_glyph(g, f"glyph[{i}]", outline, at), stroked=glyph.is_stroked)
             for i, (glyph, outline) in enumerate(zip(g.glyphs, outlines, strict=True))
         )
-        values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
+        values: Values = {"start": start, "height": height, "angle": math.degrees(turn)}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
         source = g.source.path if g.source is not None else None
         return replace(whole, source=source, attributes=self._attributes(g))
+
+    def _placing(self, g: Geometry, unit: float) -> tuple[Vec, float, float, Callable[[Vec], Vec]]:
+        """Returns the start of a text or a drawing, its turn in radians, -1 if it is turned over and else 1,
+        and where its points in units of its own lie.
+        """
+        x, y = start = self._at(g.fields["start"], g.owner)
+        c, s = ex.exact_turn(self._direction(g))
+        sense = -1.0 if clockwise(g, self.model.root) else 1.0
+
+        def at(p: Vec) -> Vec:
+            u, v = unit * p[0], sense * unit * p[1]
+            return x + u * c - v * s, y + u * s + v * c
+
+        return start, math.atan2(s, c), sense, at
 
     def _bridge(self, text: Geometry, height: float) -> float:
         """Returns the width of the bridges of a text in units of its height; 0 for none."""
@@ -326,17 +334,10 @@ class _Reader:
 
     def _drawing(self, g: Geometry) -> SolvedGeometry:
         """Returns a drawing of another program, with its shapes as parts and the curves of each as theirs."""
-        (x, y), unit = self._at(g.fields["start"], g.owner), self._number(g.fields["unit"])
-        c, s = ex.exact_turn(self._direction(g))
-        sense = -1.0 if clockwise(g, self.model.root) else 1.0
-
-        def at(p: Vec) -> Vec:
-            u, v = unit * p[0], sense * unit * p[1]
-            return x + u * c - v * s, y + u * s + v * c
-
-        turn = math.atan2(s, c)
+        unit = self._number(g.fields["unit"])
+        start, turn, sense, at = self._placing(g, unit)
         shapes = parts_of(g, at, unit, turn, sense)
-        values: Values = {"start": (x, y), "unit": unit, "angle": math.degrees(turn)}
+        values: Values = {"start": start, "unit": unit, "angle": math.degrees(turn)}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, shapes, g.construction, g.span)
         source = g.source.path if g.source is not None else None
         return replace(whole, source=source, attributes=self._attributes(g))
