@@ -34,8 +34,6 @@ LAZY_ROUNDS = 4
 """Rounds of adding violated inequalities before all of them are taken into account."""
 NEIGHBOURS = 12
 """Combinations of other branches tried as a last resort, per perturbed start of the stage."""
-SURE = 6
-"""Combinations after which a proof is sought that none would do."""
 DEEPEST = 6
 """The most branches that are turned together."""
 SHARE = 1e-7
@@ -250,9 +248,6 @@ class _Attempt:
                     return verdict
                 known.add(flipped)
                 left -= 1
-                if len(known) == SURE and not any(self.task.softness) and self._is_refuted():
-                    self._move_to(reached)
-                    return verdict
                 other, _, _ = self._solve_in_branch(self.origin, flipped)
                 if other.satisfied:
                     return other
@@ -274,12 +269,6 @@ class _Attempt:
             others = self.freezer.choices(row.expression for row in rows)
             nodes += [node for node in others if node not in nodes]
         return nodes
-
-    def _is_refuted(self) -> bool:
-        """Tells whether a proof exists that no branches would help."""
-        from aidl_lang.solver.refuting import is_refuted
-
-        return is_refuted(self.values, self.task.rows, self.free, self.settings.tolerance)
 
     def _proof_without_branches(self) -> Mapping[int, float] | None:
         """Returns an empty proof if the rows that hang on no branch can be met by themselves, else the proof

@@ -21,7 +21,7 @@ from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
-from aidl_lang.solver.tiers import DEEP, OWN, POSITIONS, SIZES, Scope, Tier, Tiers, stage_name
+from aidl_lang.solver.tiers import OWN, POSITIONS, SIZES, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
@@ -52,7 +52,6 @@ class Group:
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
         self.tiers = Tiers(hierarchy, group)
-        self._refuted: dict[tuple[int, ...], bool] = {}
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
@@ -86,7 +85,6 @@ class Group:
             self.hard.remove(left_out)
             hierarchy.give_up([left_out])
             self.tiers.forget()
-            self._refuted.clear()
 
     def _leave_out(self) -> int | None:
         """Returns the constraint to go on without after a failure; None if it is not known which would
@@ -121,7 +119,7 @@ class Group:
         else:
             positions = [tier for tier in tiers if tier <= POSITIONS]
         reached, best, obstacle = self._climb(positions, part, best)
-        if reached is None and not self._refuted.get(tuple(part)):
+        if reached is None:
             reached = self._resize(part, obstacle)
             if reached is None:
                 reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
@@ -165,12 +163,8 @@ class Group:
         tried: dict[bool, frozenset[int]] = {}
         failed: dict[frozenset[int], Verdict] = {}
         obstacle: tuple[Tier, Proof] = ((1, 0), {})
-        # A stage is searched branch by branch only when the branches that are active lead nowhere: in none of
-        # the group's own stages, and in none of those that take apart what lies deeper.
-        near, deep = [t for t in tiers if t < DEEP], [t for t in tiers if t >= DEEP]
-        for turning, tier in itertools.chain(
-            *(itertools.product((False, True), part) for part in (near, deep))
-        ):
+        # A stage is searched branch by branch only when the branches that are active lead nowhere in any.
+        for turning, tier in itertools.product((False, True), tiers):
             if not self.tiers.promising(violated, tier):
                 continue
             scope = self.tiers.scope(tier, seeds)
@@ -178,8 +172,6 @@ class Group:
                 continue
             if self._stands(obstacle[1], scope.free):
                 continue
-            if turning and self._is_refuted(seeds):
-                break
             tried[turning] = scope.free
             # Groups above a part that failed are not searched for long: the best effort is drawn.
             last = turning and tier == tiers[-1] and not hierarchy.failures
@@ -202,21 +194,6 @@ class Group:
         return None, best, obstacle
 
     # -- proofs, and sizes in the way
-
-    def _is_refuted(self, seeds: Sequence[int]) -> bool:
-        """Tells whether a proof exists that no stage can satisfy `seeds` and what binds all that is free for
-        them.
-        """
-        key = tuple(seeds)
-        if key not in self._refuted:
-            from aidl_lang.solver.refuting import is_refuted
-
-            hierarchy, scope = self.hierarchy, self.tiers.everything(seeds)
-            hierarchy.refresh(scope.constraints)
-            rows = hierarchy.rows(scope.constraints)
-            tolerance = hierarchy.settings.tolerance
-            self._refuted[key] = is_refuted(hierarchy.values, rows, scope.free, tolerance)
-        return self._refuted[key]
 
     def _proof(self, scope: Scope, verdict: Verdict) -> Proof:
         rows = self.hierarchy.rows(scope.constraints)

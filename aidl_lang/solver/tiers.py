@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 Tier: TypeAlias = tuple[int, int]
 
 PLACED: Tier = (1, 2)
-DEEP: Tier = (3, 0)
-"""A tier before the first one of what lies deeper than the group itself."""
 OWN: Tier = (2, 0)
 RIDING: Tier = (5, -1)
 """A tier before the first one of what rides along."""
