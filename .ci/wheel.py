@@ -22,6 +22,7 @@ import sys
 import tempfile
 import threading
 import time
+import tomllib
 import urllib.request
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -39,6 +40,7 @@ PATIENCE = 180
 """Seconds after which a command counts as hanging."""
 Json = dict[str, Any]
 SLIP = "solid plate {\n    rim = circle(raduis: 3)\n}\n"
+CONFLICT = "drawing d { a = circle(radius: fixed(5)); constrain { a.center.x == 3; a.left == 3 } }\n"
 PLATE = "solid plate {\n    rim = circle(radius: 3)\n}\n"
 
 
@@ -364,6 +366,17 @@ def fetched(url: str) -> str:
 # --- All of it -------------------------------------------------------------------------------------
 
 
+def with_lowest_versions(folder: Path, copy: Path) -> Installation:
+    """What needs no extra, with the oldest packages that are allowed."""
+    here = Installation(folder)
+    asked = tomllib.loads((copy / "pyproject.toml").read_text())["project"]["dependencies"]
+    here.pip("install", *(each.replace(">=", "==") for each in asked), copy)
+    plainly(here)
+    (here.work / "conflict.aidl").write_text(CONFLICT)
+    here.run("check", "conflict.aidl", code=1, says="cannot hold together")
+    return here
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Install AIDL as a user does, and run it.")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="work there, and leave it as it is")
@@ -374,6 +387,9 @@ def main() -> None:
         if folder is None:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="aidl-wheel-")))
         here = installed_and_run(folder.resolve())
+        lowest = with_lowest_versions(folder.resolve() / "lowest", folder.resolve() / "copy")
+        here.seconds += [(f"{name}, lowest versions", wall, used) for name, wall, used in lowest.seconds]
+        here.failures += [f"with the lowest versions: {failure}" for failure in lowest.failures]
     print("\n| command | seconds | of the processor |\n|---|--:|--:|")
     for name, seconds, used in here.seconds:
         print(f"| `{name}` | {seconds:.2f} | {used:.2f} |")
