@@ -211,10 +211,6 @@ fn in_order(things: list, axis: text) =
 // The gap from one thing to the next along an axis.
 fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
 
-// The same where the next lies beyond it (`up`) or before it.
-fn room_between(a: box, b: box, axis: text, up: bool) =
-    if up then room(a, b, axis) else room(b, a, axis)
-
 alias same_left = align_left
 alias same_lefts = align_left
 alias equal_left = align_left

@@ -146,7 +146,10 @@ constraint smaller(a: box, b: point) { has_no_size(b) }
 ///     constrain larger(cover, plate, by: 4)
 /// }
 /// ```
-constraint larger(a: box, b: box) { smaller(b, a) }
+constraint larger(a: box, b: box) {
+    a.width >= b.width
+    a.height >= b.height
+}
 constraint larger(a: box, b: box, by: length) {
     a.width == b.width + by
     a.height == b.height + by

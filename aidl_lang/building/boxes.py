@@ -7,7 +7,7 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from aidl_lang.building import curves
@@ -132,22 +132,26 @@ def _interior(structure: Structure) -> Iterable[Unknown]:
     return found
 
 
-def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknown] | None]:
-    """Returns the structures whose boxes some expressions mention, and the unknowns that they mention beside
-    these; None for the latter if they mention no structure's box.
+def boxes_in(*roots: Expression) -> tuple[Mapping[Structure, frozenset[str]], frozenset[Unknown] | None]:
+    """Returns the structures whose boxes some expressions mention, each with the sides of it, and the
+    unknowns that they mention beside these; None for the latter if they mention no structure's box.
     """
     if not any(root.is_open for root in roots):
-        return frozenset(), None
+        return {}, None
     leaves = [node for node in ex.nodes(roots) if not node.args]
-    boxes = [node.payload.box for node in leaves if isinstance(node.payload, _Side)]
-    structures = {s for box in boxes for s in box.sources if isinstance(s, Structure)}
-    if not structures:
-        return frozenset(), None
+    sides = [node.payload for node in leaves if isinstance(node.payload, _Side)]
+    found: dict[Structure, frozenset[str]] = {}
+    for side in sides:
+        for source in side.box.sources:
+            if isinstance(source, Structure):
+                found[source] = found.get(source, frozenset()) | {side.name}
+    if not found:
+        return {}, None
     beside = {node.payload for node in leaves if isinstance(node.payload, Unknown)}
-    for box in boxes:
-        others = (s for s in box.sources if not isinstance(s, Structure))
-        beside.update(u for source in others for u in source_unknowns(source, box.here))
-    return frozenset(structures), frozenset(beside)
+    for side in sides:
+        others = (s for s in side.box.sources if not isinstance(s, Structure))
+        beside.update(u for source in others for u in source_unknowns(source, side.box.here))
+    return found, frozenset(beside)
 
 
 def spelled_out(*roots: Expression, equal: bool = False, whole: bool = False) -> tuple[Expression, ...]:

@@ -38,6 +38,9 @@ _RADIAN = 180.0 / np.pi
 _LONGEST_TURN = 60.0
 """Degrees that an angle may turn in one step of the solver."""
 
+_SIDES = frozenset({"left", "right"}), frozenset({"bottom", "top"})
+"""The sides of boxes by axis."""
+
 LEAST_SHARE = 1e-3
 """The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
 
@@ -90,6 +93,7 @@ class _Lowering:
         self.holders = {c.holder for c in model.constraints}
         self.standing: dict[Structure, bool] = {}
         self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
+        self.named_things: dict[Structure, set[Hashable]] = {}
         # Every number that defines the drawing, by structure.
         self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
         self.size = _extent(self.seen)
@@ -126,7 +130,11 @@ class _Lowering:
             named=True,
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
-            thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
+            rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            thing=_numbered(
+                (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
+                for u in found
+            ),
             clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
             observables=observables,
             names=tuple(u.path for u in found),
@@ -146,6 +154,9 @@ class _Lowering:
         )
         drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
         self.named = {c: self._named(c) for c in self.model.constraints}
+        for constraint in self.model.constraints:
+            if constraint.weight is None and not constraint.is_inherent:
+                self._name_things(constraint)
         named = {
             s
             for c, both in self.named.items()
@@ -192,6 +203,40 @@ class _Lowering:
             self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
         return self.standing[s]
 
+    def _is_rigid(self, s: Structure) -> bool:
+        """Tells whether a structure can move and constraints around it name one thing of it at most: its
+        place, a side of its box along x and one along y, a point that can move in it, a structure in it.
+        """
+        named = self.named_things.get(s, set())
+        along = (
+            {thing for thing in named if isinstance(thing, frozenset) and thing & axis} for axis in _SIDES
+        )
+        inside = sum(thing is not None and not isinstance(thing, frozenset) for thing in named)
+        movable = (any(u in self.numbers for u in ex.unknowns([at])) for at in (s.frame.x, s.frame.y))
+        return inside + max(None in named, *map(len, along)) < 2 and all(movable)
+
+    def _name_things(self, constraint: Constraint) -> None:
+        """Notes the things that a constraint names in the structures within its holder."""
+        for comparison in constraint.comparisons:
+            for structure, sides in comparison.boxes.items():
+                self._name_thing(constraint.holder, structure, sides)
+            for unknown in comparison.spoken_of:
+                if unknown.frame_of is not None or self._is_outline(unknown):
+                    self._name_thing(constraint.holder, unknown.frame_of or unknown.owner, None)
+                elif not unknown.kept:
+                    thing = unknown.holder, unknown.field.rpartition(".")[0]
+                    self._name_thing(constraint.holder, unknown.owner, thing)
+
+    def _name_thing(self, holder: Structure, s: Structure, thing: Hashable) -> None:
+        """Notes a thing of `s` in it, and in each structure from there up to the holder the one that it is
+        in.
+        """
+        for structure in chain(s):
+            if structure is holder:
+                return
+            self.named_things.setdefault(structure, set()).add(thing)
+            thing = structure
+
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
@@ -221,7 +266,9 @@ class _Lowering:
         if not isinstance(node.payload, Unknown):
             raise TypeError(f"`{node.op}` is known only once all is drawn")
         number = self.numbers.get(node.payload)
-        return self.tape.constant(node.payload.guess) if number is None else self.tape.unknown(number)
+        if number is None:
+            return self.tape.constant(node.payload.guess)
+        return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 
     def _observed(self) -> Iterator[Expression]:
         """Yields the expressions of the numbers that define the drawing."""
@@ -313,8 +360,9 @@ class _Lowering:
 
     def _never_vanishing(self) -> Iterator[SolverConstraint]:
         for unknown, number in self.numbers.items():
-            if is_size(unknown.field.rpartition(".")[2]) and unknown.guess >= 0:
-                least = LEAST_SHARE * unknown.guess if unknown.kept else 0.0
+            is_named = is_size(unknown.field.rpartition(".")[2]) and unknown.guess >= 0
+            if is_named or (unknown.kept and unknown.is_size and unknown.guess > 0):
+                least = LEAST_SHARE * unknown.guess
                 expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())

@@ -423,7 +423,7 @@ class Comparison:
     parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
              that place each of them, in the order of the arguments: none is held by its place. Once the whole
              program is known, `moved` is what they have but for the anchor (see `building.anchors`)
-    boxes    the structures whose boxes it mentions
+    boxes    the structures whose boxes it mentions, each with the sides of it
     beside   the unknowns it mentions beside these; None if it mentions no structure's box
     """
 
@@ -432,7 +432,7 @@ class Comparison:
     right: Expression
     dimension: MaybeDimension
     moved: frozenset[Unknown] | None = None
-    boxes: frozenset[Structure] = frozenset()
+    boxes: Mapping[Structure, frozenset[str]] = field(default_factory=dict)
     beside: frozenset[Unknown] | None = None
     parties: tuple[frozenset[Unknown], ...] = ()
 

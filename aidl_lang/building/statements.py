@@ -147,6 +147,9 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
     if found is None:
         declare(it, scope, node.name, (), NOTHING, node)
         return
+    if found.status is Exactness.FIXED:
+        declare(it, scope, node.name, (), found, node)  # nothing is left to find
+        return
     holder = scope.declaring().container or here
     if not refuses_measure(it, found, node.value.span) and not math.isfinite(found.value):
         it.report("E0504", f"`{node.value.span.one_line}` has no value at the first guesses", node.value)

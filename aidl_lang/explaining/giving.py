@@ -83,12 +83,10 @@ def as_error(note: Diagnostic) -> Diagnostic:
 
 
 def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:
-    """Yields one message for all sizes that changed for the same reason, and one for each frame that moved. A
-    length between literal points is left out: no number was written for it, and its points were placed.
-    """
+    """Yields one message for all sizes that changed for one reason, and one for each frame that moved."""
     changes = {change.path: change for change in model.changed}
     for one in given:
-        sizes = [changes[u.path] for u in one.moved if u.path in changes and not u.implied]
+        sizes = [changes[u.path] for u in one.moved if u.path in changes and not _is_asked(u, one)]
         visible = [c for c in sizes if short(c.written) != short(c.solved)]
         if visible:
             yield _of_sizes(visible, one)
@@ -99,6 +97,16 @@ def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagn
                 frames.setdefault(moved, []).append(unknown)
         for structure, unknowns in frames.items():
             yield _of_frame(structure, unknowns, one)
+
+
+def _is_asked(unknown: Unknown, given: GaveWay) -> bool:
+    """Tells whether a change is what was asked: that of a way between literal points, for which no number was
+    written, by constraints that all speak of these points.
+    """
+    if not unknown.implied:
+        return False
+    spoken = ({u.holder for part in c.comparisons for u in part.spoken_of} for c in given.because)
+    return unknown.angular or all(unknown.holder in holders for holders in spoken)
 
 
 # --- Sizes -----------------------------------------------------------------------------------------
@@ -163,7 +171,13 @@ def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay)
         if "rotation" in way:
             by.append(f"turned by {short(way['rotation'])}°")
         what = f"`{structure.path}` moved against `{parent.path}`: {' and '.join(by)}"
-    if _is_named(structure, given):
+    if _is_named(structure, given) and all(u.frame_of is None for u in unknowns):
+        why, hint = (
+            "as it fits nowhere as a whole",
+            "where constraints name one thing of a structure it moves as a whole if it can: write what shall "
+            "give way in it as a `guess(…)`",
+        )
+    elif _is_named(structure, given):
         why, hint = (
             "something in it is exact, as `fixed(…)`, a `param` or `origin` makes it",
             "`fixed(…)` is exact in its own frame, which may move: "

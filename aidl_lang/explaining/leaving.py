@@ -11,7 +11,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.numbers import short
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.solver import Solution
+from aidl_lang.solver import Settings, Solution
 
 _FAR = 0.1
 """The part of the extent of both by which a detail may move without a word."""
@@ -19,6 +19,8 @@ _NAMED = 3
 """Siblings told by name."""
 _STILL = 1e-6
 """Moves below this, in mm, count as none."""
+_SECONDS = 1.0
+"""For the search for a place of a structure as a whole."""
 
 
 @record()
@@ -74,10 +76,29 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
         extent = _extent([u for d in (*stayed, *left) for u in found[d.geometry]], written)
         left = [detail for detail in left if detail.moved > _FAR * extent]
         if left and stayed:
-            yield _left(structure, left, stayed)
+            yield _left(structure, left, stayed, _fits(structure, lowered))
     from aidl_lang.explaining.staying import staying_notes
 
     yield from staying_notes(root, lowered, solution, naming)
+
+
+def _fits(structure: Structure, lowered: Lowered) -> bool:
+    """Tells whether a place is found for a structure as a whole, with all other positions free."""
+    from aidl_lang.solver.shortfall import nearby_solution
+
+    problem = lowered.problem
+    start = {
+        index: float(problem.initial[index])
+        for index, unknown in enumerate(lowered.unknowns)
+        if not unknown.kept and not unknown.owner.is_within(structure)
+    }
+    start |= {
+        index: float(problem.initial[index])
+        for index, unknown in enumerate(lowered.unknowns)
+        if unknown.frame_of is structure
+    }
+    hard = [index for index, weight in enumerate(problem.weight.tolist()) if weight != weight]
+    return nearby_solution(problem, Settings(seconds=_SECONDS), hard, start) is not None
 
 
 def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> float:
@@ -89,7 +110,7 @@ def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> fl
     return max(spans)
 
 
-def _left(structure: Structure, left: Sequence[_Detail], stayed: Sequence[_Detail]) -> Diagnostic:
+def _left(structure: Structure, left: Sequence[_Detail], stayed: Sequence[_Detail], fits: bool) -> Diagnostic:
     chief = max(left, key=lambda detail: detail.moved)
     inside = f"{structure.path}."
     stays = named([d.geometry.path.removeprefix(inside) for d in stayed], _NAMED)
@@ -102,7 +123,9 @@ def _left(structure: Structure, left: Sequence[_Detail], stayed: Sequence[_Detai
         "left what stands beside it",
         tuple(Label(span, "asks for it") for span in dict.fromkeys(c.span for c in asking)),
         (
-            f"`{structure.name}` as a whole has no place that fits: with `fixed(…)` for `{name}` it is "
+            f"with `fixed(…)` for `{name}` others give way: `{structure.name}` fits as a whole then"
+            if fits
+            else f"`{structure.name}` as a whole has no place that fits: with `fixed(…)` for `{name}` it is "
             "told what stands against it",
             f"if `{name}` shall move alone, say by a constraint in `{structure.name}` where the others are",
         ),

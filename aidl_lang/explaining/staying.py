@@ -27,7 +27,8 @@ _FAR = 0.1
 _NAMED = 3
 _SIDES = ("left", "bottom", "right", "top")
 _ENDS = frozenset({"start", "end"})
-_FORMED = frozenset({"path", "polyline", "spline"})
+_MEASURED = frozenset({"edges", "length"})
+_FORMED = frozenset({"path", "polygon", "polyline", "spline"})
 
 Naming = Mapping[Unknown | Structure, Sequence[Constraint]]
 """The constraints that mention an unknown, or the box of a structure."""
@@ -167,7 +168,7 @@ def _lost_form(
     moved: set[Unknown], before: Mapping[Unknown, float], after: Mapping[Unknown, float], naming: Naming
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each open way of several literal points that constraints hold by both ends, so
-    that one stretch took up all the difference.
+    that one stretch took up all the difference, and for each polygon of which they measure a side.
     """
     ways: dict[Geometry, list[Unknown]] = {}
     for unknown in before:
@@ -180,28 +181,36 @@ def _lost_form(
             continue
         unknowns = source_unknowns(way, way.owner)
         asking = list(dict.fromkeys(c for u in unknowns for c in naming.get(u, ()) if not c.is_inherent))
-        if {end for c in asking for end in _ends_in(c)} != _ENDS:
+        if way.type == "polygon":
+            is_lost = bool(asking) and all(_MEASURED & set(_members_in(c)) for c in asking)
+            how, label = "was measured at one side and", "is measured"
+            hint = "say where its corners shall be, or draw what keeps its angles, as a `rectangle` does"
+        else:
+            is_lost = {name for c in asking for name in _members_in(c)} >= _ENDS
+            how, label = "is held by both ends and", "holds an end"
+            hint = (
+                "for what spans two parts there are `cord`, `strip`, `coil` and `s_curve`, which take their "
+                "points; or hold one end and write the others as `guess(…)`"
+            )
+        if not is_lost:
             continue
         chief = max(changed, key=lambda u: abs(after[u] - before[u]))
         if not abs(after[chief] - before[chief]) > _FAR * max(abs(before[u]) for u in lengths):
             continue
         yield Diagnostic(
             "W0605",
-            f"`{way.path}` is held by both ends and lost its form: {chief.description} was "
+            f"`{way.path}` {how} lost its form: {chief.description} was "
             f"{short(before[chief])} and became {short(after[chief])}",
             way.span,
             "literal points keep their distances as well as they can",
-            tuple(Label(span, "holds an end") for span in dict.fromkeys(c.span for c in asking)),
-            (
-                "for what spans two parts there are `cord`, `strip`, `coil` and `s_curve`, which take their "
-                "points; or hold one end and write the others as `guess(…)`",
-            ),
+            tuple(Label(span, label) for span in dict.fromkeys(c.span for c in asking)),
+            (hint,),
         )
 
 
-def _ends_in(constraint: Constraint) -> Iterator[str]:
-    """Yields the ends that a constraint speaks of by name."""
+def _members_in(constraint: Constraint) -> Iterator[str]:
+    """Yields the names of the members that a constraint speaks of."""
     if isinstance(constraint.wording, Wording):
         for node in ast.walk(constraint.wording.node):
-            if isinstance(node, ast.Member) and node.name.text in _ENDS:
+            if isinstance(node, ast.Member):
                 yield node.name.text

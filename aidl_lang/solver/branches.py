@@ -11,9 +11,9 @@ Inequalities join the system when they are violated; those that hold all along h
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -66,14 +66,11 @@ class Verdict:
     proof      for rows by their number in the task, factors with which their sum is the same wherever the
                free unknowns are, though it would have to vanish (Farkas): no branch is left to choose in
                these rows, and no start could satisfy them. Empty if that is not known.
-    turned     goes on where an attempt without turned branches failed, and turns them; the values must be
-               those that it began with. None where there is nothing to go on from.
     """
 
     end: End
     violation: float
     proof: Mapping[int, float] = field(default_factory=dict)
-    turned: Callable[[], Verdict] | None = None
 
     @property
     def satisfied(self) -> bool:
@@ -119,7 +116,7 @@ class _Attempt:
         self.task, self.values, self.metric, self.settings, self.clock = task, values, metric, settings, clock
         self.cone = values.cone(row.expression for row in task.rows)
         values.refresh(self.cone)
-        self.free = sorted(self.cone.unknowns & task.free)
+        self.free = sorted(task.free)
         self.origin = [values.unknowns[unknown] for unknown in self.free]
         self.considered: list[int] = []
         """The equations, and the inequalities that were violated at some time."""
@@ -143,14 +140,7 @@ class _Attempt:
         verdict = self._follow_branches()
         if verdict.satisfied or verdict.proof:
             return verdict
-        if not self.task.turning:
-            return replace(verdict, turned=partial(self._turn, verdict, self._current()))
-        return self._try_neighbours(verdict)
-
-    def _turn(self, verdict: Verdict, reached: list[float]) -> Verdict:
-        """Goes on from the place at which the search without turned branches failed."""
-        self._move_to(reached)
-        return self._try_neighbours(verdict)
+        return self._try_neighbours(verdict) if self.task.turning else verdict
 
     # -- branches
 

@@ -90,6 +90,15 @@ def explain(
     return _ConflictSearch(hierarchy, scope, before).explain(group, best)
 
 
+def is_refuted(hierarchy: Hierarchy, scope: Scope) -> bool:
+    """Tells whether a proof exists that the constraints of `scope` cannot hold together with its unknowns
+    free; the bound that one sets on an unknown alone helps with the others.
+    """
+    hierarchy.refresh(scope.constraints)
+    rows = hierarchy.rows(scope.constraints)
+    return Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance, rows).is_refuted
+
+
 def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:
     """Returns a set of constraints of `scope` that cannot hold together with its unknowns free, starting from
     `before` (empty if all can), and whether it is known to be minimal.

@@ -17,8 +17,6 @@ from aidl_lang.common.records import record
 from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
 
 CONSTANT = Op.CONSTANT
-DENSE = 8
-"""Nodes to a root up to which the whole tape is looked through for those below."""
 
 
 @record()
@@ -63,6 +61,8 @@ class TapeBuilder:
         self._constants: list[float] = []
         self._levels: list[int] = []
         self._known: dict[tuple[object, ...], int] = {}
+        self._splits: dict[int, tuple[tuple[int, ...], int]] = {}
+        self._shifts: set[int] = set()
 
     def __len__(self) -> int:
         return len(self._ops)
@@ -73,11 +73,16 @@ class TapeBuilder:
         node = self._known.get(key)
         return self._new(key, CONSTANT, (), value) if node is None else node
 
-    def unknown(self, index: int) -> int:
+    def unknown(self, index: int, shifts: bool = False) -> int:
+        """Returns the node of an unknown; one that `shifts` what it is added to is taken out of extremes."""
         index = int(index)
         key = (Op.UNKNOWN, index)
         node = self._known.get(key)
-        return self._new(key, Op.UNKNOWN, (index,), 0.0) if node is None else node
+        if node is None:
+            node = self._new(key, Op.UNKNOWN, (index,), 0.0)
+        if shifts:
+            self._shifts.add(node)
+        return node
 
     def add(self, a: int, b: int) -> int:
         ops, constants = self._ops, self._constants
@@ -94,8 +99,13 @@ class TapeBuilder:
             return a
         if self._is(a, 0.0):
             return self.neg(b)
+        if self._ops[b] == Op.NEG:
+            return self.add(a, self._operands[b][0])
+        # Two places in one frame: what moves both takes no part, and must not by rounding either.
+        common, (left, right) = self._apart((a, b))
+        if common:
+            return self.sub(left, right)
         if self._ops[a] == self._ops[b] == Op.ADD:
-            # Two places in one frame: what moves both takes no part, and must not by rounding either.
             for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
                 if self._operands[a][i] == self._operands[b][j]:
                     return self.sub(self._operands[a][1 - i], self._operands[b][1 - j])
@@ -124,7 +134,10 @@ class TapeBuilder:
     def neg(self, a: int) -> int:
         if self._ops[a] == Op.NEG:
             return self._operands[a][0]
-        return self._node(Op.NEG, a)
+        node = self._node(Op.NEG, a)
+        if a in self._shifts:
+            self._shifts.add(node)
+        return node
 
     def power(self, base: int, exponent: int) -> int:
         if self._is(exponent, 1.0):
@@ -181,12 +194,20 @@ class TapeBuilder:
             return a
         if self._ops[condition] == Op.CONSTANT:
             return a if self._constants[condition] >= 0.0 else b
+        common, (first, second) = self._apart((a, b))
+        if common:
+            return self._sum(common, self.select(condition, first, second))
         return self._node(Op.SELECT, condition, a, b)
 
     def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
         """Returns the node of the greatest value over t in [0, 1] of the cubic with these Bernstein
         coefficients.
         """
+        common, rests = self._apart((p0, p1, p2, p3))
+        if p0 == p1 == p2 == p3:
+            return p0
+        if common:
+            return self._sum(common, self.cubic_max(*rests))
         return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)
 
     def finish(self) -> Tape:
@@ -209,14 +230,68 @@ class TapeBuilder:
         return a if a == b else self._of_two(Op.MAXIMUM, min(a, b), max(a, b))
 
     def _extremum(self, of_two: Callable[[int, int], int], args: Sequence[int]) -> int:
-        """Returns a balanced tree of binary nodes, so that the depth of the tape stays logarithmic."""
+        """Returns a balanced tree of binary nodes, so that the depth of the tape stays logarithmic. What is
+        added to several operands is added to the least (greatest) of these: the box of a rigid part is worked
+        out once and moved with it.
+        """
         if not args:
             raise ValueError("minimum and maximum take at least one operand")
         level = sorted(set(args))
+        alike: dict[tuple[int, ...], list[int]] = {}
+        for a in level:
+            alike.setdefault(self._split(a)[0], []).append(a)
+        level = []
+        for shifts, members in alike.items():
+            if shifts and len(members) > 1:
+                rests = [self._split(a)[1] for a in members]
+                level.append(self._sum(shifts, self._extremum(of_two, rests)))
+            else:
+                level += members
+        common, rests = self._apart(level)
+        if common:
+            return self._sum(common, self._extremum(of_two, rests))
         while len(level) > 1:
             pairs = [of_two(level[i], level[i + 1]) for i in range(0, len(level) - 1, 2)]
             level = pairs + level[len(pairs) * 2 :]
         return level[0]
+
+    # -- shifts
+
+    def _split(self, node: int) -> tuple[tuple[int, ...], int]:
+        """Returns the shifts among the terms of a node, and the node of what is left."""
+        found = self._splits.get(node)
+        if found is None:
+            op, operands = self._ops[node], self._operands[node]
+            if node in self._shifts:
+                found = (node,), self.constant(0.0)
+            elif op == Op.NEG:
+                shifts, rest = self._split(operands[0])
+                found = tuple(map(self.neg, shifts)), self.neg(rest)
+            elif op == Op.ADD or op == Op.SUB:
+                (first, left), (second, right) = map(self._split, operands)
+                if op == Op.SUB:
+                    second, right = tuple(map(self.neg, second)), self.neg(right)
+                found = tuple(sorted(first + second)), self.add(left, right) if first or second else node
+            else:
+                found = (), node
+            self._splits[node] = found
+        return found
+
+    def _apart(self, nodes: Sequence[int]) -> tuple[list[int], list[int]]:
+        """Returns the shifts that all nodes have in common, and each node without them."""
+        splits = [self._split(node) for node in nodes]
+        common = list(splits[0][0])
+        for shifts, _ in splits[1:]:
+            common = _shared(common, shifts)[0]
+        if not common:
+            return common, list(nodes)
+        return common, [self._sum(_shared(shifts, common)[1], rest) for shifts, rest in splits]
+
+    def _sum(self, shifts: Iterable[int], rest: int) -> int:
+        total = self.constant(0.0)
+        for shift in shifts:
+            total = self.add(total, shift)
+        return self.add(total, rest)
 
     def _of_two(self, op: int, a: int, b: int) -> int:
         """Returns the node of an operation on two operands, the most common kind."""
@@ -248,23 +323,29 @@ class TapeBuilder:
         return node
 
 
-def below(tape: Tape, roots: Iterable[int]) -> list[int]:
-    """Returns the nodes that `roots` are made of, operands first."""
+def _shared(nodes: Iterable[int], others: Iterable[int]) -> tuple[list[int], list[int]]:
+    """Returns the nodes that are among the others too, each as often as there, and the rest of them."""
+    left = list(others)
+    shared, rest = list[int](), list[int]()
+    for node in nodes:
+        if node in left:
+            left.remove(node)
+            shared.append(node)
+        else:
+            rest.append(node)
+    return shared, rest
+
+
+def below(tape: Tape, roots: Iterable[int], ends: bytes | None = None) -> list[int]:
+    """Returns the nodes that `roots` are made of, operands first; nothing below nodes that are marked as
+    `ends`.
+    """
     ops, operands = tape.op_list, tape.operand_lists
     seen = set(roots)
-    if len(tape) < DENSE * len(seen):
-        marks = bytearray(len(tape))
-        for root in seen:
-            marks[root] = 1
-        for node in range(len(tape) - 1, -1, -1):
-            if marks[node] and ops[node] > Op.UNKNOWN:
-                for a in operands[node]:
-                    marks[a] = 1
-        return [node for node, mark in enumerate(marks) if mark]
     stack = list(seen)
     while stack:
         node = stack.pop()
-        if ops[node] > Op.UNKNOWN:
+        if ops[node] > Op.UNKNOWN and (ends is None or not ends[node]):
             for a in operands[node]:
                 if a not in seen:
                     seen.add(a)

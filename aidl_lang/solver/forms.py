@@ -8,7 +8,7 @@ common cancels, so that a frame which moves both moves nothing in their differen
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TypeAlias
 
 from aidl_lang.common.records import record
@@ -48,16 +48,24 @@ class Knot:
 
 class Forms:
     """The forms of a tape's nodes with the unknowns `held` at their values, found as they are asked for.
+    `value_of` gives the value of a node that hangs on these alone, or None.
 
     The slot of an unknown is its index, that of a knot at node m is m more than there are unknowns.
     """
 
-    def __init__(self, tape: Tape, unknowns: Sequence[float], held: Container[int]) -> None:
+    def __init__(
+        self,
+        tape: Tape,
+        unknowns: Sequence[float],
+        held: Collection[int],
+        value_of: Callable[[int], float | None],
+    ) -> None:
         self.width = len(unknowns)
         self.knots: dict[int, Knot] = {}
-        self._tape, self._unknowns, self._held = tape, unknowns, held
+        self._tape, self._unknowns = tape, unknowns
         self._found: dict[int, Form] = {}
-        self._read: dict[int, float] = {}
+        self._value_of = value_of
+        self._read = {unknown: unknowns[unknown] for unknown in held}
 
     @property
     def is_fresh(self) -> bool:
@@ -78,26 +86,21 @@ class Forms:
         missing, stack = {root}, [root]
         while stack:
             node = stack.pop()
-            if ops[node] > Op.UNKNOWN:
+            value = self._value_of(node)
+            if value is not None:
+                found[node] = value
+                missing.discard(node)
+            elif ops[node] > Op.UNKNOWN:
                 for operand in operands[node]:
                     if operand not in found and operand not in missing:
                         missing.add(operand)
                         stack.append(operand)
         for node in sorted(missing):
-            op = ops[node]
-            if op > Op.UNKNOWN:
-                found[node] = self._place(node, op, tuple([found[a] for a in operands[node]]))
-            elif op == Op.UNKNOWN:
-                found[node] = self._unknown(operands[node][0])
+            if ops[node] > Op.UNKNOWN:
+                found[node] = self._place(node, ops[node], tuple([found[a] for a in operands[node]]))
             else:
-                found[node] = float(self._tape.constants[node])
+                found[node] = Affine({operands[node][0]: 1.0}, 0.0)
         return found[root]
-
-    def _unknown(self, unknown: int) -> Form:
-        if unknown not in self._held:
-            return Affine({unknown: 1.0}, 0.0)
-        value = self._read[unknown] = self._unknowns[unknown]
-        return value
 
     def _place(self, node: int, op: int, parts: tuple[Form, ...]) -> Form:
         form = branched(op, parts) if op in BRANCHING else applied(op, parts)

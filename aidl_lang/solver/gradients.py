@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_freezing import ArrayFreezing
-from aidl_lang.solver.expression import Tape, below
+from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import PARTIALS, Bools, Floats, Ints, Op
 from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
@@ -103,32 +103,50 @@ def _starts(counts: NDArray[np.intp]) -> Ints:
 
 
 def gradients(
-    values: Valuation, roots: Iterable[int], among: Sequence[bool] | None = None
+    values: Valuation, roots: Iterable[int], among: Sequence[bool] | None = None, ends: bytes | None = None
 ) -> dict[int, Gradient]:
     """Returns the gradient of each root at the current node values, which must be up to date; by the unknowns
-    `among`, if these are given.
+    `among`, if these are given, and without what is below nodes marked as `ends`.
     """
     wanted = list(roots)
     tape, nodes = values.tape, values.nodes
     ops, operands = tape.op_list, tape.operand_lists
     found: dict[int, Gradient] = {}
-    for node in below(tape, wanted):
+    sloping: dict[int, list[tuple[int, float]]] = {}
+    stack = list(wanted)
+    while stack:
+        node = stack[-1]
+        if node in found:
+            stack.pop()
+            continue
         op, args = ops[node], operands[node]
-        total: Gradient = {}
-        if op == Op.UNKNOWN:
-            total = {args[0]: 1.0} if among is None or among[args[0]] else {}
-        elif op != Op.CONSTANT and any(map(found.__getitem__, args)):
-            owned = False
-            for a, slope in zip(args, _slopes(op, args, nodes, node), strict=False):
-                if slope == 1.0 and not total:
-                    total = found[a]  # shared, hence copied before it is added to
-                elif slope != 0.0 and found[a]:
-                    if not owned:
-                        total, owned = dict(total), True
-                    for unknown, derivative in found[a].items():
-                        total[unknown] = total.get(unknown, 0.0) + slope * derivative
-        found[node] = total
+        if ends is not None and ends[node]:
+            found[node] = {}
+            continue
+        if op <= Op.UNKNOWN:
+            is_free = op == Op.UNKNOWN and (among is None or among[args[0]])
+            found[node] = {args[0]: 1.0} if is_free else {}
+            continue
+        terms = sloping.get(node)
+        if terms is None:  # the branches that are not taken are not looked at
+            slopes = zip(args, _slopes(op, args, nodes, node), strict=False)
+            terms = sloping[node] = [(a, slope) for a, slope in slopes if slope != 0.0]
+        if missing := [a for a, _ in terms if a not in found]:
+            stack += missing
+        else:
+            found[node] = _combined([(found[a], slope) for a, slope in terms if found[a]])
     return {root: found[root] for root in wanted}
+
+
+def _combined(terms: Sequence[tuple[Gradient, float]]) -> Gradient:
+    """Returns a sum of gradients times their factors; one that stays as it is is shared."""
+    if len(terms) == 1 and terms[0][1] == 1.0:
+        return terms[0][0]
+    total: Gradient = {}
+    for gradient, slope in terms:
+        for unknown, derivative in gradient.items():
+            total[unknown] = total.get(unknown, 0.0) + slope * derivative
+    return total
 
 
 def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -> tuple[Floats, Sparse]:

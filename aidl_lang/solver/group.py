@@ -1,27 +1,43 @@
-"""The stages of one group.
+"""How a group is solved: few parts give way, of these few things, and these by the shortest way.
 
-A stage frees the unknowns of the tiers up to its own (`tiers`). Where it leaves a choice, as few things move
-as can be found (`thinning`).
+The paper (appendix B) solves a structure in two stages: translations of its children first, then the
+geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`tiers`) that says
+how dear it is to move: what the constraints place; what else is the group's own, the frames of its
+children among it; frames further down; what lies inside of parts; what rides along with its part, because
+constraints name one thing of that part at most; sizes as written. But no stage frees a whole tier:
 
-A stage whose rows contradict each other says so with a proof. The stages after it are only tried if what they
-free has a share in that proof, and among the kept sizes only those that have are freed, one after another.
+1. What the constraints place is freed, with all constraints that bind it. Their rows are solved for the
+   nearest point (`branches`, `newton`). If they hold, that was all.
+2. Else the search ends where the rows contradict each other. Who can help has a share in what is left of
+   them. The cheapest class that suffices is taken; of that as few parts as will do (a frame, the inside
+   of a part, a size), and of these as few things (`loosening`). They are freed besides, the rest stays
+   rigid, and all is solved again from where it began.
+3. That is repeated, up to `ROUNDS` times. Before a size changes, the positions are tried as a whole,
+   branch by branch, since a size may be asked for only because another branch of a box was not seen.
+4. If nobody can help, or it did not help, and no proof refutes the constraints, whole tiers are tried.
+5. Where more moved than the rows ask for, things are held again (`thinning`).
+
+Each try begins from the values before, so that the order of constraints shows nowhere. What gave way
+though it is dear is recorded with its constraints, and told. Only what fails is explained (`conflicts`).
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.gradients import FLAT, gradients
+from aidl_lang.solver.loosening import givers
+from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.preferences import prefer
+from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
-from aidl_lang.solver.tiers import OWN, POSITIONS, SIZES, Scope, Tier, Tiers, stage_name
+from aidl_lang.solver.tiers import OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
@@ -37,8 +53,12 @@ LAST_RESTARTS = 5
 MOST_FAILURES = 20
 """The most conflicts that are explained and worked around; after them the best effort is kept."""
 
-MOST_SIZES = 8
-"""The most kept sizes that are freed one after another before all are."""
+PATIENCE = 2.0
+"""Seconds for stages tried as wholes."""
+COSTLY = 20_000
+"""Free unknowns times constraints above which a proof is sought before stages are tried as wholes."""
+ROUNDS = 12
+"""The most times that something more is freed before all is."""
 SHARE = 1e-9
 """Slope, relative to the terms of its sum, below which an unknown has no share in a proof."""
 
@@ -52,13 +72,15 @@ class Group:
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
         self.tiers = Tiers(hierarchy, group)
+        self._refuted: dict[tuple[int, ...], bool] = {}
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
         the needs of one do not loosen the other. `reached` is the last stage that some of them needed before.
         """
         hierarchy = self.hierarchy
-        for part in [part for part in self.tiers.independent(self.hard) if hierarchy.unmet(part)]:
+        unmet = set(hierarchy.unmet(self.hard))
+        for part in [part for part in self.tiers.independent(self.hard) if not unmet.isdisjoint(part)]:
             tier = self._solve_part(part)
             if tier is None:
                 return
@@ -98,39 +120,79 @@ class Group:
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
-        """Returns the tier of the first stage that satisfies everything; None if none does."""
+        """Returns the tier of the dearest thing that had to be freed to satisfy everything; None if nothing
+        does.
+        """
         hierarchy = self.hierarchy
         everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
-        best: Best = (np.inf, before)
         tiers = sorted({self.tiers.tier(unknown) for unknown in everything.free})
-        if self.tiers.beyond_positions(violated):
-            broken = self._settle_sizes(self.tiers.beyond_positions(part), part)
-            if broken is not None:
-                seeds = sorted({*part, *broken})
-                positions = [tier for tier in tiers if tier <= POSITIONS]
-                if not hierarchy.unmet(seeds):
-                    return SIZES
-                reached, best, _ = self._climb(positions, seeds, best)
-                if reached is not None:
-                    return SIZES
-                hierarchy.values.assign(before.items())
-            positions = []
-        else:
-            positions = [tier for tier in tiers if tier <= POSITIONS]
-        reached, best, obstacle = self._climb(positions, part, best)
-        if reached is None:
-            reached = self._resize(part, obstacle)
-            if reached is None:
-                reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
+        best: Best = (np.inf, before)
+        reached: Tier | None = None
+        if hierarchy.settings.stages is Stages.FULL:
+            reached, tiers, best = self._loosen(tiers, part, best)
         if reached is None:
             from aidl_lang.solver import conflicts
 
+            if not self._is_refuted(part):
+                reached, best = self._climb(tiers, part, best)
+        if reached is None:
             failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best[1])
             reached = self._from_elsewhere(failure, part, before)
             if reached is None:
                 self._fail(failure, everything, best[1])
         return reached
+
+    def _loosen(
+        self, tiers: list[Tier], seeds: list[int], best: Best
+    ) -> tuple[Tier | None, list[Tier], Best]:
+        """Frees what the constraints place; then, where rows contradict each other, who has a share in that.
+        Returns the dearest tier that was freed when all was satisfied, or None; the tiers whose stages were
+        not tried as wholes; and the values that came nearest.
+        """
+        hierarchy = self.hierarchy
+        everything = self.tiers.everything(seeds).free
+        before = hierarchy.save(everything)
+        last, extra = tiers[0] if tiers else OWN, frozenset[int]()
+        for _ in range(ROUNDS):
+            scope = self.tiers.scope(last, seeds, extra)
+            hierarchy.values.assign(before.items())
+            verdict = hierarchy.attempt(scope, 1, turning=False)
+            reached = max([last, *map(self.tiers.tier, extra)])
+            self._report(reached, scope, before if verdict.satisfied else None)
+            if verdict.satisfied:
+                return reached, tiers, best
+            if verdict.violation < 0.99 * best[0]:
+                best = (verdict.violation, hierarchy.save(everything))
+            if hierarchy.clock.expired:
+                hierarchy.timed_out = True
+                break
+            more = givers(hierarchy, self.tiers, scope, extra, before)
+            is_large = len(scope.free) * len(scope.constraints) > COSTLY
+            if not more or (
+                is_large and max(map(self.tiers.tier, more)) > POSITIONS and self._is_refuted(seeds)
+            ):
+                break
+            positions = [tier for tier in tiers if tier < POSITIONS]
+            if positions and max(map(self.tiers.tier, more)) > POSITIONS:
+                # Before a size changes, branches that positions choose have their say.
+                hierarchy.values.assign(before.items())
+                tier, best = self._climb(positions, seeds, best, self._proof(scope, verdict))
+                tiers = [tier for tier in tiers if tier > POSITIONS]
+                if tier is not None:
+                    return tier, tiers, best
+            extra |= more
+        hierarchy.values.assign(before.items())
+        return None, tiers, best
+
+    def _is_refuted(self, part: list[int]) -> bool:
+        """Tells whether it is proved that nothing satisfies a part: no stage need be tried in vain then."""
+        from aidl_lang.solver import conflicts
+
+        hierarchy, key = self.hierarchy, tuple(part)
+        if key not in self._refuted and hierarchy.settings.explain:
+            self._refuted[key] = conflicts.is_refuted(hierarchy, self.tiers.everything(part))
+        return self._refuted.get(key, False)
 
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]
@@ -150,48 +212,48 @@ class Group:
         return None
 
     def _climb(
-        self, tiers: list[Tier], seeds: list[int], best: Best
-    ) -> tuple[Tier | None, Best, tuple[Tier, Proof]]:
-        """Tries the stages in order. Returns the first that satisfies `seeds` and the constraints on all that
-        it moves, or None; the values that came nearest; and the last stage tried, with the proof why it
-        failed.
+        self, tiers: list[Tier], seeds: list[int], best: Best, proof: Proof = MappingProxyType({})
+    ) -> tuple[Tier | None, Best]:
+        """Tries stages in order, each with all that its tiers free, branch by branch, unless `proof` stands
+        against it.
         """
         hierarchy = self.hierarchy
         everything = self.tiers.everything(seeds).free
         before = hierarchy.save(everything)
         violated = hierarchy.unmet(seeds)
-        tried: dict[bool, frozenset[int]] = {}
-        failed: dict[frozenset[int], Verdict] = {}
-        obstacle: tuple[Tier, Proof] = ((1, 0), {})
-        # A stage is searched branch by branch only when the branches that are active lead nowhere in any.
-        for turning, tier in itertools.product((False, True), tiers):
-            if not self.tiers.promising(violated, tier):
-                continue
+        stages: dict[frozenset[int], tuple[Tier, Scope]] = {}
+        for tier in tiers:
             scope = self.tiers.scope(tier, seeds)
-            if scope.free in (tried.get(True), tried.get(turning)):
-                continue
-            if self._stands(obstacle[1], scope.free):
-                continue
-            tried[turning] = scope.free
+            if self.tiers.promising(violated, tier) and not self._stands(proof, scope.free):
+                stages.setdefault(scope.free, (tier, scope))
+        order = list(stages.values())
+        if len(order) > 1:  # if not even the last of them leads anywhere, none does
+            order = [order[-1], *order[:-1]]
+        widest: dict[int, float] | None = None
+        clock = Clock(min(PATIENCE, hierarchy.clock.left))
+        for tier, scope in order:
             # Groups above a part that failed are not searched for long: the best effort is drawn.
-            last = turning and tier == tiers[-1] and not hierarchy.failures
-            earlier = failed.get(scope.free) if turning and not last else None
-            if earlier is not None and earlier.turned is not None:
-                verdict = earlier.turned()
-            else:
-                verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1, turning=turning)
+            is_last = scope is order[0][1] and not hierarchy.failures
+            verdict = hierarchy.attempt(scope, LAST_RESTARTS if is_last else 1, clock)
+            if verdict.satisfied and widest is None and len(order) > 1:
+                widest = hierarchy.save(scope.free)
+                hierarchy.values.assign(before.items())
+                continue
             self._report(tier, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
-                return tier, best, obstacle
-            failed[scope.free] = verdict
+                return tier, best
             if verdict.violation < 0.99 * best[0]:
                 best = (verdict.violation, hierarchy.save(everything))
-            obstacle = tier, self._proof(scope, verdict)
             hierarchy.values.assign(before.items())
-            if hierarchy.clock.expired:
-                hierarchy.timed_out = True
+            if widest is None or clock.expired:
                 break
-        return None, best, obstacle
+        hierarchy.timed_out |= hierarchy.clock.expired
+        if widest is not None:
+            tier, scope = order[0]
+            hierarchy.values.assign(widest.items())
+            self._report(tier, scope, before)
+            return tier, best
+        return None, best
 
     # -- proofs, and sizes in the way
 
@@ -216,82 +278,6 @@ class Group:
                 total[slot] = total.get(slot, 0.0) + factor * slope
                 sizes[slot] = sizes.get(slot, 0.0) + abs(factor * slope)
         return all(abs(slope) <= SHARE * sizes[slot] for slot, slope in total.items())
-
-    def _resize(self, seeds: list[int], obstacle: tuple[Tier, Proof]) -> Tier | None:
-        """Frees the kept sizes that have a share in the proof, one after another, with the positions of the
-        last stage that was tried. Returns the stage at which that satisfies everything, or None.
-        """
-        hierarchy = self.hierarchy
-        last, proof = obstacle
-        before = hierarchy.save(self.tiers.everything(seeds).free)
-        freed: set[int] = set()
-        while proof and len(freed) < MOST_SIZES and not hierarchy.clock.expired:
-            size = self._cheapest(proof, freed)
-            if size is None:
-                break
-            freed.add(size)
-            scope = self.tiers.scope(last, seeds, freed)
-            verdict = hierarchy.attempt(scope, 1)
-            level = max(map(self.tiers.tier, freed))
-            self._report(level, scope, before if verdict.satisfied else None)
-            if verdict.satisfied:
-                return level
-            hierarchy.values.assign(before.items())
-            proof = self._proof(scope, verdict)
-        return None
-
-    def _cheapest(self, proof: Proof, freed: set[int]) -> int | None:
-        """Returns the kept size that would resolve a proof by the smallest change relative to itself, of the
-        first stage at which one has a share in it.
-        """
-        hierarchy = self.hierarchy
-        hierarchy.refresh(self.tiers.scope((9, 0), self.hard).constraints)
-        slopes: dict[int, float] = {}
-        for node, gradient in gradients(hierarchy.values, proof).items():
-            for unknown, slope in gradient.items():
-                slopes[unknown] = slopes.get(unknown, 0.0) + proof[node] * slope
-        lack = sum(factor * hierarchy.values.nodes[node] for node, factor in proof.items())
-        choices = []
-        for unknown, slope in slopes.items():
-            tier = self.tiers.tier(unknown)
-            if tier > POSITIONS and unknown not in freed and abs(slope) > FLAT:
-                size, change = hierarchy.values.unknowns[unknown], -lack / slope
-                vanishes = size * (size + change) <= 0.0
-                share = abs(change / size) if size else np.inf
-                choices.append((vanishes, tier, round(float(share), 6), hierarchy.name(unknown), unknown))
-        return min(choices)[-1] if choices else None
-
-    # -- sizes that no position can help
-
-    def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
-        """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
-        constraints outside `part` that this broke and positions may mend; None if no sizes satisfy `rigid`.
-        """
-        hierarchy = self.hierarchy
-        mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, rigid))
-        # Another row of such a constraint may hang on positions, which are free as they were before.
-        reached = frozenset(u for _, rows in self.tiers.reached(rigid, rigid) for row in rows for u in row)
-        positions = frozenset(unknown for unknown in reached if self.tiers.tier(unknown) <= POSITIONS)
-        sizes = frozenset(unknown for unknown in mentioned if self.tiers.tier(unknown) > POSITIONS)
-        unmet = hierarchy.unmet(rigid)
-        placed = sizes & frozenset().union(*(hierarchy.problem.constraints[i].placed for i in unmet))
-        levels = sorted({self.tiers.tier(unknown) for unknown in sizes})
-        stages = [(level, frozenset(u for u in sizes if self.tiers.tier(u) <= level)) for level in levels]
-        tried: frozenset[int] = frozenset()
-        for level, resized in ((SIZES, placed), *stages):
-            if resized <= tried:
-                continue
-            tried, free = resized, resized | positions
-            before = hierarchy.save(free)
-            scope = Scope(free, tuple(sorted(rigid)))
-            satisfied = hierarchy.attempt(scope, 1).satisfied
-            self._report(level, scope, before if satisfied else None)
-            if satisfied:
-                moved = [u for u in free if hierarchy.values.unknowns[u] != before[u]]
-                touched = {i for u in moved for i in hierarchy.solved_mentioning(u, self.group)} - set(part)
-                return hierarchy.unmet(sorted(filter(hierarchy.is_hard, touched)))
-            hierarchy.values.assign(before.items())
-        return None
 
     def _report(
         self,

@@ -7,7 +7,6 @@ which says what the stages are).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -117,7 +116,10 @@ class Hierarchy:
     @cached_property
     def values(self) -> Valuation:
         kept = frozenset(np.flatnonzero(self.problem.kept).tolist())
-        return Valuation(self.problem.tape, self.problem.initial.tolist(), kept)
+        if self._levels is None:
+            return Valuation(self.problem.tape, self.problem.initial.tolist(), kept)
+        nodes = self._levels.nodes().tolist()
+        return Valuation(self.problem.tape, self.reached.tolist(), kept, nodes)
 
     @cached_property
     def mentions(self) -> Mapping[int, frozenset[int]]:
@@ -304,7 +306,6 @@ class Hierarchy:
             # The search moves dear unknowns last, and may have ended before that.
             self.values.assign(before.items())
             verdict = attempt(task, self.values, self.metric, self.settings, clock or self.clock)
-            verdict = replace(verdict, turned=None)  # that would be of this search alone
         idle = {u for u in sizes if abs(self.values.unknowns[u] - before[u]) < IDLE * self.problem.scale[u]}
         if verdict.satisfied and idle:
             reached = self.save(scope.free)

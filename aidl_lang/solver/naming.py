@@ -53,8 +53,8 @@ def naming(problem: Problem) -> Naming:
 
 def riding_depths(problem: Problem, depths: Ints) -> Ints:
     """Returns for each unknown (n,) the depth of the innermost group around it, or of the group whose frame
-    it places, that no constraint around that group names; 0 if all are named. Above that depth it rides along
-    with its parent.
+    it places, that is rigid or that no constraint around that group names; 0 if there is none. Above that
+    depth it rides along with that group, or its parent.
     """
     found = np.zeros(len(problem.parent), dtype=np.int64)
     if problem.named:
@@ -63,7 +63,10 @@ def riding_depths(problem: Problem, depths: Ints) -> Ints:
             if parent >= 0:
                 found[group] = found[parent] if frames[group] else depths[group]
     placed: Ints = found[np.where(problem.frame_of >= 0, problem.frame_of, problem.group)]
-    return placed
+    if problem.axis is None or not problem.rigid.any():
+        return placed
+    in_rigid = np.where(problem.axis >= 0, np.where(problem.rigid, depths, 0)[problem.group], 0)
+    return np.maximum(placed, in_rigid)
 
 
 def _marked(numbers: Ints, count: int) -> Bools:

@@ -101,6 +101,8 @@ class Problem:
     standing (n,) True for a frame that was written where its content counts as exact: held when others can
              move
     spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch
+    rigid    (g,) True for a group of which constraints around it name one thing at most: it moves as a whole,
+             and what is in it moves against its frame only as if no constraint named it
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride
@@ -128,20 +130,22 @@ class Problem:
     longest: Floats | None = None
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    rigid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     thing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     clinging: frozenset[int] | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        """Fills in what is not given: nothing stands, and all unknowns are one thing."""
-        count = len(self.initial)
+        """Fills in what is not given: nothing stands, nothing is rigid, and all unknowns are one thing."""
+        count, groups = len(self.initial), len(self.parent)
         for name, usual in (
             ("standing", np.zeros(count, dtype=np.bool_)),
             ("spanned", np.zeros(count, dtype=np.bool_)),
+            ("rigid", np.zeros(groups, dtype=np.bool_)),
             ("thing", np.zeros(count, dtype=np.int64)),
         ):
-            if len(getattr(self, name)) != count:
+            if len(getattr(self, name)) != len(usual):
                 object.__setattr__(self, name, usual)
 
     @cached_property

@@ -32,13 +32,16 @@ class Reason:
 
 
 def reasons(problem: Problem, settings: Settings, concession: Concession, solved: Floats) -> Iterator[Reason]:
-    """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution."""
+    """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution. Sizes
+    that could have given way instead are held as well.
+    """
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.reached[:] = concession.values
     hierarchy.values.assign(enumerate(concession.values.tolist()))
     left = concession.unknowns
+    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept(u))
     while left:
-        scope = Scope(concession.free - left, concession.constraints)
+        scope = Scope(moving - left, concession.constraints)
         before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
         found, minimal = conflict(hierarchy, scope, before)
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))

@@ -31,7 +31,7 @@ FEW = 60
 """Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
 SOME = 400
 """Bounds and rows up to which a place is first looked for at which all hold."""
-MANY = 3000
+MANY = 8000
 """Bounds and rows beyond which no proof is sought."""
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
-from aidl_lang.solver.operations import Floats, Ints, Op
+from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 
 
 @record()
@@ -72,6 +72,14 @@ class Schedule:
         order = np.argsort(self.tape.levels, kind="stable")
         bounds = np.cumsum(np.bincount(self.tape.levels))
         return np.split(order, bounds[:-1])[1:] if len(order) else []
+
+    def above(self, unknowns: Bools) -> bytes:
+        """Returns for each node whether it hangs on nothing but these unknowns (n,)."""
+        found = np.ones(len(self.tape) + 1, dtype=np.bool_)  # the last for operands that are not there
+        found[self.inputs] = unknowns[self.unknowns]
+        for nodes in self.by_level:
+            found[nodes] = found[self.tape.operands[nodes]].all(axis=1)
+        return found.tobytes()
 
     def evaluate(self, x: Floats) -> Floats:
         """Returns the value (m,) of each node at the unknowns `x` (n,)."""

@@ -36,12 +36,16 @@ if TYPE_CHECKING:
 Tier: TypeAlias = tuple[int, int]
 
 PLACED: Tier = (1, 2)
+DEEP: Tier = (3, 0)
+"""A tier before the first one of what lies deeper than the group itself."""
 OWN: Tier = (2, 0)
 RIDING: Tier = (5, -1)
 """A tier before the first one of what rides along."""
 POSITIONS: Tier = (6, -1)
 """A tier after those of all positions, before the first one of kept sizes."""
 SIZES: Tier = (6, 0)
+ENDLESS: Tier = (9, 0)
+"""A tier after all."""
 
 NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
 
@@ -124,27 +128,8 @@ class Tiers:
         """Returns the scope of `seeds` with all unknowns free."""
         key = tuple(seeds)
         if key not in self._everything:
-            self._everything[key] = self.scope((9, 0), seeds)
+            self._everything[key] = self.scope(ENDLESS, seeds)
         return self._everything[key]
-
-    def beyond_positions(self, constraints: list[int]) -> list[int]:
-        """Returns the constraints among these that hang on kept sizes alone, as `same_width` does."""
-        mentions, found = self.hierarchy.mentions, list[int]()
-        resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
-        for index, reached in self.reached(resizing, ()):
-            tiers = [set(map(self.tier, unknowns)) for unknowns in reached]
-            if any(each and min(each) > POSITIONS for each in tiers) and not self._choices(index):
-                found.append(index)
-        return found
-
-    def _choices(self, index: int) -> bool:
-        """Tells whether positions choose a branch in a constraint, so that they may come to have a share in
-        it.
-        """
-        hierarchy = self.hierarchy
-        positions = [unknown for unknown in hierarchy.mentions[index] if self.tier(unknown) <= POSITIONS]
-        freezer = Freezer(hierarchy.values, positions)
-        return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
 
     def reached(
         self, indices: Sequence[int], sizing: Collection[int]
@@ -189,7 +174,7 @@ class Tiers:
         parts: list[list[int]] = []
         left = list(constraints)
         while left:
-            everything = self.scope((9, 0), left[:1])
+            everything = self.scope(ENDLESS, left[:1])
             linked = set(everything.constraints)
             parts.append([index for index in left if index in linked])
             self._everything[tuple(parts[-1])] = everything

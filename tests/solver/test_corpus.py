@@ -1,4 +1,4 @@
-"""The corpus of hard problems: files in the form of docs/solver-problems.md that say what is expected."""
+"""The corpus of hard problems: files (see problems/README.md) that say what is expected."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from aidl_lang.solver import Relation, Solution, freezing, hierarchy, solve
 from aidl_lang.solver.analysis import analyse
-from aidl_lang.solver.form import Case, read
+from tests.solver.problems.form import Case, read
 
 from .check import assert_solved, evaluate
 

@@ -23,19 +23,19 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Problem, Relation, solve
-from aidl_lang.solver.__main__ import main
-from aidl_lang.solver.form import LEVELS, Case, FormError, dump, load, read
-from aidl_lang.solver.notation import DEEPEST, LONGEST_TEXT
 from aidl_lang.solver.operations import Op
 from tests.amount import tries
 from tests.documents import ROOT, blocks
+from tests.solver.problems.__main__ import main
+from tests.solver.problems.form import LEVELS, Case, FormError, dump, load, read
+from tests.solver.problems.notation import DEEPEST, LONGEST_TEXT
 
 from .build import Model, call
 from .check import evaluate
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.json"))
-PAGE = list(blocks(ROOT / "docs" / "solver-problems.md"))
+PAGE = list(blocks(ROOT / "tests" / "solver" / "problems" / "README.md"))
 
 
 def _lowered(path: Path) -> Problem:

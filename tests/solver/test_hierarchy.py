@@ -99,7 +99,7 @@ def test_what_a_move_could_break_is_taken_along() -> None:
     solution = solve(problem := m.problem())
     assert_solved(problem, solution)
     assert stages(solution, child) == ["placed"]
-    assert stages(solution) == ["own", "translations 1", "positions 1"]
+    assert stages(solution) == ["own", "positions 1"]
     assert solution.values[m.index(y)] == 0.0
 
 

@@ -1,4 +1,4 @@
-"""`python -m aidl_lang.solver FILE` solves one problem file.
+"""`python -m tests.solver.problems FILE` solves one problem file.
 
 Exit codes: 0 solved, 1 not solved, 2 the file cannot be read or is wrong.
 """
@@ -17,7 +17,7 @@ from typing import Any
 
 from aidl_lang.solver import Solution, Status, solve
 from aidl_lang.solver.analysis import analyse
-from aidl_lang.solver.form import LONGEST_FILE, Case, FormError, read
+from tests.solver.problems.form import LONGEST_FILE, Case, FormError, read
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -48,8 +48,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python -m aidl_lang.solver",
-        description="Solves a problem file (docs/solver-problems.md).",
+        prog="python -m tests.solver.problems",
+        description="Solves a problem file (tests/solver/problems/README.md).",
         epilog="Exit codes: 0 solved, 1 not solved, 2 the file cannot be read or is wrong.",
     )
     parser.add_argument("file", metavar="FILE")

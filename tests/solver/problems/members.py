@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import TypeVar
 
-from aidl_lang.solver.notation import LARGEST, FormError, quoted, within
+from tests.solver.problems.notation import LARGEST, FormError, quoted, within
 
 T = TypeVar("T")
 

@@ -1,6 +1,6 @@
 """Problems as JSON: `read` and `load` make a problem of the form, `dump` puts any problem into it.
 
-The form is described in docs/solver-problems.md. Whatever is wrong with a file is a `FormError`.
+The form is described in tests/solver/problems/README.md. Whatever is wrong with a file is a `FormError`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,10 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Tape, TapeBuilder
-from aidl_lang.solver.members import (
+from aidl_lang.solver.operations import Op
+from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, constraint_arrays
+from aidl_lang.solver.solution import Status
+from tests.solver.problems.members import (
     Members,
     as_count,
     as_flag,
@@ -28,11 +31,8 @@ from aidl_lang.solver.members import (
     list_of,
     one_of,
 )
-from aidl_lang.solver.notation import NAME, RESERVED, FormError, Notation, quoted, within
-from aidl_lang.solver.operations import Op
-from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, constraint_arrays
-from aidl_lang.solver.solution import Status
-from aidl_lang.solver.writing import ROOT, dump
+from tests.solver.problems.notation import NAME, RESERVED, FormError, Notation, quoted, within
+from tests.solver.problems.writing import ROOT, dump
 
 __all__ = ["Case", "Expected", "FormError", "dump", "load", "read"]
 

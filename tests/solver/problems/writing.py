@@ -15,10 +15,19 @@ from itertools import count, islice
 
 import numpy as np
 
-from aidl_lang.solver.members import as_not_negative, as_number, as_positive
-from aidl_lang.solver.notation import FUNCTIONS, NAME, PRODUCTS, RESERVED, SUMS, FormError, quoted, within
 from aidl_lang.solver.operations import Op
 from aidl_lang.solver.problem import Constraint, Problem, Relation
+from tests.solver.problems.members import as_not_negative, as_number, as_positive
+from tests.solver.problems.notation import (
+    FUNCTIONS,
+    NAME,
+    PRODUCTS,
+    RESERVED,
+    SUMS,
+    FormError,
+    quoted,
+    within,
+)
 
 ROOT = "root"
 """The name of group 0."""

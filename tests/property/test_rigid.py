@@ -1,0 +1,126 @@
+"""Parts move whole: what is drawn in a part of which constraints name one thing keeps its place in it, and no
+more parts change inside than have to.
+"""
+
+from __future__ import annotations
+
+import random
+from itertools import combinations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aidl_lang import pipeline
+from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.common.source import SourceFile
+from aidl_lang.interp import interpret
+from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver.shortfall import nearby_solution
+from tests.amount import tries
+
+MOVED = 1e-6
+
+
+def picture(seed: int, most: int = 5) -> tuple[str, int]:
+    """Returns a program and its number of beams. Its constraints hold in a picture it was made from; what
+    is drawn is off, and each beam has to stretch from one part to another.
+    """
+    draw = random.Random(seed)
+    count = draw.randint(2, most)
+    places = [(draw.randint(-9, 9) * 10, draw.randint(-9, 9) * 10) for _ in range(count)]
+    widths = [draw.randint(4, 12) for _ in range(count)]
+    lines, stated = ["assembly a {"], [f"p0.center == ({places[0][0]}, {places[0][1]})"]
+    for i in range(count):
+        x, y = places[i][0] + draw.randint(-8, 8), places[i][1] + draw.randint(-8, 8)
+        dot = f"dot = circle(center: ({x}, {y}), radius: 1)"
+        nested = draw.choice(
+            [
+                f"drawing decal {{ {dot}; way = line(({x - 1}, {y}), ({x}, {y})) }}",
+                f"hole eye {{ rim = circle(center: ({x - 1}, {y}), radius: 1) }}",
+                f"drawing decal {{ drawing inner {{ {dot} }} }}",
+                f"drawing decal {{ {dot} }} constrain decal.dot.center == body.center",
+            ]
+        )
+        lines.append(
+            f"solid p{i} {{ body = rectangle(center: ({x}, {y}), width: {widths[i]}, height: 6); {nested} }}"
+        )
+        if i:
+            j = draw.randrange(i)
+            (ax, ay), (bx, by) = places[i], places[j]
+            left, right = ax - widths[i] / 2, bx + widths[j] / 2
+            stated.append(
+                draw.choice(
+                    [
+                        f"p{i}.left == p{j}.right + {left - right}; p{i}.top == p{j}.top + {ay - by}",
+                        f"p{i}.body.center == p{j}.body.center + ({ax - bx}, {ay - by})",
+                        f"p{i}.center == p{j}.center + ({ax - bx}, {ay - by})",
+                    ]
+                )
+            )
+    beams = 0
+    for _ in range(draw.randint(0, 2)):
+        a, b = sorted(draw.sample(range(count), 2), key=lambda k: places[k])
+        if places[b][0] - places[a][0] >= 10:
+            lines.append(f"solid beam{beams} {{ bar = rectangle(width: guess(5), height: 2) }}")
+            stated.append(
+                f"beam{beams}.left == p{a}.center_x; beam{beams}.right == p{b}.center_x; "
+                f"beam{beams}.bottom == p{a}.top"
+            )
+            beams += 1
+    return "\n".join([*lines, "constrain {", *stated, "}", "}"]), beams
+
+
+def solved(text: str) -> tuple[Lowered, Solution]:
+    program, _ = pipeline.front(SourceFile("a.aidl", text))
+    lowered = lower(interpret(program).model)
+    return lowered, solve(lowered.problem)
+
+
+def moved_inside(lowered: Lowered, values: list[float]) -> set[str]:
+    """Returns the parts in which something moved against their frame."""
+    found = set()
+    for unknown, before, after in zip(
+        lowered.unknowns, lowered.problem.initial.tolist(), values, strict=True
+    ):
+        part = unknown.path.split(".")[1]
+        is_frame = unknown.frame_of is not None and unknown.frame_of.path == f"a.{part}"
+        if not is_frame and abs(before - after) > MOVED:
+            found.add(part)
+    return found
+
+
+def least_inside(lowered: Lowered, parts: list[str]) -> int:
+    """Returns the least number of parts whose inside has to move, by trying all sets of them."""
+    problem = lowered.problem
+    hard = range(len(problem.holder))
+    for count in range(len(parts) + 1):
+        for chosen in combinations(parts, count):
+            start = {
+                i: float(problem.initial[i])
+                for i, u in enumerate(lowered.unknowns)
+                if (u.frame_of is not None and u.frame_of.path.count(".") == 1)
+                or (u.path.split(".")[1] in chosen and not u.kept)
+            }
+            if nearby_solution(problem, Settings(), hard, start) is not None:
+                return count
+    raise AssertionError("no set of parts will do")
+
+
+@given(st.integers(0, 1_000_000))
+@tries(500)
+def test_parts_move_whole(seed: int) -> None:
+    text, beams = picture(seed)
+    lowered, solution = solved(text)
+    assert solution.status is Status.SOLVED
+    assert moved_inside(lowered, solution.values.tolist()) == {f"beam{i}" for i in range(beams)}
+
+
+@pytest.mark.slow
+@given(st.integers(0, 1_000_000))
+@tries(8)
+def test_as_few_parts_as_possible_change_inside(seed: int) -> None:
+    text, _ = picture(seed, most=3)
+    lowered, solution = solved(text)
+    parts = sorted({u.path.split(".")[1] for u in lowered.unknowns})
+    assert len(moved_inside(lowered, solution.values.tolist())) == least_inside(lowered, parts)

@@ -1,0 +1,1 @@
+"""Problems for the solver in files of their own: see README.md."""
