@@ -90,12 +90,7 @@ def _fits(structure: Structure, lowered: Lowered) -> bool:
     start = {
         index: float(problem.initial[index])
         for index, unknown in enumerate(lowered.unknowns)
-        if not unknown.kept and not unknown.owner.is_within(structure)
-    }
-    start |= {
-        index: float(problem.initial[index])
-        for index, unknown in enumerate(lowered.unknowns)
-        if unknown.frame_of is structure
+        if unknown.frame_of is structure or not (unknown.kept or unknown.owner.is_within(structure))
     }
     hard = [index for index, weight in enumerate(problem.weight.tolist()) if weight != weight]
     return nearby_solution(problem, Settings(seconds=_SECONDS), hard, start) is not None

@@ -203,9 +203,9 @@ class TapeBuilder:
         """Returns the node of the greatest value over t in [0, 1] of the cubic with these Bernstein
         coefficients.
         """
-        common, rests = self._apart((p0, p1, p2, p3))
         if p0 == p1 == p2 == p3:
             return p0
+        common, rests = self._apart((p0, p1, p2, p3))
         if common:
             return self._sum(common, self.cubic_max(*rests))
         return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)

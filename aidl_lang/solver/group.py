@@ -37,7 +37,7 @@ from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
-from aidl_lang.solver.tiers import OWN, POSITIONS, Scope, Tier, Tiers, stage_name
+from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
@@ -201,7 +201,7 @@ class Group:
         None if none does.
         """
         hierarchy = self.hierarchy
-        for tier in (POSITIONS, (9, 0)) if failure.holds_elsewhere else ():
+        for tier in (POSITIONS, ENDLESS) if failure.holds_elsewhere else ():
             scope = self.tiers.scope(tier, part)
             hierarchy.values.assign(before.items())
             hierarchy.values.assign(pair for pair in failure.nearest if pair[0] in scope.free)

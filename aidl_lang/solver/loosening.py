@@ -10,6 +10,7 @@ matching pursuit; Pati, Rezaiifar and Krishnaprasad, Asilomar 1993), and leaving
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -64,11 +65,17 @@ class _Rest:
     rest: Floats
     owner: Sequence[int]
 
-    @property
+    @cached_property
     def size(self) -> float:
         return float(np.linalg.norm(self.rest))
 
-    @property
+    @cached_property
+    def contrary(self) -> frozenset[int]:
+        """The constraints whose rows contradict each other."""
+        shares = zip(self.owner, self.rest, strict=True)
+        return frozenset(index for index, share in shares if abs(share) > NOTHING * self.size)
+
+    @cached_property
     def changes(self) -> Floats:
         """The change (k,) by which each of the others by itself takes up most of the rest."""
         square = np.einsum("rk,rk->k", self.columns, self.columns)
@@ -156,7 +163,7 @@ class _Loosening:
             for last in sorted(set(dear)):
                 able = [k for k, dearness in enumerate(dear) if dearness <= last and k not in lost]
                 if not rest.left(able):
-                    found = self._few(rest, locked, able)
+                    found = self._few(rest, locked, dear, able)
                     break
             else:
                 continue
@@ -178,11 +185,12 @@ class _Loosening:
             if self.tiers.tier(size) > POSITIONS and values[size] * (values[size] + change[k]) <= 0.0
         }
 
-    def _few(self, rest: _Rest, locked: Sequence[int], able: list[int]) -> frozenset[int]:
+    def _few(
+        self, rest: _Rest, locked: Sequence[int], dear: Sequence[tuple[Tier, int]], able: list[int]
+    ) -> frozenset[int]:
         """Returns few things in few parts, of those that are `able` (columns), that take up the rest: of the
         dearest class what all cheaper ones leave of it, and so on down.
         """
-        dear = [self._dearness(unknown) for unknown in locked]
         able.sort(key=lambda k: self.hierarchy.name(locked[k]))
         found: list[int] = []
         for dearness in sorted({dear[k] for k in able}, reverse=True):
@@ -295,18 +303,14 @@ class _Loosening:
 
     def _key(self, rest: _Rest, locked: Sequence[int], order: int, columns: list[int]) -> tuple[object, ...]:
         """Returns what decides between parts of a class that help alike: whether they give way already; of
-        sizes, whether a constraint that contradicts others places them, and how
-        much of them changes.
+        sizes, whether a constraint that contradicts others places them, and how much of them changes.
         """
         hierarchy, size = self.hierarchy, locked[columns[0]]
         if self.tiers.tier(size) < POSITIONS:
             return (int(hierarchy.problem.group[size]) not in self.parts,)
         value, change = hierarchy.values.unknowns[size], rest.changes[columns[0]]
         part = abs(float(change) / value) if value else np.inf
-        contrary = {
-            i for i, share in zip(rest.owner, rest.rest, strict=True) if abs(share) > NOTHING * rest.size
-        }
-        is_placed = any(size in hierarchy.problem.constraints[i].placed for i in contrary)
+        is_placed = any(size in hierarchy.problem.constraints[i].placed for i in rest.contrary)
         return not is_placed, round(part, 6), order
 
 
