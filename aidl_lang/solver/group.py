@@ -7,7 +7,8 @@ children among it; frames further down; what lies inside of parts; what rides al
 constraints name one thing of that part at most; sizes as written. But no stage frees a whole tier:
 
 1. What the constraints place is freed, with all constraints that bind it. Their rows are solved for the
-   nearest point (`branches`, `newton`). If they hold, that was all.
+   nearest point (`branches`, `newton`), where that leaves a choice in turn: first what follows nothing else
+   that is placed, then what follows that. If they hold, that was all.
 2. Else the search ends where the rows contradict each other. Who can help has a share in what is left of
    them. The cheapest class that suffices is taken; of that as few parts as will do (a frame, the inside
    of a part, a size), and of these as few things (`loosening`). They are freed besides, the rest stays
@@ -156,9 +157,11 @@ class Group:
         last, extra = tiers[0] if tiers else OWN, frozenset[int]()
         for _ in range(ROUNDS):
             scope = self.tiers.scope(last, seeds, extra)
+            reached = max([last, *map(self.tiers.tier, extra)])
             hierarchy.values.assign(before.items())
             verdict = hierarchy.attempt(scope, 1, turning=False)
-            reached = max([last, *map(self.tiers.tier, extra)])
+            if verdict.satisfied and not extra:
+                self._place_in_turn(scope, before)
             self._report(reached, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
                 return reached, tiers, best
@@ -184,6 +187,32 @@ class Group:
             extra |= more
         hierarchy.values.assign(before.items())
         return None, tiers, best
+
+    def _place_in_turn(self, scope: Scope, before: dict[int, float]) -> None:
+        """Satisfies `scope` anew from the values `before`, if its unknowns have a choice: first what follows
+        nothing else that is placed, then what follows that, and so on, if that can be. So a thing with a long
+        way to go pulls nothing along that it follows.
+        """
+        hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
+        left: list[Scope] = []
+        for index in scope.constraints:
+            placed = hierarchy.problem.constraints[index].placed & scope.free
+            same = [block for block in left if block.free & placed]
+            indices = [index, *(i for block in same for i in block.constraints)]
+            merged = Scope(placed.union(*(block.free for block in same)), tuple(sorted(indices)))
+            left = [block for block in left if block not in same] + [merged] * bool(placed)
+        if len(left) < 2 or len(scope.free) <= len(hierarchy.rows(scope.constraints)):
+            return
+        together, ready = hierarchy.save(scope.free), left
+        hierarchy.values.assign(before.items())
+        while ready:
+            waiting = frozenset[int]().union(*(block.free for block in left))
+            ready = [b for b in left if not any(mentions[i] & waiting - b.free for i in b.constraints)]
+            left = [block for block in left if block not in ready]
+            if not all(hierarchy.attempt(block, 1, turning=False).satisfied for block in ready):
+                break
+        if left or hierarchy.unmet(scope.constraints):
+            hierarchy.values.assign(together.items())
 
     def _is_refuted(self, part: list[int]) -> bool:
         """Tells whether it is proved that nothing satisfies a part: no stage need be tried in vain then."""
