@@ -36,8 +36,10 @@ IDLE = 1e-3
 CHANGED = 1e-9
 """A kept size that moved less than this, in units of its scale, did not change."""
 
-MANY = 50
-"""Number of rows from which on all groups of a depth are solved at once."""
+MANY, LARGE = 50, 1000
+"""Numbers of rows from which on all groups of a depth are solved at once, if they are not few, and always."""
+FEW = 4
+"""Number of groups of a depth below which they are few."""
 
 
 class Hierarchy:
@@ -144,37 +146,37 @@ class Hierarchy:
         """Solves the groups depth by depth, from below; recalls those that no change has reached."""
         settings = self.settings
         usual = settings.together and settings.pruning and settings.stages is Stages.FULL
-        many = len(self.problem.rows.expression) >= MANY and usual
-        turn = self._solve_together if many else self._solve_in_turn
+        count = len(self.problem.rows.expression)
         for depth in range(int(self._group_depths.max(initial=0)), -1, -1):
             known = np.zeros(len(self.problem.parent), dtype=np.bool_)
             if recollection is not None:
                 known = recollection.recall(depth, self.reached)
                 for group in np.flatnonzero(known).tolist():
                     self.stages.extend(recollection.stages(group))
-            turn(depth, known)
+            groups = [g for g in self._held_by if self._group_depths[g] == depth and not known[g]]
+            if usual and count >= (MANY if len(groups) >= FEW else LARGE):
+                self._solve_together(depth, known)
+            else:
+                self._solve_with_care(dict.fromkeys(groups, (0, 0)))
             if recollection is not None:
                 recollection.note(depth, self.reached)
 
-    def _solve_in_turn(self, depth: int, known: Bools) -> None:
-        """Solves the groups at `depth` one by one, but for those that are `known` (g,)."""
-        groups = [g for g in self._held_by if self._group_depths[g] == depth and not known[g]]
-        self._solve_with_care(dict.fromkeys(groups, (0, 0)))
-
     def _solve_together(self, depth: int, known: Bools) -> None:
-        """Solves the groups at `depth` at once; then, one by one, those that remain unsolved."""
+        """Solves the groups at `depth`, but for those `known` (g,), at once; then, one by one, those that
+        remain unsolved.
+        """
         if self._levels is None:
             from aidl_lang.solver.levels import Levels
 
             self._levels = Levels(self.problem, self.reached, self.settings, self.clock, self.metric)
         levels = self._levels
+        levels.binding[list(self._broken)] = False
         stages = list(levels.solve(depth, known))
         left = set(levels.unsolved(depth).tolist())
         passed = self._record(stages, left)
         wishing = self.problem.holder[~np.isnan(self.problem.weight)].tolist()
         left.update(group for group in wishing if self._group_depths[group] == depth)
         self._solve_with_care({group: passed.get(group, (0, 0)) for group in left if not known[group]})
-        levels.binding[list(self._broken)] = False
 
     def _solve_with_care(self, groups: Mapping[int, Tier]) -> None:
         """Solves these groups one by one, each of which has passed the given stage."""
