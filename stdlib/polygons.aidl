@@ -192,6 +192,7 @@ shape star(
     rotatable: bool = false
 ) {
     assert points >= 2, "a star has at least two tips"
+    assert inner_radius < outer_radius, "the notches of a star lie nearer to its center than its tips"
     for i in 0..<points {
         tip[i] = center + polar(outer_radius, angle + 360deg / points * i)
         notch[i] = center + polar(inner_radius, angle + 360deg / points * (i + 0.5))

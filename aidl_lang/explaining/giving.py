@@ -19,7 +19,7 @@ from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import GAVE_WAY
 from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Settings, Solution
-from aidl_lang.solver.reasons import Reason, reasons
+from aidl_lang.solver.conflicts import Reason, reasons
 
 _A_TENTH = 0.1 + 1e-9
 """Greatest relative change of a size that is no warning."""
@@ -130,11 +130,10 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
         hints = (*_whose(given), f"write {solved} to agree, or `fixed({written})` to insist")
         return _told("N0601", message, chief.span, given, labels, hints)
     how = _distortion(chief)
+    whose = {0: "look for a constraint that says", 1: "see whether it says"}
     hints = (
         *_whose(given),
-        "look among them for one that says something else than you mean"
-        if given.because
-        else "look for a constraint that says something else than you mean",
+        f"{whose.get(len(given.because), 'look among them for one that says')} something else than you mean",
         "if it may become what it will, write it as a `guess(…)`",
     )
     return _told("W0601", f"{message}, {how}" if how else message, chief.span, given, labels, hints)

@@ -20,9 +20,9 @@ from aidl_lang.explaining.remedies import left_out
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
+from aidl_lang.solver.dependence import Redundancy
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.operations import Op
-from aidl_lang.solver.redundancy import Redundancy
 from aidl_lang.solver.solution import Failure
 
 _NAMED = 4

@@ -25,8 +25,8 @@ from aidl_lang.explaining.trials import Trials
 from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.shortfall import shortfall
 from aidl_lang.solver.solution import Failure
+from aidl_lang.solver.suspects import shortfall
 from aidl_lang.syntax import ast
 
 _FIRST, _MOST = 16, 64

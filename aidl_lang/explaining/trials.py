@@ -18,8 +18,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.shortfall import nearby_solution, residual, shortfall
 from aidl_lang.solver.solution import GroupFailure
+from aidl_lang.solver.suspects import nearby_solution, residual, shortfall
 
 SECONDS, LONGEST = 1.5, 3.0
 """Time after which no new search is begun for the messages of one run, and time after which nothing is tried
@@ -83,7 +83,7 @@ class Trials:
 
     def lack(self, edits: Sequence[Edit], failure: GroupFailure) -> float | None:
         """Returns the violation of the constraints of a failure with no kept size changed, after the edits
-        (see `solver.shortfall`); None if the program then has errors or is another one.
+        (see `solver.suspects`); None if the program then has errors or is another one.
         """
         found = self._counterpart(edits, failure)
         if found is None:

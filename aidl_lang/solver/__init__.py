@@ -1,11 +1,11 @@
 """The constraint solver: `solve(problem) -> Solution`. It knows nothing of the language.
 
-In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing`, `program`
-(some rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on arrays);
+In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `forms`, `freezing`,
+`program` (some rows, on numbers); `arrays`, `array_freezing`, `array_program` (many rows, on arrays);
 `dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones), `branches`
-(one attempt); `tiers` (what is free when), `group` (the stages), `levels` (the same for all groups of a
-depth), `hierarchy`, `memory`, `solving`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of
-a solution afterwards is in `analysis`; `form` reads problem files. What stands at this door is loaded when it
+(one attempt); `tiers` (what is free when), `loosening` (who gives way), `group` (one structure), `levels`
+(all groups of a depth), `hierarchy` (`solve`), `memory`; `suspects`, `refuting`, `conflicts`, `solution`.
+What is said of a solution afterwards is in `analysis`. What stands at this door is loaded when it
 is asked for: who only checks a program needs the limits of the solver (`settings`) and neither the solver nor
 numpy.
 """
@@ -16,11 +16,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from aidl_lang.solver.hierarchy import solve
     from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.problem import Constraint, Problem, Relation, Row
     from aidl_lang.solver.settings import Settings
     from aidl_lang.solver.solution import Solution, Status
-    from aidl_lang.solver.solving import solve
 
 __all__ = ["Constraint", "Memory", "Problem", "Relation", "Row", "Settings", "Solution", "Status", "solve"]
 
@@ -33,7 +33,7 @@ _HOME = {
     "Settings": "settings",
     "Solution": "solution",
     "Status": "solution",
-    "solve": "solving",
+    "solve": "hierarchy",
 }
 
 

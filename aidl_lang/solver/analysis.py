@@ -15,12 +15,11 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once, others
 from aidl_lang.common.records import record
-from aidl_lang.solver.dependence import dependent_rows
+from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
 from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem
-from aidl_lang.solver.redundancy import Equations, Redundancy, redundancies
 from aidl_lang.solver.riding import Riding, groups_riding
 from aidl_lang.solver.solution import Solution
 

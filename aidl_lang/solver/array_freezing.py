@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Step
+from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Batch, Graph, Schedule, Step
 from aidl_lang.solver.newton import GOLDEN
 from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op
-from aidl_lang.solver.schedule import Batch, Graph, Schedule
 
 ZERO = -1
 """First member of a difference that is 0."""

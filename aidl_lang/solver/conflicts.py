@@ -4,6 +4,9 @@ What is refuted (`refuting`) is so for good. Else the suspects are named by the 
 (`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
 hold. That a search fails is no proof, so for such a set it begins in many other places before it is called
 contradictory.
+
+Why something dear gave way is found likewise: it is held where it was, and the constraints that then cannot
+hold together ask for it. Where several things did, each such set is asked for by who has a share in it.
 """
 
 from __future__ import annotations
@@ -18,15 +21,19 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.branches import violation_of
 from aidl_lang.solver.gradients import FLAT, gradients
+from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock, End, perturbation
-from aidl_lang.solver.problem import Relation
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.problem import Problem, Relation, Settings
 from aidl_lang.solver.refuting import Relaxation
-from aidl_lang.solver.solution import Failure, GroupFailure, Member
+from aidl_lang.solver.solution import Concession, Failure, GroupFailure, Member
 from aidl_lang.solver.suspects import MANY, needed, suspects
+from aidl_lang.solver.tiers import Scope
 
 if TYPE_CHECKING:
     from aidl_lang.solver.hierarchy import Hierarchy
     from aidl_lang.solver.tiers import Scope
+
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
@@ -134,7 +141,7 @@ class _ConflictSearch:
             whole = self._nearest(scope.constraints, _SearchResult(End.INFEASIBLE, best, np.inf), FIRST)
             if whole.holds:
                 return self._found(group, self._violated(best), whole)
-        conflict = self._conflict(best, refuted)
+        conflict = self._said(self._conflict(best, refuted))
         minimal = not self._spent
         is_proven = self._relaxation(conflict).is_refuted
         thorough = self._attempt(tuple(conflict), THOROUGH)
@@ -233,6 +240,26 @@ class _ConflictSearch:
         if found is None:
             return self._violated(best)
         return self._needed(found)
+
+    def _said(self, conflict: list[int]) -> list[int]:
+        """Returns the conflict without bounds of shapes on their own sizes, if the others fail with those of
+        these sizes held on which they hang by no slope: beyond its bounds a shape may hold anything.
+        """
+        hierarchy, constraints = self.hierarchy, self.hierarchy.problem.constraints
+        said = [i for i in conflict if constraints[i].whole or constraints[i].inside]
+        if not said or len(said) == len(conflict) or not hierarchy.problem.named:
+            return conflict
+        hierarchy.refresh(said)
+        roots = [row.expression for row in hierarchy.rows(said)]
+        slopes = gradients(hierarchy.values, roots)
+        sloping = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
+        bounded = frozenset().union(*(hierarchy.mentions[i] for i in conflict if i not in said))
+        narrow = replace(self.scope, free=self.scope.free - (bounded - sloping))
+        apart = _ConflictSearch(hierarchy, narrow, self.before)
+        if apart._holds(said):
+            return conflict
+        self.scope, self.trials = narrow, apart.trials
+        return self._needed(said)
 
     def _needed(self, found: list[int]) -> list[int]:
         """Returns a smallest part of a failing set that still fails, or what was left of the set when the
@@ -395,3 +422,57 @@ class _ConflictSearch:
         reached = hierarchy.save(self.scope.free)
         hierarchy.values.assign(self.before.items())
         return _SearchResult(verdict.end, reached, verdict.violation)
+
+
+@record()
+class Reason:
+    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, no constraint
+    can be left out; there are none if the unknowns need not have given way.
+    """
+
+    unknowns: frozenset[int]
+    constraints: tuple[int, ...]
+    minimal: bool
+
+
+def reasons(problem: Problem, settings: Settings, concession: Concession, solved: Floats) -> Iterator[Reason]:
+    """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution. Sizes
+    that could have given way instead are held as well.
+    """
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    hierarchy.reached[:] = concession.values
+    hierarchy.values.assign(enumerate(concession.values.tolist()))
+    left = concession.unknowns
+    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept(u))
+    while left:
+        scope = Scope(moving - left, concession.constraints)
+        before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
+        found, minimal = conflict(hierarchy, scope, before)
+        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
+        share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
+        yield Reason(share, tuple(found), minimal and bool(found))
+        left -= share
+
+
+def _bound(
+    hierarchy: Hierarchy,
+    constraints: list[int],
+    unknowns: frozenset[int],
+    concession: Concession,
+    solved: Floats,
+) -> frozenset[int]:
+    """Returns the unknowns that the constraints hold at the solution: put back to its value before, each of
+    them breaks one.
+    """
+    if len(unknowns) < 2:
+        return unknowns
+    kept = hierarchy.save(range(len(solved)))
+    hierarchy.values.assign(enumerate(solved.tolist()))
+    found = set()
+    for unknown in unknowns:
+        hierarchy.values.assign([(unknown, float(concession.values[unknown]))])
+        if hierarchy.unmet(constraints):
+            found.add(unknown)
+        hierarchy.values.assign([(unknown, float(solved[unknown]))])
+    hierarchy.values.assign(kept.items())
+    return frozenset(found)

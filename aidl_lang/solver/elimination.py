@@ -19,9 +19,9 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
+from aidl_lang.solver.components import DOUBT, RANK
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Floats, Ints
-from aidl_lang.solver.stacks import DOUBT, RANK
 
 STABLE = 0.1
 """Least size of a pivot, relative to the greatest entry of its row."""

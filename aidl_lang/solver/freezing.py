@@ -20,11 +20,10 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
-from aidl_lang.solver.assembly import NUMBER, SUM, Assembly, SlotRecipe
 from aidl_lang.solver.components import components
 from aidl_lang.solver.forms import Affine, Form, Knot, add_terms, applied, branched, combined, scaled
 from aidl_lang.solver.operations import BRANCHING, Op
-from aidl_lang.solver.program import AffineProgram, Program
+from aidl_lang.solver.program import NUMBER, SUM, AffineProgram, Assembly, Program, SlotRecipe
 from aidl_lang.solver.valuation import Valuation
 
 Root: TypeAlias = "int | tuple[int, int]"

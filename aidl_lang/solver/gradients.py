@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_freezing import ArrayFreezing
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import PARTIALS, Bools, Floats, Ints, Op
-from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
 
 Gradient: TypeAlias = dict[int, float]

@@ -7,6 +7,7 @@ which says what the stages are).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,18 +17,19 @@ from numpy.typing import NDArray
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
-from aidl_lang.solver.memory import Recollection
-from aidl_lang.solver.naming import riding_depths
+from aidl_lang.solver.memory import Memory, Recollection
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
-from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
-from aidl_lang.solver.settings import Stages
-from aidl_lang.solver.solution import GroupFailure, StageReport
+from aidl_lang.solver.problem import Problem, Row, depths, violations
+from aidl_lang.solver.riding import riding_depths
+from aidl_lang.solver.settings import Settings, Stages
+from aidl_lang.solver.solution import GroupFailure, Solution, StageReport, Status
 from aidl_lang.solver.tiers import OWN, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:
     from aidl_lang.solver.levels import Levels, Stage
+
 
 FIRM = 1e-3
 """Length of a change of a kept size that counts as much as a change of 1 of a position."""
@@ -347,3 +349,42 @@ class _Mentions(dict[int, frozenset[int]]):
             unknowns = mentioned(self._problem.tape, [row.expression for row in rows])
         found = self[index] = frozenset(unknowns)
         return found
+
+
+def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | None = None) -> Solution:
+    """Solves `problem` as far as it can be solved. Same input, same output, to the last digit.
+
+    With a `memory`, which is brought up to date, only what has changed since its last solve is solved.
+    """
+    if settings.stages is Stages.FLAT:
+        problem = replace(problem, holder=np.zeros_like(problem.holder))
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    recollection = None if memory is None else Recollection(memory, problem, settings)
+    with np.errstate(all="ignore"):  # what overflows is found not to hold
+        hierarchy.run(recollection)
+    violation, rows = hierarchy.violations(), problem.rows
+    residuals = np.zeros(len(problem.holder))
+    np.maximum.at(residuals, rows.constraint, violation)
+    satisfied = np.ones(len(problem.holder), dtype=np.bool_)
+    satisfied[rows.constraint[~(violation <= settings.tolerance * rows.scale)]] = False
+    status = _status(satisfied[np.isnan(problem.weight)], hierarchy.timed_out)
+    if recollection is not None:
+        recollection.close(hierarchy.stages, status is Status.SOLVED and not hierarchy.failures)
+    return Solution(
+        status=status,
+        values=hierarchy.reached,
+        residuals=tuple(residuals.tolist()),
+        satisfied=tuple(satisfied.tolist()),
+        changed=tuple(hierarchy.changed()),
+        failures=tuple(hierarchy.failures),
+        stages=tuple(hierarchy.stages),
+    )
+
+
+def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
+    """Returns the status by which of the hard constraints hold."""
+    if satisfied.all():
+        return Status.SOLVED
+    if timed_out or not satisfied.any():
+        return Status.FAILED
+    return Status.PARTIAL

@@ -16,16 +16,14 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver import batch, newton
 from aidl_lang.solver.array_freezing import ArrayFreezing
-from aidl_lang.solver.array_program import ArrayProgram
+from aidl_lang.solver.array_program import ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
-from aidl_lang.solver.naming import riding_depths
+from aidl_lang.solver.loosening import MOST, STILL
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
-from aidl_lang.solver.schedule import Schedule
-from aidl_lang.solver.thinning import MANY as MOST
-from aidl_lang.solver.thinning import STILL
+from aidl_lang.solver.riding import riding_depths
 from aidl_lang.solver.tiers import NAMES
 
 ROUNDS = 4

@@ -14,9 +14,9 @@ from dataclasses import field
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.naming import riding_depths
 from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem, Settings, depths
+from aidl_lang.solver.riding import riding_depths
 from aidl_lang.solver.solution import StageReport
 
 

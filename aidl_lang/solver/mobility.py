@@ -15,10 +15,9 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
-from aidl_lang.solver.components import connected
+from aidl_lang.solver.components import DOUBT, LARGE, RANK, Sorted, connected, lots, stacked
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Bools, Floats, Ints
-from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
 
 SEEN = 1e-7
 """Motions of observables below this count as none; one is the size of a typical motion."""

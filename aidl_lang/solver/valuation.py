@@ -9,10 +9,10 @@ from typing import TypeAlias
 import numpy as np
 
 from aidl_lang.common.records import record
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.forms import Forms
 from aidl_lang.solver.operations import VALUE, Op
-from aidl_lang.solver.schedule import Schedule
 
 Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
 """Function, first operand (all of them for more than two), second operand or -1, result."""

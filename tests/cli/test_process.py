@@ -61,7 +61,7 @@ def test_what_draws_nothing_loads_no_stage(arguments: list[str]) -> None:
 @pytest.mark.parametrize("arguments", [["params"], ["fmt", "--check"]])
 def test_what_solves_nothing_loads_no_solver(folder: Path, arguments: list[str]) -> None:
     (folder / "plain.aidl").write_text("solid plate {\n    edge = circle(radius: 5)\n}\n")
-    solving = {"aidl_lang.solver.solving", "aidl_lang.geometry.drawing", "aidl_lang.export"}
+    solving = {"aidl_lang.solver.hierarchy", "aidl_lang.geometry.drawing", "aidl_lang.export"}
     assert (PACKAGES | WEB | solving) & loaded_by(*arguments, "plain.aidl") == set()
 
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, arrays
 from aidl_lang.solver.array_freezing import ArrayFreezing
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.forms import evaluate
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.operations import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
-from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
 
 from .check import values_of

@@ -8,7 +8,7 @@ from aidl_lang import pipeline
 from aidl_lang.building.lower import lower
 from aidl_lang.common.source import SourceFile
 from aidl_lang.interp import interpret
-from aidl_lang.solver.naming import naming
+from aidl_lang.solver.riding import naming
 
 PROGRAM = """
 assembly top {

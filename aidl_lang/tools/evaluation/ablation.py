@@ -21,9 +21,9 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Problem, solve
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import violations
-from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.settings import Stages
 from aidl_lang.typecheck import Program
 

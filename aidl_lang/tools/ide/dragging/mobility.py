@@ -23,10 +23,10 @@ from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.components import components
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.problem import violations
-from aidl_lang.solver.schedule import Schedule
 from aidl_lang.tools.ide.dragging.grips import Grip
 
 Floats = NDArray[np.float64]
