@@ -421,10 +421,10 @@ def _drawn(
 
     model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
-        if troubles.given:
+        if model.changed:
             from aidl_lang.explaining.giving import with_reasons
 
-            model = with_reasons(model, troubles.given)
+            model = with_reasons(model, troubles.given, lowered)
         found = solution_notes(
             built.model.root, lowered, solution, freedom, model, troubles.given, troubles.failures
         )

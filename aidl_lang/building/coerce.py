@@ -121,19 +121,21 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
 
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
-    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for; a slanted one
-    that is named as a side of its shape stands for that side of the shape's box.
+    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for; one named as a
+    side of its shape that does not lie as its name says (slanted, or a level `left`) stands for that side of
+    the shape's box.
     """
     core = look(it, edge, node, env)
     (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
     dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
     tolerance = 1e-9 * max(dx, dy, 1e-300)
-    if dx <= tolerance < dy:
-        return length(x0)
-    if dy <= tolerance < dx:
-        return length(y0)
+    is_upright, is_level = dx <= tolerance < dy, dy <= tolerance < dx
     if isinstance(node, ast.Member) and node.name.text in SIDES and isinstance(edge.container, Geometry):
-        return length(Box((edge.container,), env.here).side(node.name.text))
+        side = node.name.text
+        if not (is_upright if side in ("left", "right") else is_level):
+            return length(Box((edge.container,), env.here).side(side))
+    if is_upright or is_level:
+        return length(x0 if is_upright else y0)
     it.report(
         "E0303",
         f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",

@@ -83,15 +83,15 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
 
 
 def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
-    """Returns an angle that stays exactly 0 until something asks for it: `rotatable`, another value, a
-    constraint.
+    """Returns an angle that stays exactly 0 until something asks for it: `rotatable`, `guess`, another value,
+    a constraint.
     """
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
     made = it.unknown(value.value, holder, name, owner=holder.owner, dimension=ANGLE)
     assert isinstance(made.payload, ex.Unknown)
-    made.payload.locked = made.payload.exact = not rotatable
+    made.payload.locked = made.payload.exact = not rotatable and value.status is not Exactness.GUESS
     it.became(value, made, holder, name, ANGLE)
     return Num(made, ANGLE, Exactness.REFERENCE)
 
@@ -108,19 +108,21 @@ def positions(
     """Returns points given as positions to one constructor; literal ones move as one.
 
     From one literal point to the next the way is kept as a length and a direction, so that what turns an edge
-    does not shorten it; for points that are no corners (`edges` is false), as differences from the first.
+    does not shorten it; for points that are no corners (`edges` is false), as differences from the first. A
+    start and an end, which may span what lies between other things, are literal with a param in them, too.
     """
+    literal = _is_first_guess if list(names) == ["start", "end"] else _is_literal
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression, str]] = {}
     before: tuple[PointVal, PointVal, str] | None = None
     for at, name in zip(points, names, strict=True):
-        if edges and _is_literal(at) and before is not None and _apart(before[0], at):
+        if edges and literal(at) and before is not None and _apart(before[0], at):
             made = _beyond(it, before, at, holder, name, owner)
         else:
             x = _coordinate(it, "x", at.x, anchors, holder, name, owner)
             y = _coordinate(it, "y", at.y, anchors, holder, name, owner)
             made = point(x, y)
-        if _is_literal(at):
+        if literal(at):
             before = (at, made, name)
         it.became_point(at, made, holder, name)
         placed.append(made)
@@ -129,6 +131,10 @@ def positions(
 
 def _is_literal(at: PointVal) -> bool:
     return at.x.status is at.y.status is Exactness.NUMBER
+
+
+def _is_first_guess(at: PointVal) -> bool:
+    return {at.x.status, at.y.status} <= {Exactness.NUMBER, Exactness.PARAM}
 
 
 def _apart(a: PointVal, b: PointVal) -> bool:

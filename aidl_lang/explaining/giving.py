@@ -70,11 +70,25 @@ def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container
     return GaveWay(moved, tuple(stated), reason.minimal)
 
 
-def with_reasons(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
-    """Returns the model with the reasons of its changed sizes."""
+def with_reasons(model: SolvedModel, given: Sequence[GaveWay], lowered: Lowered) -> SolvedModel:
+    """Returns the model with the reasons of its changed sizes. A way from one literal point to another gives
+    way to whatever speaks of it.
+    """
     texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
+    bare = {change.path for change in model.changed} - texts.keys()
+    for unknown in lowered.unknowns:
+        if unknown.implied and unknown.path in bare:
+            texts[unknown.path] = tuple(c.text for c in _speaking_of(unknown, lowered))
     changed = tuple(replace(c, because=texts.get(c.path, ())) for c in model.changed)
     return replace(model, changed=changed)
+
+
+def _speaking_of(unknown: Unknown, lowered: Lowered) -> Iterator[Constraint]:
+    """Yields the constraints that somebody stated and that speak of what an unknown is a number of."""
+    for stated in filter(None, lowered.stated):
+        spoken = (u.holder for part in stated.comparisons for u in part.spoken_of)
+        if not stated.is_inherent and unknown.holder in spoken:
+            yield stated
 
 
 def as_error(note: Diagnostic) -> Diagnostic:

@@ -168,7 +168,8 @@ def _lost_form(
     moved: set[Unknown], before: Mapping[Unknown, float], after: Mapping[Unknown, float], naming: Naming
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each open way of several literal points that constraints hold by both ends, so
-    that one stretch took up all the difference, and for each polygon of which they measure a side.
+    that one stretch took up all the difference, for each polygon of which they measure a side, and for what
+    was written from one point to another and now points back.
     """
     ways: dict[Geometry, list[Unknown]] = {}
     for unknown in before:
@@ -177,10 +178,28 @@ def _lost_form(
     for way, lengths in ways.items():
         changed = [u for u in lengths if u in moved]
         has_form = way.type in _FORMED and sum(not u.angular for u in lengths) > 1  # two points adapt
-        if way.name is None or not has_form or not changed or len(changed) == len(lengths):
+        turned = next((u for u in changed if u.field == "end.angle" and _is_back(after[u] - before[u])), None)
+        if way.name is None or not (turned or has_form) or not changed:
             continue
         unknowns = source_unknowns(way, way.owner)
         asking = list(dict.fromkeys(c for u in unknowns for c in naming.get(u, ()) if not c.is_inherent))
+        labels = tuple(dict.fromkeys(c.span for c in asking))
+        if turned and not has_form:
+            yield Diagnostic(
+                "W0605",
+                f"`{way.path}` was turned around: it was written towards {short(before[turned])}° and points "
+                f"towards {short(after[turned] % 360)}°",
+                way.span,
+                "its ends are where the constraints put them",
+                tuple(Label(span, "places an end") for span in labels),
+                (
+                    "if that is meant, write its points so; a distance without a sign keeps the side of the "
+                    "first guesses",
+                ),
+            )
+            continue
+        if len(changed) == len(lengths):
+            continue
         if way.type == "polygon":
             is_lost = bool(asking) and all(_MEASURED & set(_members_in(c)) for c in asking)
             how, label = "was measured at one side and", "is measured"
@@ -203,9 +222,14 @@ def _lost_form(
             f"{short(before[chief])} and became {short(after[chief])}",
             way.span,
             "literal points keep their distances as well as they can",
-            tuple(Label(span, label) for span in dict.fromkeys(c.span for c in asking)),
+            tuple(Label(span, label) for span in labels),
             (hint,),
         )
+
+
+def _is_back(turn: float) -> bool:
+    """Tells whether a turn in degrees leads more back than on."""
+    return math.cos(math.radians(turn)) < -_STILL
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:
