@@ -1,5 +1,5 @@
 """Many calls at a time on one engine: those that are done are handed over as they come, and one whose process
-dies, or of which nothing is heard, is given once more.
+dies, or of which nothing is heard, is given once more when there is nothing else to do.
 """
 
 from __future__ import annotations
@@ -61,12 +61,13 @@ class Crew(Generic[K, T]):
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._waiting: dict[Future[T], _Call[K, T]] = {}
+        self._later: list[_Call[K, T]] = []
         self._heard = time.monotonic()
         self.given_again = 0
         """The calls that were begun once more."""
 
     def __len__(self) -> int:
-        return len(self._waiting)
+        return len(self._waiting) + len(self._later)
 
     @property
     def has_room(self) -> bool:
@@ -106,24 +107,33 @@ class Crew(Generic[K, T]):
                 if (again := _once_more(call, error)) is None:
                     found.append((call.key, Broke(limit_met(error), error)))
                 else:
-                    self.given_again += 1
-                    self._begin(again)
+                    self._later.append(again)
+        self._go_on()
         return found
+
+    def _go_on(self) -> None:
+        """Begins calls again where places would be idle: whatever ended their processes may be over then."""
+        while self._later and len(self._waiting) < max(1, self._engine.places):
+            self.given_again += 1
+            self._begin(self._later.pop(0))
 
     def _stirred(self) -> list[tuple[K, T | Broke]]:
         """Begins all calls again; returns those that were begun too often."""
         calls = list(self._waiting.values())
-        self.cancel()
+        self._give_up()
         self._heard = time.monotonic()
         for call in calls:
             if call.deaths + 1 < _LIVES:
-                self.given_again += 1
-                self._begin(replace(call, deaths=call.deaths + 1))
+                self._later.append(replace(call, deaths=call.deaths + 1))
         over = LimitError(Limit.TIME)
         return [(call.key, Broke(over.limit, over)) for call in calls if call.deaths + 1 >= _LIVES]
 
     def cancel(self) -> None:
         """Gives up all calls that are under way."""
+        self._give_up()
+        self._later.clear()
+
+    def _give_up(self) -> None:
         for future in self._waiting:
             future.cancel()
         self._waiting.clear()

@@ -17,6 +17,7 @@ from pathlib import Path
 import ezdxf
 import pytest
 
+import aidl_lang
 from aidl_lang.tools.cli import main, sweep_progress
 from aidl_lang.tools.sweeping import starting
 from aidl_lang.tools.sweeping.session import Progress
@@ -288,3 +289,29 @@ def test_a_cluster_without_workers_is_told_once(
         for places in (2, 0, 0, 0, 1, 0):
             listen(Progress(10, 3, 0, 0, (), places, 0))
     assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"
+
+
+def test_what_a_sweep_reads_is_not_overwritten(folder: Path, aidl: Command) -> None:
+    disc = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5"/></svg>'
+    (folder / "2.svg").write_text(disc)
+    (folder / "t.csv").write_text("w\n20\n30\n")
+    program = 'import "2.svg" as disc\nparam w = 5\nsolid plate { edge = disc()\n rim = circle(radius: w) }\n'
+    (folder / "sign.aidl").write_text(program)
+    (folder / "link.csv").symlink_to("t.csv")
+    (folder / "link.html").symlink_to("sign.aidl")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    for output, read in (
+        ("t.csv", "t.csv"),
+        ("link.csv", "link.csv"),
+        ("{n}.svg", "2.svg"),
+        ("link.html", "link.html"),
+    ):
+        done = aidl("sweep", "sign.aidl", "--table", "t.csv", "-o", output)
+        assert (done.code, done.err) == (2, f"error[E0908]: `{read}` was read, and is not overwritten\n")
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_the_python_way_does_not_overwrite_what_it_read_either(folder: Path) -> None:
+    (folder / "t.csv").write_text("width\n60\n")
+    with pytest.raises(aidl_lang.AidlError, match=r"`t.csv` was read"):
+        aidl_lang.sweep("plate.aidl", table="t.csv", output="t.csv")
