@@ -160,7 +160,7 @@ def told_of(folder: Path, names: list[str]) -> None:
     """Asserts that each order is right, or told, and that nothing lies where it should not."""
     with open(folder / "table.csv", newline="", encoding="utf-8") as file:
         found = list(csv.DictReader(file))
-    assert [row["name"] for row in found] == names
+    assert [row["name"] for row in found] == [f"'{n}" if n[:1] in "=+-@" and n else n for n in names]
     for row in found:
         if row["ok"] == "true":
             path = Path(row["files"])
@@ -315,3 +315,16 @@ def test_the_python_way_does_not_overwrite_what_it_read_either(folder: Path) -> 
     (folder / "t.csv").write_text("width\n60\n")
     with pytest.raises(aidl_lang.AidlError, match=r"`t.csv` was read"):
         aidl_lang.sweep("plate.aidl", table="t.csv", output="t.csv")
+
+
+def test_no_cell_of_a_table_is_a_formula(folder: Path, aidl: Command) -> None:
+    names = ["=1+1", "+A1", "-B2", "@SUM(A1)", "Ada", "-5", "'t Hooft"]
+    with open(folder / "orders.csv", "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([["name", "=note"], *([name, name] for name in names)])
+    (folder / "sign.aidl").write_text(SIGN.replace("width - 6mm", "width + 600mm"))
+    assert aidl("sweep", "sign.aidl", "--table", "orders.csv", "-o", "a.csv", "--no-timings").code == 0
+    with open(folder / "a.csv", newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert "'=note" in head
+    told = [f"'{name}" for name in names[:4]] + names[4:]
+    assert [row[head.index("name")] for row in rows] == [row[head.index("'=note")] for row in rows] == told
