@@ -184,4 +184,4 @@ def test_a_spline_that_crosses_itself_everywhere_is_refused_before_it_is_cut(mon
     (found,) = [d for d in compile(program, world).diagnostics if d.is_error]
     assert found.code == "E0805"
     assert found.span is not None
-    assert found.span.text == "art()"
+    assert found.span.text == "edge = art()"
