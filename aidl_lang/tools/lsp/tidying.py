@@ -2,7 +2,8 @@
 
 A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in the
 middle of the next run, and go through the library and everything else each time; here it does so in the
-pauses, and what stays for good is put out of its sight.
+pauses, and what stays for good is put out of its sight. What a document stands for now is among that and
+never stays for good, so this is done seldom, and undone when one is closed.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ _MOST = 100
 """Pieces of work after which it collects without a pause."""
 _LONG = 0.03
 """Seconds of a collection that has gone through many permanent objects."""
+_FREEZES = 3
+"""How often objects are put out of sight: after the library and the first questions have come."""
 _ROUNDS = 500
 """Collections after which seemingly permanent objects are looked through again."""
 
@@ -28,7 +31,7 @@ class Tidier:
     def __init__(self, loop: asyncio.AbstractEventLoop, is_busy: Callable[[], bool]) -> None:
         self._loop, self._is_busy = loop, is_busy
         self._left = 0
-        self._rounds = 0
+        self._rounds = self._freezes = 0
         self._planned: asyncio.TimerHandle | None = None
         gc.disable()
 
@@ -45,11 +48,21 @@ class Tidier:
         self._left = 0
         self._rounds += 1
         if self._rounds % _ROUNDS == 0:
-            gc.unfreeze()
+            self._look_through()
         began = time.perf_counter()
         gc.collect()
-        if time.perf_counter() - began > _LONG:
+        if time.perf_counter() - began > _LONG and self._freezes < _FREEZES:
+            self._freezes += 1
             gc.freeze()
+
+    def release(self) -> None:
+        """Has all looked through in the next pause, as much of it is of no use any more."""
+        self._look_through()
+        self.note()
+
+    def _look_through(self) -> None:
+        self._freezes = 0
+        gc.unfreeze()
 
     def close(self) -> None:
         if self._planned is not None:
