@@ -75,6 +75,8 @@ class Guarded:
 
     def __init__(self, workers: int, preload: str | Sequence[str], memory: int = MEMORY) -> None:
         """Starts the processes; `preload` has the modules that they load at the start."""
+        # `multiprocessing` lets a daemon have no children, lest they outlive it: these end with their parent.
+        multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
         self.places = workers
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
         context = prepared(preload)
