@@ -19,6 +19,8 @@ _MOST = 100
 """Pieces of work after which it collects without a pause."""
 _LONG = 0.03
 """Seconds of a collection that has gone through many permanent objects."""
+_RELEASED = 0.5
+"""Seconds after which nothing is under way for a document that was closed."""
 _FREEZES = 3
 """How often objects are put out of sight: after the library and the first questions have come."""
 _ROUNDS = 500
@@ -56,9 +58,9 @@ class Tidier:
             gc.freeze()
 
     def release(self) -> None:
-        """Has all looked through in the next pause, as much of it is of no use any more."""
+        """Has all looked through soon, as much of it is of no use any more once what is under way has ended."""
         self._look_through()
-        self.note()
+        self._loop.call_later(_RELEASED, self.note)
 
     def _look_through(self) -> None:
         self._freezes = 0
