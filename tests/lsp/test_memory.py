@@ -1,4 +1,4 @@
-"""What the server keeps in memory: what is of use, however long somebody types, and nothing that is closed."""
+"""What the server keeps in memory: what is of use, however long somebody types; nothing of what is closed."""
 
 from __future__ import annotations
 

@@ -50,7 +50,8 @@ class Tidier:
         self._left = 0
         self._rounds += 1
         if self._rounds % _ROUNDS == 0:
-            self._look_through()
+            gc.unfreeze()
+            self._freezes = 0
         began = time.perf_counter()
         gc.collect()
         if time.perf_counter() - began > _LONG and self._freezes < _FREEZES:
@@ -58,13 +59,12 @@ class Tidier:
             gc.freeze()
 
     def release(self) -> None:
-        """Has all looked through soon, as much of it is of no use any more once what is under way has ended."""
-        self._look_through()
-        self._loop.call_later(_RELEASED, self.note)
+        """Has all looked through soon: much is of no use any more once what is under way has ended."""
+        self._loop.call_later(_RELEASED, self._look_through)
 
     def _look_through(self) -> None:
-        self._freezes = 0
-        gc.unfreeze()
+        self._rounds = -1
+        self.note()
 
     def close(self) -> None:
         if self._planned is not None:
