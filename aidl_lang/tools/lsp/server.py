@@ -169,7 +169,9 @@ class Server(LanguageServer):
             self.window_show_message(types.ShowMessageParams(types.MessageType.Error, message))
 
     def report_server_error(self, error: Exception, source: object) -> None:
-        if source is not exceptions.FeatureRequestError:  # of which the client hears anyway
+        # of a request the client hears anyway; a refusal of one that is sent as a notification is no crash
+        is_refusal = "pygls.exceptions." in str(error)
+        if source is not exceptions.FeatureRequestError and not is_refusal:
             self.crashed(error)
 
     def _publish(self, document: Document, known: VersionedView) -> None:
