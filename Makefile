@@ -9,7 +9,7 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -27,6 +27,9 @@ test-all: $(READY) ## run all tests, with TIMES (2) as many examples as are writ
 
 fuzz: $(READY) ## try programs that ask for trouble, for MINUTES (2), from a SEED if one is given
 	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),2) $(if $(SEED),--seed $(SEED))
+
+fuzz-readers: $(READY) ## try changed files and messages on what reads them, for MINUTES (2), from a SEED if one is given
+	$(BIN)/python -m tests.fuzz.readers --minutes $(or $(MINUTES),2) $(if $(SEED),--seed $(SEED))
 
 fuzz-mends: $(READY) ## try how PROGRAMS (1000) mutants are mended, from a SEED (1), with those of TEXTS
 	$(BIN)/python -m tests.fuzz.mends --programs $(or $(PROGRAMS),1000) --seed $(or $(SEED),1) $(if $(TEXTS),--texts $(TEXTS))

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.version import __version__
 
@@ -63,8 +64,9 @@ class Model:
     Models can be copied and pickled. A notebook shows the drawing, and what there is to tell of it.
     """
 
-    def __init__(self, compiled: Compiled) -> None:
+    def __init__(self, compiled: Compiled, reads: Reads | None = None) -> None:
         self._compiled = compiled
+        self._reads = reads or Reads()
 
     @property
     def ok(self) -> bool:
@@ -94,7 +96,7 @@ class Model:
         """
         from aidl_lang import pipeline
 
-        return Model(pipeline.again(self._compiled, {**(by_path or {}), **params}))
+        return Model(pipeline.again(self._compiled, {**(by_path or {}), **params}), self._reads)
 
     @property
     def solved(self) -> SolvedModel:
@@ -199,6 +201,7 @@ class Model:
         made, notes = contents(self._compiled.exporting(asked.options), str(path), suffix)
         if is_one and not (folder := Path(path).parent).is_dir():
             raise FileNotFoundError(ENOENT, "there is no such folder", str(folder))
+        self._reads.require_unread(name for name, _ in made)
         for name, data in made:
             Path(name).parent.mkdir(parents=True, exist_ok=True)
             replace(Path(name), data)
@@ -250,9 +253,10 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
         raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
     from aidl_lang.tools.cli import files
 
+    disk = DiskWorld(text_or_path.parent)
     with _as_own():
-        text = files.decoded(text_or_path.read_bytes(), f"`{name}`")
-    return SourceFile(name, text), KeptWorld(DiskWorld(text_or_path.parent))
+        text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
+    return SourceFile(name, text), KeptWorld(disk)
 
 
 @contextmanager
@@ -285,8 +289,11 @@ def compile(
     a file that cannot be read, and AidlError for one that is no text.
     """
     from aidl_lang import pipeline
+    from aidl_lang.common.world import reads_of
 
-    return Model(pipeline.compile(*_read(text_or_path), params, settings or pipeline.Settings()))
+    source, world = _read(text_or_path)
+    compiled = pipeline.compile(source, world, params, settings or pipeline.Settings())
+    return Model(compiled, reads_of(world))
 
 
 def sweep(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.world import (
     DiskWorld,
     FileError,
@@ -80,6 +81,23 @@ def test_a_link_leads_to_no_other_kind_of_file(tmp_path: Path) -> None:
     with pytest.raises(FileError) as caught:
         DiskWorld(tmp_path).read("link.aidl")
     assert caught.value.reason is ReadFailure.ANOTHER_KIND
+
+
+def test_a_link_that_comes_between_look_and_read_is_not_followed(tmp_path: Path) -> None:
+    root, other = tmp_path / "root", tmp_path / "other"
+    for folder in (root / "a" / "b", other):
+        folder.mkdir(parents=True)
+        (folder / "x.aidl").write_text(folder.name)
+    assert Reads().contents(root / "a" / "b" / "x.aidl", below=root) == b"b"
+    (root / "a" / "b" / "x.aidl").unlink()
+    (root / "a" / "b" / "x.aidl").symlink_to(other / "x.aidl")
+    with pytest.raises(OSError, match="symbolic links"):
+        Reads().contents(root / "a" / "b" / "x.aidl", below=root)
+    (root / "a" / "b").rename(root / "a" / "c")
+    (root / "a" / "b").symlink_to(other)
+    with pytest.raises(NotADirectoryError):
+        Reads().contents(root / "a" / "b" / "x.aidl", below=root)
+    assert Reads().contents(root / "a" / "b" / "x.aidl") == b"other"
 
 
 def test_only_text_is_read(tmp_path: Path) -> None:

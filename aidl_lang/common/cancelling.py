@@ -56,11 +56,11 @@ def limited_to(seconds: float) -> Iterator[None]:
         _asked.deadline, _asked.next_look = before, 0.0
 
 
-def give_up() -> None:
-    """Raises OutOfTime if there is a limit. For work that plainly takes longer, and may fill the memory
-    before a checkpoint notices.
+def give_up(seconds: float = math.inf) -> None:
+    """Raises OutOfTime if there is a limit, and work of so many seconds would pass it. For work that plainly
+    takes longer, and may fill the memory before a checkpoint notices.
     """
-    if _asked.deadline < math.inf:
+    if _asked.deadline < math.inf and time.thread_time() + seconds > _asked.deadline:
         raise OutOfTime
 
 

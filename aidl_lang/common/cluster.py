@@ -199,10 +199,5 @@ def _pool(preload: str, threads: int) -> Guarded:
     """Returns the guarded processes of this worker, one for each of its threads."""
     with _starting:
         if preload not in _pools:
-            import multiprocessing
-
-            # A worker of Dask is a daemon, which `multiprocessing` lets have no children, lest they outlive
-            # it; guarded processes end with their parent by themselves.
-            multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
             _pools[preload] = Guarded(threads, preload)
         return _pools[preload]

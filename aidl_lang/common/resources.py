@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
+from aidl_lang.common.replacing import replace
+
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SHIPPED = _PACKAGE / "_data"
 _CHECKOUT = _PACKAGE.parent
@@ -63,13 +65,9 @@ def _kept(name: str, inputs: Iterable[Path]) -> Path:
 
 
 def _keep(path: Path, data: bytes) -> None:
-    """Writes a temporary file and moves it into place, so that a reader sees the whole or nothing; deletes
-    what an older state of the checkout left.
-    """
+    """Writes a file, and deletes what an older state of the checkout left."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_bytes(data)
-    os.replace(temporary, path)
+    replace(path, data)
     stem = path.name.rpartition("-")[0]
     for old in path.parent.glob(f"{stem}-*{path.suffix}"):
         if old != path:

@@ -5,6 +5,7 @@ Offsets count Unicode code points from 0; lines and columns count from 1, as peo
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 from dataclasses import field
 from functools import cached_property
@@ -22,7 +23,7 @@ class SourceFile:
     @cached_property
     def line_starts(self) -> list[int]:
         """Offset at which each line begins."""
-        return [0] + [i + 1 for i, char in enumerate(self.text) if char == "\n"]
+        return [0] + [match.end() for match in re.finditer("\n", self.text)]
 
     def position(self, offset: int) -> tuple[int, int]:
         """Returns line and column of an offset, both from 1."""

@@ -6,12 +6,19 @@ whatever `..`, absolute paths or symbolic links say.
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path, PurePosixPath
 from typing import Protocol
 
-MAX_BYTES = 10_000_000  # of one file; a program is far smaller, and a device file has no end
+from aidl_lang.common.reading import Reads
+
+_REASONS = {
+    errno.ENOENT: "MISSING",
+    errno.ENOTDIR: "MISSING",
+    errno.EFBIG: "TOO_LARGE",
+}
 
 
 class ReadFailure(StrEnum):
@@ -90,10 +97,11 @@ class MemoryWorld:
 
 
 class DiskWorld:
-    """The files below a folder."""
+    """The files below a folder; `reads` remembers those that were read."""
 
-    def __init__(self, root: Path | str) -> None:
+    def __init__(self, root: Path | str, reads: Reads | None = None) -> None:
         self.root = Path(root).resolve()
+        self.reads = Reads() if reads is None else reads
 
     def read(self, path: str) -> str:
         try:
@@ -106,19 +114,17 @@ class DiskWorld:
             file = (self.root / normalize(path)).resolve()
             if not file.is_relative_to(self.root):
                 raise FileError(path, ReadFailure.OUTSIDE)
-            if not file.is_file():
-                raise FileError(path, ReadFailure.MISSING)
-            if (
-                file.suffix != PurePosixPath(path).suffix
-            ):  # a link to a file of another kind, which is no program
+            # a link to a file of another kind, which is no program
+            if file.exists() and file.suffix != PurePosixPath(path).suffix:
                 raise FileError(path, ReadFailure.ANOTHER_KIND)
-            if file.stat().st_size > MAX_BYTES:
-                raise FileError(path, ReadFailure.TOO_LARGE)
-            return file.read_bytes()
+            if file.is_dir():
+                raise FileError(path, ReadFailure.MISSING)
+            return self.reads.contents(file, below=self.root)
         except FileError:
             raise
-        except (OSError, ValueError, RuntimeError):  # no permission, a NUL in the name, a loop of links
-            raise FileError(path, ReadFailure.UNREADABLE) from None
+        except (OSError, ValueError, RuntimeError) as error:  # a NUL in the name, a loop of links
+            reason = _REASONS.get(getattr(error, "errno", 0), "UNREADABLE")
+            raise FileError(path, ReadFailure[reason]) from None
 
 
 class NotedWorld:
@@ -144,6 +150,7 @@ class KeptWorld:
 
     def __init__(self, world: World) -> None:
         self._world = world
+        self.reads = reads_of(world)
         self._texts: dict[str, str] = {}
         self._bytes: dict[str, bytes] = {}
 
@@ -160,4 +167,9 @@ class KeptWorld:
         return self._bytes[wanted]
 
     def __getstate__(self) -> dict[str, object]:
-        return {"_world": MemoryWorld({}), "_texts": self._texts, "_bytes": self._bytes}
+        return {"_world": MemoryWorld({}), "reads": Reads(), "_texts": self._texts, "_bytes": self._bytes}
+
+
+def reads_of(world: World | None) -> Reads:
+    """Returns what remembers the files that are read through a world."""
+    return world.reads if isinstance(world, DiskWorld | KeptWorld) else Reads()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 
+from aidl_lang.common.csv_text import csv_text
 from aidl_lang.common.numbers import fixed
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.cut_list import Item, Sheet, sheets
@@ -19,8 +18,6 @@ _ROWS = 42
 """Lines of a table on a page."""
 _MARGIN, _TITLE = 10.0, 8.0
 """Around the table on a page, and above it, mm."""
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""What begins a formula in programs that open tables."""
 
 _PARTS = (
     *(
@@ -47,17 +44,10 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
         raise ExportError(
             "E0924", "there is no part to list", "only a `solid` is cut; a `drawing` is engraved on it"
         )
-    text = io.StringIO()
-    write = csv.writer(text, lineterminator="\r\n").writerow
-    write(_PARTS)
-    for item in found.items:
-        write(map(_harmless, _line(item, _DECIMALS)))
+    rows = [_PARTS, *(_line(item, _DECIMALS) for item in found.items)]
     if jobs[0].options.sheet is not None:
-        write([])
-        write(_SHEETS)
-        for sheet in sheets(found, jobs):
-            write(map(_harmless, _sheet_line(sheet, _DECIMALS)))
-    return Exported(text.getvalue().encode("utf-8-sig"))
+        rows += [(), _SHEETS, *(_sheet_line(sheet, _DECIMALS) for sheet in sheets(found, jobs))]
+    return Exported(csv_text(rows, end="\r\n").encode("utf-8-sig"))
 
 
 def pages(jobs: Sequence[Job]) -> list[Picture]:
@@ -101,11 +91,6 @@ def _sheet_line(sheet: Sheet, decimals: int) -> tuple[str, ...]:
 
 def _number(value: float | None, decimals: int) -> str:
     return "" if value is None else fixed(value, decimals)
-
-
-def _harmless(text: str) -> str:
-    """Returns a text that no program takes for a formula."""
-    return f"'{text}" if text.startswith(_FORMULA) else text
 
 
 def _pages(

@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint, give_up
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
@@ -43,6 +43,8 @@ CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
 FINE_CHORD = CHORD / 100
 """The same for curves that come so close to each other that their chords cross."""
+_PER_PAIR = 1e-3
+"""Seconds of a processor that it takes at least to find where two cubics meet that may."""
 GRID = 1e-8
 """Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""
 
@@ -142,7 +144,10 @@ class Network:
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
         own_nodes = np.array(own_ends, dtype=np.int64)
         near = near_rows(self.boxes, self.tolerance)
-        for i, j in meeting(self.curves, near, self.tolerance, own_nodes, np.array(self.nodes)).tolist():
+        pairs = meeting(self.curves, near, self.tolerance, own_nodes, np.array(self.nodes))
+        is_cubic = np.array([isinstance(curve, Bezier) for curve in self.curves], dtype=np.bool_)
+        give_up(_PER_PAIR * np.count_nonzero(is_cubic[pairs].all(axis=1)))
+        for i, j in pairs.tolist():
             checkpoint()
             self._cut_pair(i, j, cuts, own_ends)
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]

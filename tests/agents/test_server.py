@@ -178,11 +178,21 @@ def serving(*arguments: str) -> Iterator[str]:
 
 def test_over_http() -> None:
     with serving("--http", "0") as address:
-        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/mcp", address)
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{32}/mcp", address)
         with connected(address) as session:
             assert session.ask("check", program=PLATE).structured_content["ok"]
         assert _status(address, {"Host": "example.com"}) == 421
         assert _status(address, {"Origin": "http://example.com"}) == 403
+        host = address.rpartition("/mcp")[0].rpartition("/")[0]
+        assert [_status(f"{host}{path}", {}) for path in ("/mcp", "/x/mcp", "/")] == [404, 404, 404]
+
+
+def test_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AIDL_MCP_TOKEN", "our-own-token-for-this")
+    with serving("--http", "0") as address:
+        assert address.endswith("/our-own-token-for-this/mcp")
+        with connected(address) as session:
+            assert session.ask("check", program=PLATE).structured_content["ok"]
 
 
 def _status(address: str, headers: dict[str, str]) -> int:
@@ -221,6 +231,14 @@ def test_packages_that_are_missing(said: Callable[..., str], monkeypatch: pytest
 def test_root_that_is_no_folder(said: Callable[..., str], tmp_path: Path) -> None:
     name = str(tmp_path / "nothing")
     assert said("--root", name) == f"error[E0942]: there is no folder `{name}` to import from\n"
+
+
+def test_token_that_is_none(said: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AIDL_MCP_TOKEN", "../short")
+    assert said("--http", "0") == (
+        "error[E0942]: AIDL_MCP_TOKEN is no token\n"
+        "  = hint: it has 16 letters, digits, `-` and `_`, or more\n"
+    )
 
 
 def test_port_that_is_taken(said: Callable[..., str]) -> None:

@@ -153,7 +153,11 @@ def test_nothing_is_left_beside_the_output(aidl: Aidl, folder: Path) -> None:
         (["good.aidl", "-o", "good.sgv"], "E0905", "there is no format `sgv`"),
         (["good.aidl", "-o", "good"], "E0905", "does not tell a format"),
         (["good.aidl", "-o", "-", "--format", "x"], "E0905", "there is no format `x`"),
-        (["good.aidl", "-o", "good.aidl", "--format", "svg"], "E0908", "the program itself"),
+        (
+            ["good.aidl", "-o", "good.aidl", "--format", "svg"],
+            "E0908",
+            "`good.aidl` was read, and is not overwritten",
+        ),
     ],
 )
 def test_wrong_use(aidl: Aidl, folder: Path, arguments: list[str], code: str, words: str) -> None:
@@ -180,5 +184,55 @@ def test_what_a_program_reads_is_not_overwritten(aidl: Aidl, folder: Path) -> No
     (folder / "sign.aidl").write_text('import "disc.svg" as disc\nsolid plate { edge = disc() }\n')
     result = aidl("compile", "sign.aidl", "-o", "disc.svg")
     assert result.code == 2
-    assert "error[E0908]: `disc.svg` is read by the program and is not overwritten" in result.err
+    assert "error[E0908]: `disc.svg` was read, and is not overwritten" in result.err
     assert (folder / "disc.svg").read_text() == disc
+
+
+@pytest.mark.parametrize("verb", ["compile", "sheet"])
+def test_a_link_to_what_was_read_is_not_overwritten(aidl: Aidl, folder: Path, verb: str) -> None:
+    (folder / "soft.pdf").symlink_to("good.aidl")
+    (folder / "hard.pdf").hardlink_to(folder / "good.aidl")
+    for name in ("soft.pdf", "hard.pdf"):
+        result = aidl(verb, "good.aidl", "-o", name)
+        assert (result.code, result.err) == (2, f"error[E0908]: `{name}` was read, and is not overwritten\n")
+    assert (folder / "good.aidl").read_text() == GOOD
+
+
+def test_what_is_write_protected_is_not_replaced(aidl: Aidl, folder: Path) -> None:
+    (folder / "kept.svg").write_text("kept")
+    (folder / "ugly.aidl").write_text("solid   a { }")
+    for name in ("kept.svg", "ugly.aidl"):
+        (folder / name).chmod(0o444)
+    result = aidl("compile", "good.aidl", "-o", "kept.svg")
+    assert (result.code, result.err) == (
+        2,
+        "error[E0904]: `kept.svg` cannot be written: it is write-protected\n",
+    )
+    assert (folder / "kept.svg").read_text() == "kept"
+    result = aidl("fmt", "ugly.aidl")
+    assert (result.code, result.err) == (
+        2,
+        "error[E0904]: `ugly.aidl` cannot be written: it is write-protected\n",
+    )
+    assert (folder / "ugly.aidl").read_text() == "solid   a { }"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such files")
+def test_only_regular_files_of_bounded_size_are_read(aidl: Aidl, folder: Path) -> None:
+    os.mkfifo(folder / "pipe.aidl")
+    with open(folder / "endless.aidl", "wb") as file:
+        file.truncate(10_000_001)
+    told = {
+        "pipe.aidl": "it is no regular file",
+        "/dev/zero": "it is no regular file",
+        "endless.aidl": "it has more than 10 MB",
+    }
+    for name, why in told.items():
+        result = aidl("check", name)
+        assert (result.code, result.err) == (2, f"error[E0902]: `{name}` cannot be read: {why}\n")
+    result = aidl("check", "-", stdin=" " * 10_000_001)
+    assert (result.code, result.err) == (2, "error[E0902]: `-` cannot be read: it has more than 10 MB\n")
+    (folder / "main.aidl").write_text('import "pipe.aidl" as pipe\n')
+    result = aidl("check", "main.aidl")
+    assert result.code == 1
+    assert "it cannot be read" in result.err

@@ -180,7 +180,7 @@ def test_what_is_refused(aidl: Aidl) -> None:
     assert refused.code == 2
     assert refused.err.startswith("error[E0905]: differences cannot be drawn as `dxf`\n  = hint: formats: ")
     assert "E0905" in aidl(*pair, "-o", "x").err
-    assert "E0908" in aidl(*pair, "-o", "good.aidl").err
+    assert "E0908" in aidl(*pair, "-o", "good.aidl", "--format", "svg").err
     assert "E0904" in aidl(*pair, "-o", "nowhere/x.svg").err
     assert "E0914" in aidl(*pair, "-o", "-", "--json").err
     assert "E0901" in aidl("diff", "good.aidl", "missing.aidl").err

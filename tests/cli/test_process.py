@@ -139,3 +139,42 @@ def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path
 def _hear_interrupts() -> None:
     """In a shell's background job interrupts are ignored, and processes inherit that."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
+@pytest.mark.parametrize("is_buffered", [True, False])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["--help"],
+        ["explain", "E0301"],
+        ["check", "good.aidl", "--json"],
+        ["compile", "good.aidl", "-o", "-"],
+    ],
+)
+def test_a_full_device_is_told(folder: Path, arguments: list[str], is_buffered: bool) -> None:
+    environment = {**os.environ, "PYTHONUNBUFFERED": "" if is_buffered else "1", "NO_COLOR": "1"}
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [*COMMAND, *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+            env=environment,
+        )
+    assert done.returncode == 2
+    assert done.stderr == "error[E0904]: standard output cannot be written: no space left on device\n"
+
+
+@pytest.mark.parametrize("closed", [1, 2])
+def test_a_stream_that_is_closed_takes_all(folder: Path, closed: int) -> None:
+    done = subprocess.run(
+        ["sh", "-c", f'"$@" {closed}>&-', "sh", *COMMAND, "check", "good.aidl", "--json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert bool(done.stdout) == (closed == 2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import random
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -15,6 +16,10 @@ from hypothesis import strategies as st
 from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.drawings.drawing import DrawingError
 from aidl_lang.common.drawings.reading import MOST_NAMES, outlines
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.geometry import network
+from aidl_lang.pipeline import compile
 from tests.amount import tries
 
 NAMES = 'xmlns="http://www.w3.org/2000/svg"'
@@ -166,3 +171,17 @@ def test_whatever_is_changed_in_a_file_it_is_read_or_told(name: str, data: st.Da
     end = data.draw(st.integers(0, len(content)) | st.just(len(content)))
     with suppress(DrawingError):
         assert outlines(name, bytes(content[:end])).whole.strokes
+
+
+def test_a_spline_that_crosses_itself_everywhere_is_refused_before_it_is_cut(monkeypatch: pytest.MonkeyPatch):
+    """Of 2,000 curves nearly every pair crosses: the limit would only be met after all of its time."""
+    chance = random.Random(1)
+    points = [(chance.uniform(0, 100), chance.uniform(0, 100)) for _ in range(2_000)]
+    data = dxf(lambda d: d.modelspace().add_open_spline([*points, points[0]]))
+    world = MemoryWorld({}, {"a.dxf": data})
+    program = SourceFile("a.aidl", 'import "a.dxf" as art\nsolid a { edge = art() }\n')
+    monkeypatch.setattr(network, "intersections", lambda *_: pytest.fail("curves were cut"))
+    (found,) = [d for d in compile(program, world).diagnostics if d.is_error]
+    assert found.code == "E0805"
+    assert found.span is not None
+    assert found.span.text == "edge = art()"

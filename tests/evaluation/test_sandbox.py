@@ -6,7 +6,9 @@ audit hook refuses is tried past it as well, so that the guards below it are tes
 
 from __future__ import annotations
 
+import json
 import os
+import random
 import re
 import socket
 import subprocess
@@ -292,12 +294,62 @@ def test_a_crash_is_told() -> None:
     assert refused(crash).startswith(("error: the program ended its process", "error (line 3): SystemExit"))
 
 
-def test_a_program_cannot_hand_over_what_is_no_drawing() -> None:
-    said = '{"errors": [], "parts": [{"color": 3, "faces": [[[[1e999]]]]}], "lines": 7}'
-    assert (
-        refused(f"import os\nos.write(1, {said.encode()!r})\nos._exit(0)")
-        == "error: a coordinate is not a finite number, or too large"
+NO_DRAWING = "error: the program handed over what is no drawing"
+UNBOUNDED = "error: a coordinate is not a finite number, or too large"
+SQUARE = "[[[0, 0], [1, 0], [1, 1]]]"
+
+
+def says(monkeypatch: pytest.MonkeyPatch, folder: Path, text: str) -> None:
+    """Has something else write in place of the host, as a program that got out of its fence could."""
+    host = folder / "host.py"
+    host.write_text(f"import sys\nsys.stdin.read()\nsys.stdout.write({text!r})\n")
+    monkeypatch.setattr(sandboxed, "_HOST", host)
+
+
+@pytest.mark.parametrize(
+    ("said", "error"),
+    [
+        ('{"parts": [{"color": 3, "faces": []}], "lines": []}', NO_DRAWING),
+        ('{"parts": [{"color": null, "faces": []}], "lines": 7}', NO_DRAWING),
+        ('{"parts": {"color": null}, "lines": []}', NO_DRAWING),
+        ('{"parts": [{"faces": []}], "lines": []}', NO_DRAWING),
+        ('{"parts": [{"color": null, "faces": [[[["1", "2"]]]]}], "lines": []}', NO_DRAWING),
+        ('{"parts": [{"color": null, "faces": [[[[true, 0]]]]}], "lines": []}', NO_DRAWING),
+        ('{"parts": [{"color": null, "faces": [[[[1, 2, 3, 4]]]]}], "lines": []}', NO_DRAWING),
+        ('{"parts": [{"color": null, "faces": [[[[1e999, 0]]]]}], "lines": []}', UNBOUNDED),
+        ('{"parts": [], "lines": [[[0, 1' + "0" * 400 + "]]]}", UNBOUNDED),
+        ('{"parts": [], "lines": [[[0, NaN]]]}', UNBOUNDED),
+        ('{"kind": ["time"]}', NO_DRAWING),
+        (f'{{"parts": [{{"color": "\\ud800", "faces": [{SQUARE}]}}], "lines": []}}', ""),
+        (r'{"errors": ["\u001b[31mred \ud800 \u202e"]}', "␛[31mred <U+D800> <U+202E>"),
+    ],
+)
+def test_what_is_handed_over_is_a_drawing_or_told(
+    said: str, error: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    says(monkeypatch, tmp_path, f"[{said}]")
+    assert "".join(run("").errors) == error
+
+
+@pytest.mark.parametrize("said", ["", "[", "[]", "[1]", "null", "{}", "[[], []]", "[{}, {}]"])
+def test_a_host_that_is_taken_over_is_told(
+    said: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    says(monkeypatch, tmp_path, said)
+    assert refused("").startswith(("error: the program ended its process", NO_DRAWING))
+
+
+def test_outlines_that_cross_everywhere_are_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """One step of the geometry takes minutes, and cannot be interrupted from within."""
+    chance = random.Random(1)
+    outline = [[chance.random(), chance.random()] for _ in range(4000)]
+    with monkeypatch.context() as patched:
+        says(patched, tmp_path, json.dumps([{"parts": [{"color": None, "faces": [[outline]]}], "lines": []}]))
+        (rendered,) = sandboxed.run(FAKE.name, [""], 3)
+    assert rendered.errors == (
+        "error: working out what is drawn took longer than 3 s: its outlines cross too often",
     )
+    assert run(SHAPES + "show_object(Face(box(0, 0, 1, 1)))").ok
 
 
 def test_faces_are_read_with_their_holes_and_colours() -> None:

@@ -255,3 +255,12 @@ def _is_zombie(process: int) -> bool:
     """Killed, but not yet taken note of by whoever has inherited it."""
     stat = Path(f"/proc/{process}/stat")
     return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+def test_a_command_does_not_get_the_keys_of_other_providers(
+    command: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("OPENAI_API_KEY", "OPENAI_BASE_URL", "ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN", "MY_OWN"):
+        monkeypatch.setenv(name, "secret")
+    told = ask(command("import os; print(sorted(n for n in os.environ if os.environ[n] == 'secret'))")).text
+    assert told.strip() == "['MY_OWN']"

@@ -115,6 +115,6 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     long = tmp_path / "long.png"
     with long.open("wb") as file:
         file.truncate(MAX_FILE + 1)
-    assert failure(long) == (f"the image `{long}` has more than 50 MB", ("scale it down",))
+    assert failure(long) == (f"the image `{long}` cannot be read: it has more than 50 MB", ("scale it down",))
     with pytest.raises(ImageError, match="embedded null byte"):
         read_image("a\0b")

@@ -397,6 +397,19 @@ def test_several_models_are_listed(scripted: Start) -> None:
     assert told.hints == ("say --model NAME, or set AIDL_MODEL", f"{server.base_url} has a, b")
 
 
+def test_credentials_in_an_address_are_not_told(scripted: Start) -> None:
+    server = scripted([], models=["b", "a"])
+    own = server.base_url.replace("http://", "http://me:secret@")
+    with pytest.raises(ProviderError) as caught:
+        server.provider(model="", base_url=own)
+    assert caught.value.diagnostic.hints[1] == f"{own.replace('me:secret', '…')} has a, b"
+    provider = connect(Connection("openai", "m", "http://me:secret@127.0.0.1:1/v1", retries=0), {})
+    with pytest.raises(ProviderError) as caught:
+        provider.reply(SAID, PLAIN, lambda piece: None)
+    assert "http://…@127.0.0.1:1/v1" in caught.value.diagnostic.message
+    assert "secret" not in str(caught.value.diagnostic)
+
+
 def test_provider_by_environment(scripted: Start) -> None:
     server = scripted(["yes"])
     provider = connect(Connection(), {"OPENAI_BASE_URL": server.base_url, "AIDL_MODEL": "m"})
@@ -425,6 +438,8 @@ CHOICES: list[tuple[Connection, dict[str, str], str, str]] = [
         "the environment speaks for two providers, openai and anthropic",
     ),
     (Connection(base_url="localhost:1"), {}, "E0930", "`localhost:1` is no base URL"),
+    (Connection(base_url="me:secret@x:1"), {}, "E0930", "`…@x:1` is no base URL"),
+    (Connection(base_url="htp://me:secret@x?key=y"), {}, "E0930", "`htp://…@x?…` is no base URL"),
     (Connection(base_url="http://[x"), {}, "E0930", "`http://[x` is no base URL"),
     (
         Connection("openai"),

@@ -51,7 +51,7 @@ def test_window_fits_and_holds_its_focus(text: str, width: int, data: st.DataObj
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, len(text)))
     line = lay_out(text)
-    view = window(line, width, (start, end))
+    view = window(text, width, (start, end))
     assert width_of(view.text) <= width
     assert view.start <= start <= view.end
     if view.start <= start < view.end:

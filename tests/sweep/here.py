@@ -66,15 +66,14 @@ def sweep(
     **more: object,
 ) -> Session:
     """Runs a sweep in a folder to its end."""
-    program = folder / "plate.aidl"
-    program.write_text(text)
+    (folder / "plate.aidl").write_text(text)
     bundle, world, knobs = opened(SourceFile("plate.aidl", text), DiskWorld(folder), pipeline.Settings())
     rows = None
     if table is not None:
         (folder / "orders.csv").write_text(table, newline="")
-        rows = read_table(folder / "orders.csv", knobs)
+        rows = read_table(folder / "orders.csv", knobs, world.reads)
     plan = planned(knobs, [axis(*each.split("=", 1), knobs) for each in values], rows)
-    wanted = outputs([str(folder / name) for name in names], plan, str(program))
+    wanted = outputs([str(folder / name) for name in names], plan, world.reads)
     job = Job(
         plan,
         bundle,

@@ -17,6 +17,7 @@ from pathlib import Path
 import ezdxf
 import pytest
 
+import aidl_lang
 from aidl_lang.tools.cli import main, sweep_progress
 from aidl_lang.tools.sweeping import starting
 from aidl_lang.tools.sweeping.session import Progress
@@ -159,7 +160,7 @@ def told_of(folder: Path, names: list[str]) -> None:
     """Asserts that each order is right, or told, and that nothing lies where it should not."""
     with open(folder / "table.csv", newline="", encoding="utf-8") as file:
         found = list(csv.DictReader(file))
-    assert [row["name"] for row in found] == names
+    assert [row["name"] for row in found] == [f"'{n}" if n[:1] in "=+-@" and n else n for n in names]
     for row in found:
         if row["ok"] == "true":
             path = Path(row["files"])
@@ -288,3 +289,42 @@ def test_a_cluster_without_workers_is_told_once(
         for places in (2, 0, 0, 0, 1, 0):
             listen(Progress(10, 3, 0, 0, (), places, 0))
     assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"
+
+
+def test_what_a_sweep_reads_is_not_overwritten(folder: Path, aidl: Command) -> None:
+    disc = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5"/></svg>'
+    (folder / "2.svg").write_text(disc)
+    (folder / "t.csv").write_text("w\n20\n30\n")
+    program = 'import "2.svg" as disc\nparam w = 5\nsolid plate { edge = disc()\n rim = circle(radius: w) }\n'
+    (folder / "sign.aidl").write_text(program)
+    (folder / "link.csv").symlink_to("t.csv")
+    (folder / "link.html").symlink_to("sign.aidl")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    for output, read in (
+        ("t.csv", "t.csv"),
+        ("link.csv", "link.csv"),
+        ("{n}.svg", "2.svg"),
+        ("link.html", "link.html"),
+    ):
+        done = aidl("sweep", "sign.aidl", "--table", "t.csv", "-o", output)
+        assert (done.code, done.err) == (2, f"error[E0908]: `{read}` was read, and is not overwritten\n")
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_the_python_way_does_not_overwrite_what_it_read_either(folder: Path) -> None:
+    (folder / "t.csv").write_text("width\n60\n")
+    with pytest.raises(aidl_lang.AidlError, match=r"`t.csv` was read"):
+        aidl_lang.sweep("plate.aidl", table="t.csv", output="t.csv")
+
+
+def test_no_cell_of_a_table_is_a_formula(folder: Path, aidl: Command) -> None:
+    names = ["=1+1", "+A1", "-B2", "@SUM(A1)", "Ada", "-5", "'t Hooft"]
+    with open(folder / "orders.csv", "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([["name", "=note"], *([name, name] for name in names)])
+    (folder / "sign.aidl").write_text(SIGN.replace("width - 6mm", "width + 600mm"))
+    assert aidl("sweep", "sign.aidl", "--table", "orders.csv", "-o", "a.csv", "--no-timings").code == 0
+    with open(folder / "a.csv", newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert "'=note" in head
+    told = [f"'{name}" for name in names[:4]] + names[4:]
+    assert [row[head.index("name")] for row in rows] == [row[head.index("'=note")] for row in rows] == told

@@ -8,6 +8,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,8 @@ def obey(word: str, folder: str) -> str:
         time.sleep(60)
     if word == "die" or (word == "die once" and times == 1):
         os.kill(os.getpid(), signal.SIGKILL)
+    if word == "stop":
+        os.kill(os.getpid(), signal.SIGSTOP)
     if word == "raise":
         raise ValueError("no such luck")
     if word == "eat":
@@ -40,7 +43,7 @@ def engine() -> Iterator[Guarded]:
 
 def test_what_breaks_takes_nothing_along(engine: Guarded, tmp_path: Path) -> None:
     crew: Crew[str, str] = Crew(engine)
-    words = ["well", "die", "hang", "raise", "die once", "eat", "too"]
+    words = ["well", "die", "hang", "raise", "die once", "eat", "stop", "too"]
     for word in words:
         crew.give(word, 3.0, obey, word, str(tmp_path))
     found: dict[str, str | Broke] = {}
@@ -48,10 +51,16 @@ def test_what_breaks_takes_nothing_along(engine: Guarded, tmp_path: Path) -> Non
         found |= dict(crew.came(10))
     assert [found[word] for word in ("well", "die once", "too")] == ["well 1", "die once 2", "too 1"]
     limits = {word: each.limit for word, each in found.items() if isinstance(each, Broke)}
-    assert limits == {"die": Limit.DEATH, "hang": Limit.TIME, "raise": None, "eat": Limit.MEMORY}
-    assert (tmp_path / "die").read_text() == "xx"
+    assert limits == {
+        "die": Limit.DEATH,
+        "hang": Limit.TIME,
+        "raise": None,
+        "eat": Limit.MEMORY,
+        "stop": Limit.TIME,
+    }
+    assert (tmp_path / "die").read_text() == "xxxx"
     assert (tmp_path / "hang").read_text() == "x"
-    assert crew.given_again == 2
+    assert crew.given_again == 4
 
 
 def test_what_is_given_up_ends(engine: Guarded, tmp_path: Path) -> None:
@@ -63,3 +72,42 @@ def test_what_is_given_up_ends(engine: Guarded, tmp_path: Path) -> None:
     crew.cancel()
     crew.give("after", 30.0, obey, "after", str(tmp_path))
     assert dict(crew.came(20)) == {"after": "after 1"}
+
+
+def test_the_process_that_starts_others_may_die(engine: Guarded, tmp_path: Path) -> None:
+    crew: Crew[int, int] = Crew(engine)
+    crew.give(0, 30.0, os.getppid)
+    ((_, server),) = crew.came(20)
+    assert isinstance(server, int)
+    os.kill(server, signal.SIGKILL)
+    calls: Crew[str, str] = Crew(engine)
+    for word in "abcdef":
+        calls.give(word, 30.0, obey, word, str(tmp_path))
+    found: dict[str, str | Broke] = {}
+    while calls:
+        found |= dict(calls.came(20))
+    assert [str(found[word])[0] for word in "abcdef"] == list("abcdef")
+
+
+class Deaf:
+    """An engine that never answers."""
+
+    places = 2
+
+    def submit(self, seconds: float, task: object, *arguments: object) -> Future[str]:
+        return Future()
+
+    def close(self) -> None:
+        pass
+
+
+def test_what_is_never_answered_is_begun_again_and_given_up() -> None:
+    crew: Crew[int, str] = Crew(Deaf())
+    for k in range(3):
+        crew.give(k, 0.02, str)
+    found: dict[int, str | Broke] = {}
+    while crew:
+        found |= dict(crew.came())
+    limits = [each.limit for each in found.values() if isinstance(each, Broke)]
+    assert limits == [Limit.TIME] * 3
+    assert crew.given_again == 9

@@ -1,4 +1,6 @@
-"""A sweep that is killed at any moment goes on, and its table is whole."""
+"""A sweep that is killed at any moment goes on, and its table is whole; so is that of one whose workers are
+killed.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -27,6 +30,48 @@ def children_of(group: int) -> list[str]:
     """Returns the processes that a killed sweep has left."""
     told = subprocess.run(["ps", "-o", "pid=,stat=", "-g", str(group)], capture_output=True, text=True).stdout
     return [line for line in told.splitlines() if "Z" not in line.split()[1]]
+
+
+def workers_of(run: subprocess.Popen[bytes]) -> list[int]:
+    """Returns the processes that compile for a sweep: its grandchildren."""
+    told = subprocess.run(
+        ["ps", "-o", "pid=,ppid=", "-g", str(run.pid)], capture_output=True, text=True
+    ).stdout
+    parents = {int(pid): int(parent) for pid, parent in map(str.split, told.splitlines())}
+    return [pid for pid, parent in parents.items() if parents.get(parent) == run.pid]
+
+
+def without_workers(folder: Path, sweeps: int, seed: int) -> None:
+    """Kills ten workers at random instants of each sweep."""
+    chance, kills = random.Random(seed), 0
+    (folder / "plate.aidl").write_text(PLATE)
+    values = ["-D", "width=40..100/50", "-D", "style=*", "-o", "table.csv", "--no-timings", "--jobs", "2"]
+    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", *values]
+    whole = b""
+    for number in range(sweeps + 1):
+        with open(folder / "said", "wb") as said:
+            run = subprocess.Popen(words, cwd=folder, stderr=said, start_new_session=True)
+        left = 10 if number else 0
+        while left and run.poll() is None:
+            time.sleep(chance.uniform(0.0, 0.15))
+            for worker in chance.sample(found := workers_of(run), min(1, len(found))):
+                with suppress(ProcessLookupError):
+                    os.kill(worker, signal.SIGKILL)
+                    left, kills = left - 1, kills + 1
+        assert run.wait(120) == 0, (folder / "said").read_text()
+        whole = whole or (folder / "table.csv").read_bytes()
+        assert (folder / "table.csv").read_bytes() == whole
+    assert whole.count(b"\n") == 101
+    assert kills > 5 * sweeps
+
+
+def test_workers_that_are_killed_are_replaced(tmp_path: Path) -> None:
+    without_workers(tmp_path, 2, seed=3)
+
+
+@pytest.mark.slow
+def test_workers_are_killed_at_two_hundred_instants(tmp_path: Path) -> None:
+    without_workers(tmp_path, 20, seed=4)
 
 
 def killed(folder: Path, times: int, seed: int) -> None:

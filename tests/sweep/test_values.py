@@ -9,6 +9,7 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.sweeping.axes import axis, from_values
 from aidl_lang.tools.sweeping.orders import read_table
@@ -144,7 +145,7 @@ def table(folder: Path, text: str | bytes) -> Path:
 
 def test_a_table_has_params_and_other_columns(tmp_path: Path, knobs: tuple[Knob, ...]) -> None:
     text = '\ufeffOrder no.,Name,width,hollow\r\n17,"two\r\nlines",6cm,TRUE\r\n\r\n18," x ",,0\r\n'
-    rows = read_table(table(tmp_path, text), knobs)
+    rows = read_table(table(tmp_path, text), knobs, Reads())
     assert (rows.params, rows.labels) == (("name", "width", "hollow"), ("Order no.",))
     assert rows.values == (
         {"name": "two\r\nlines", "width": "6cm", "hollow": True},
@@ -176,7 +177,7 @@ def test_tables_that_are_none_are_refused(
 ) -> None:
     path = table(tmp_path, text)
     with pytest.raises(AidlError) as raised:
-        read_table(path, knobs)
+        read_table(path, knobs, Reads())
     assert raised.value.diagnostic.message == said.replace("{}", str(path))
 
 

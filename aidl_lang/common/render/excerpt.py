@@ -13,7 +13,7 @@ from itertools import groupby
 from aidl_lang.common.diagnostics import Label, Severity
 from aidl_lang.common.records import record
 from aidl_lang.common.render.style import TerminalStyle
-from aidl_lang.common.render.text import Window, escape, lay_out, window
+from aidl_lang.common.render.text import Window, escape, window
 from aidl_lang.common.source import SourceFile
 
 _WHOLE = 5
@@ -107,7 +107,7 @@ class Excerpt:
     def _line(self, number: int, bars: Bars) -> Iterator[tuple[int | None, str]]:
         on_line = [m for m in self.marks if m.first == m.last == number]
         text = self.source.line(number)
-        view = window(lay_out(text), max(20, self.width - bars.width), self._focus(number, len(text)))
+        view = window(text, max(20, self.width - bars.width), self._focus(number, len(text)))
         margin = bars.row(number, starting=text)
         yield number, self._painted(margin) + view.text
         for m in bars.starting(number, text):

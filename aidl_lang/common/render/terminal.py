@@ -10,7 +10,7 @@ from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.render.excerpt import Excerpt, Mark, mark
 from aidl_lang.common.render.patch import ChangedLine, Hunk, hunks
 from aidl_lang.common.render.style import TerminalStyle
-from aidl_lang.common.render.text import escape, lay_out, window
+from aidl_lang.common.render.text import escape, window
 from aidl_lang.common.source import SourceFile, Span
 
 WIDTH = 110
@@ -103,7 +103,7 @@ class _Page:
             yield self._change(change)
 
     def _change(self, change: ChangedLine) -> str:
-        text = window(lay_out(change.text), self.width, change.focus).text
+        text = window(change.text, self.width, change.focus).text
         if change.sign == " ":
             return self._bar(text, change.number)
         paint = self.style.added if change.sign == "+" else self.style.removed

@@ -12,6 +12,8 @@ import unicodedata
 from aidl_lang.common.records import record
 
 TAB = 4
+_REACH = 4_000
+"""Characters that are laid out before what a label points at; no terminal is as wide."""
 _BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
 """Categories that change the screen rather than print: controls, formats, surrogates, separators."""
 
@@ -57,32 +59,40 @@ def lay_out(text: str) -> CellLine:
 
 @record()
 class Window:
-    """The part of a long line that is shown: characters `start:end`, with `…` in place of the rest."""
+    """The part of a long line that is shown: characters `start:end`, with `…` in place of the rest. Of a very
+    long one only some characters are laid out: those from `skipped` on, to the end unless `is_cut`.
+    """
 
     line: CellLine
     start: int
     end: int
+    skipped: int
+    is_cut: bool
 
     @property
     def text(self) -> str:
-        before = "…" if self.start else ""
-        after = "…" if self.end < len(self.line.cells) else ""
+        before = "…" if self.start or self.skipped else ""
+        after = "…" if self.end < len(self.line.cells) or self.is_cut else ""
         return before + "".join(self.line.cells[self.start : self.end]) + after
 
     def column(self, index: int) -> int:
         """Returns the column of a character within `text`; a character left out counts as at the edge."""
+        index -= self.skipped
         if index < self.start:
             return 0
-        shift = self.line.column(self.start) - (1 if self.start else 0)
+        shift = self.line.column(self.start) - (1 if self.start or self.skipped else 0)
         return self.line.column(min(index, self.end)) - shift
 
 
-def window(line: CellLine, width: int, focus: tuple[int, int]) -> Window:
+def window(text: str, width: int, focus: tuple[int, int]) -> Window:
     """Cuts a line to `width` columns so that the characters of `focus`, or its first ones, can be seen."""
+    skipped = max(0, focus[0] - _REACH)
+    end = focus[0] + 2 * _REACH
+    line, is_cut = lay_out(text[skipped:end]), len(text) > end
     total = line.columns[-1]
-    if total <= width:
-        return Window(line, 0, len(line.cells))
-    first, last = line.column(focus[0]), line.column(focus[1])
+    if total <= width and not (skipped or is_cut):
+        return Window(line, 0, len(line.cells), skipped, is_cut)
+    first, last = line.column(focus[0] - skipped), line.column(focus[1] - skipped)
     room = width - 2
     lead = max(0, (room - (last - first)) // 2) if last - first <= room else room // 8
     left = max(0, min(first - lead, total - room))
@@ -90,7 +100,7 @@ def window(line: CellLine, width: int, focus: tuple[int, int]) -> Window:
     end = start
     while end < len(line.cells) and line.columns[end + 1] - line.columns[start] <= room:
         end += 1
-    return Window(line, start, end)
+    return Window(line, start, end, skipped, is_cut)
 
 
 def _visible(char: str) -> str:

@@ -119,8 +119,10 @@ def _add_prompts(server: Server) -> None:
     server.prompt("mend", title="Mend a program")(mend)
 
 
-def serve(root: Path | None = None, listener: socket | None = None) -> None:
-    """Serves until the client goes: over standard input and output, or over HTTP on a bound socket."""
+def serve(root: Path | None = None, listener: socket | None = None, path: str = "/mcp") -> None:
+    """Serves until the client goes: over standard input and output, or over HTTP on a bound socket, at a path
+    that whoever asks must know.
+    """
     workers = Workers(Tools(Workspace(root)))
     server = Server(workers)
     try:
@@ -129,14 +131,14 @@ def serve(root: Path | None = None, listener: socket | None = None) -> None:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
             server.run("stdio")
         else:
-            _serve_http(server, listener)
+            _serve_http(server, listener, path)
     finally:
         workers.close()
 
 
-def _serve_http(server: Server, listener: socket) -> None:
+def _serve_http(server: Server, listener: socket, path: str) -> None:
     import uvicorn
 
     # For a host of this machine the SDK refuses requests that name another one, as web pages could send.
-    app = server.streamable_http_app(host="127.0.0.1")
+    app = server.streamable_http_app(host="127.0.0.1", streamable_http_path=path)
     uvicorn.Server(uvicorn.Config(app, log_level="warning")).run(sockets=[listener])

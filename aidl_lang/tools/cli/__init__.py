@@ -14,8 +14,10 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from io import TextIOWrapper
+from io import BufferedWriter, FileIO, TextIOWrapper
+from typing import Any
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.tools.cli import report
 from aidl_lang.version import __version__
@@ -70,11 +72,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _seldom_search()
     try:
         words = sys.argv[1:] if argv is None else argv
-        if not words:
-            sys.stdout.write(_GREETING)
-            return 0
-        arguments = _parser(words).parse_args(words)
-        code: int = arguments.run(arguments)
+        code = _run(words)
         sys.stdout.flush()
     except report.UseError as reason:
         report.show([reason.diagnostic])
@@ -87,7 +85,41 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _forget_output()
         return BROKEN_PIPE
+    except _OutputError as reason:
+        _forget_output()
+        report.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
+        return 2
     return code
+
+
+def _run(words: Sequence[str]) -> int:
+    """Returns the exit code of a verb."""
+    if not words:
+        sys.stdout.write(_GREETING)
+        return 0
+    try:
+        arguments = _parser(words).parse_args(words)
+    except SystemExit:  # help was asked for, or needed
+        sys.stdout.flush()
+        raise
+    code: int = arguments.run(arguments)
+    return code
+
+
+class _OutputError(Exception):
+    """Raised where standard output takes nothing more, as on a full disk."""
+
+
+class _Output(FileIO):
+    """Standard output, whose failure is told from that of other files."""
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise _OutputError((error.strerror or str(error)).lower()) from None
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
@@ -119,10 +151,19 @@ def _seldom_search() -> None:
 
 
 def _keep_writing() -> None:
-    """Makes standard streams escape characters that the terminal's encoding lacks instead of raising."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
+    """Makes standard streams escape characters that the terminal's encoding lacks instead of raising, and
+    standard output tell that it failed. What was closed by who runs the command takes all and keeps nothing.
+    """
+    if sys.stdout is None or sys.stderr is None:
+        nowhere = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the command runs)
+        sys.stdout, sys.stderr = sys.stdout or nowhere, sys.stderr or nowhere
+    elif type(sys.stdout) is TextIOWrapper and sys.stdout.fileno() == 1:
+        sys.stdout.flush()
+        buffer = BufferedWriter(_Output(sys.stdout.fileno(), "w", closefd=False))
+        encoding, by_line = sys.stdout.encoding, sys.stdout.isatty()
+        sys.stdout = TextIOWrapper(buffer, encoding, "backslashreplace", line_buffering=by_line)
+    if isinstance(sys.stderr, TextIOWrapper):
+        sys.stderr.reconfigure(errors="backslashreplace")
 
 
 def _forget_output() -> None:

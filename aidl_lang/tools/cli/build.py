@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -79,8 +79,7 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     for target in found:
         if not _is_pattern(target.name):
             files.require_directory(target.name)
-        if target.name != files.STANDARD and Path(target.name).resolve() == Path(arguments.file).resolve():
-            raise UseError("E0908", f"`{target.name}` is the program itself and is not overwritten")
+    files.require_unread(target.name for target in found)
     return found
 
 
@@ -105,7 +104,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     written: tuple[str, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
-        written, notes = _write(compiled, outputs, options(arguments, compiled), read)
+        written, notes = _write(compiled, outputs, options(arguments, compiled))
     return BuildResult(compiled, written, notes, time.perf_counter() - start, read)
 
 
@@ -157,7 +156,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
 
 
 def _write(
-    compiled: Compiled, outputs: Sequence[Target], options: Options, read: Collection[Path]
+    compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Writes all outputs once all could be made; returns their names, and diagnostics about them. What the
     program read is not overwritten.
@@ -177,9 +176,7 @@ def _write(
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
     _require_apart([name for name, _ in made])
-    for name, _ in made:
-        if name != files.STANDARD and Path(name).resolve() in read:
-            raise UseError("E0908", f"`{name}` is read by the program and is not overwritten")
+    files.require_unread(name for name, _ in made)
     if any(_is_pattern(target.name) for target in outputs):
         files.make_directories(name for name, _ in made)
     for name, data in made:

@@ -98,7 +98,7 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
 
         mended = mend(source, world, settings)
         if name == files.STANDARD or mended.source.text != source.text:
-            files.write(name, mended.source.text.encode())
+            files.rewrite(name, mended.source.text.encode())
         if has_errors(mended.diagnostics):
             return _Checked(mended.diagnostics, mended.fixes)  # the rest would add nothing
         return _found(mended.source, world, settings, arguments, mended.fixes)

@@ -63,13 +63,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _suffix(name: str, arguments: argparse.Namespace) -> str:
-    """Returns the format of an output; refuses a missing one, and one of the programs as output."""
+    """Returns the format of an output; refuses a missing one."""
     from aidl_lang.export import PICTURES
 
     files.require_directory(name)
-    programs = {Path(p).resolve() for p in (arguments.before, arguments.after) if p and p != files.STANDARD}
-    if name != files.STANDARD and Path(name).resolve() in programs:
-        raise UseError("E0908", f"`{name}` is the program itself and is not overwritten")
     own = "" if name == files.STANDARD else Path(name).suffix.lower()
     said = (
         f".{arguments.format.lower().lstrip('.')}" if arguments.format else ".svg" * (name == files.STANDARD)
@@ -136,6 +133,7 @@ def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -
             made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
+    files.require_unread(name for name, _ in made)
     for name, data in made:
         files.write(name, data)
         if name != files.STANDARD:

@@ -9,6 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.reading import MAX_BYTES, Reads, require_fitting
 from aidl_lang.common.replacing import replace
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli.report import UseError
@@ -18,20 +20,26 @@ if TYPE_CHECKING:
 
 STANDARD = "-"
 """The file name of standard input or output."""
+reads = Reads()
+"""The files that this command has read."""
 
 
 def read(name: str) -> SourceFile:
     """Returns the program in a file, or on standard input for `-`."""
-    if name == STANDARD:
-        return SourceFile("<stdin>", decoded(sys.stdin.buffer.read(), "standard input"))
     try:
-        data = Path(name).read_bytes()
+        if name == STANDARD:
+            data = sys.stdin.buffer.read(MAX_BYTES + 1)
+            require_fitting(len(data), MAX_BYTES, name)
+        else:
+            data = reads.contents(name)
     except FileNotFoundError:
         raise UseError("E0901", f"there is no file `{name}`", *_neighbours(Path(name))) from None
     except IsADirectoryError:
         raise UseError("E0902", f"`{name}` is a directory, not a program") from None
     except OSError as error:
         raise UseError("E0902", f"`{name}` cannot be read: {_reason(error)}") from None
+    if name == STANDARD:
+        return SourceFile("<stdin>", decoded(data, "standard input"))
     return SourceFile(name, decoded(data, f"`{name}`"))
 
 
@@ -39,7 +47,7 @@ def world(name: str) -> DiskWorld:
     """Returns the world whose imports are read beside the program."""
     from aidl_lang.common.world import DiskWorld
 
-    return DiskWorld(Path.cwd() if name == STANDARD else Path(name).resolve().parent)
+    return DiskWorld(Path.cwd() if name == STANDARD else Path(name).resolve().parent, reads)
 
 
 def require_directory(name: str) -> None:
@@ -58,8 +66,22 @@ def make_directories(names: Iterable[str]) -> None:
             raise UseError("E0904", f"`{parent}` cannot be made: {_reason(error)}") from None
 
 
+def require_unread(names: Iterable[str]) -> None:
+    """Refuses to overwrite what was read."""
+    try:
+        reads.require_unread(name for name in names if name != STANDARD)
+    except AidlError as reason:
+        raise UseError.of(reason.diagnostics[0]) from None
+
+
 def write(name: str, data: bytes) -> None:
-    """Replaces a file by its new content in one step; `-` is standard output."""
+    """Replaces a file by its new content in one step, but for one that was read; `-` is standard output."""
+    require_unread([name])
+    rewrite(name, data)
+
+
+def rewrite(name: str, data: bytes) -> None:
+    """Does as `write`, also with a file that was read: a program that is edited."""
     if name == STANDARD:
         if sys.stdout.isatty() and b"\0" in data:
             raise UseError(

@@ -45,7 +45,7 @@ def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) 
     if check and changed:
         say(f"{name}: would be reformatted")
     if not (check or diff) and (changed or name == files.STANDARD):
-        files.write(name, text.encode())
+        files.rewrite(name, text.encode())
     return int(check and changed)
 
 

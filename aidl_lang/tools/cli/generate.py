@@ -113,7 +113,7 @@ def _task(arguments: argparse.Namespace) -> Task:
     from aidl_lang.tools.llm.images import ImageError, read_image
 
     try:
-        image = read_image(arguments.image) if arguments.image else None
+        image = read_image(arguments.image, files.reads) if arguments.image else None
     except ImageError as reason:
         raise UseError.of(reason.diagnostic) from None
     return Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
@@ -263,7 +263,8 @@ def _write_program(
 ) -> None:
     before = generation.task.program
     if places.program is not None:
-        files.write(places.program, program.encode())
+        write = files.rewrite if places.program == arguments.edit else files.write
+        write(places.program, program.encode())
     elif before is None:
         print(program, end="")
     if before is not None:

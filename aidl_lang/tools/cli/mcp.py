@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import os
+import re
+import secrets
 from importlib.util import find_spec
 from pathlib import Path
 
 from aidl_lang.tools.cli import listening
 from aidl_lang.tools.cli.report import UseError, say
+
+_TOKEN = "AIDL_MCP_TOKEN"
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +31,7 @@ def register(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     _require_packages()
     root = _root(arguments.root)
-    listener = None
+    listener, path = None, f"/{_token()}/mcp"
     if arguments.http is not None:
         hint = "`--http 0` takes a port that is free"
         listener = listening.listener(listening.LOCALHOST, arguments.http, "E0942", hint)
@@ -34,9 +39,19 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.tools.agents.server import serve
 
     if listener is not None:
-        say(f"http://{listening.LOCALHOST}:{listener.getsockname()[1]}/mcp: serving, stop with Ctrl-C")
-    serve(root, listener)
+        say(f"http://{listening.LOCALHOST}:{listener.getsockname()[1]}{path}: serving, stop with Ctrl-C")
+    serve(root, listener, path)
     return 0
+
+
+def _token() -> str:
+    """Returns what stands in the address, so that nobody else on this machine knows it."""
+    given = os.environ.get(_TOKEN)
+    if given is None:
+        return secrets.token_urlsafe(24)
+    if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", given):
+        raise UseError("E0942", f"{_TOKEN} is no token", "it has 16 letters, digits, `-` and `_`, or more")
+    return given
 
 
 def _require_packages() -> None:

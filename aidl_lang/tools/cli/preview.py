@@ -63,6 +63,6 @@ def _rescue(served: Served) -> None:
 
 def _write(path: Path, data: bytes) -> None:
     try:
-        files.write(str(path), data)
+        files.rewrite(str(path), data)
     except UseError as reason:
         raise OSError(reason.diagnostic.message) from None

@@ -138,7 +138,8 @@ def run(arguments: argparse.Namespace) -> int:
                 pass
     except AidlError as reason:
         show(reason.diagnostics)
-        _tell_unfinished(session)
+        if session.rows:
+            _tell_unfinished(session)
         return exit_code(reason.diagnostics)
     except KeyboardInterrupt:
         _tell_unfinished(session)
@@ -174,7 +175,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
         bundle,
         world,
         Making(options=options(arguments), best_effort=arguments.best_effort),
-        outputs(arguments.output, plan, arguments.file, arguments.format),
+        outputs(arguments.output, plan, world.reads, arguments.format),
         lambda variant, name: reproducing(arguments.file, plan, variant, name, words),
         arguments.cache or "",
         arguments.cache_size * 1_000_000 if arguments.cache_size else Job.cache_size,
@@ -193,7 +194,7 @@ def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
     if arguments.table:
         from aidl_lang.tools.sweeping.orders import read_table
 
-        rows = read_table(Path(arguments.table), knobs)
+        rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
             from aidl_lang.common.prose import named
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
+from aidl_lang.common.csv_text import csv_text
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.agreement import alpha
 from aidl_lang.tools.evaluation.judgements import Answer, Answers, Sheet, sheets
@@ -126,11 +125,7 @@ COLUMNS = (
 
 def exported(given: Sequence[Answer], there: Sequence[Sheet]) -> str:
     """Returns all answers as CSV, one line for each language of each."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(_lines(given, there))
-    return out.getvalue()
+    return csv_text([COLUMNS, *_lines(given, there)])
 
 
 def _lines(given: Sequence[Answer], there: Sequence[Sheet]) -> Iterator[list[object]]:

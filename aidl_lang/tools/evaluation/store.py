@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.replacing import replace
 from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
 from aidl_lang.tools.evaluation.recordings import GUIDE, RecordedPlan
 from aidl_lang.tools.evaluation.requirements import Prompt
@@ -101,16 +99,7 @@ class Store:
         path = self.folder / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(prefix=".", dir=path.parent)
-            try:
-                with open(handle, "wb") as file:
-                    file.write(data)
-                os.chmod(temporary, 0o644)
-                os.replace(temporary, path)
-            except BaseException:
-                with suppress(OSError):
-                    os.unlink(temporary)
-                raise
+            replace(path, data)
         except OSError as error:
             raise StoreError("E0948", f"`{path}` cannot be written: {error.strerror or error}") from None
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from math import sqrt
 
+from aidl_lang.common.csv_text import csv_text
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.evaluation.preference import Study
 from aidl_lang.tools.evaluation.statistics import RESAMPLES, SEED, Interval
@@ -230,12 +229,9 @@ def judgements(study: Study | None) -> list[dict[str, object]]:
 
 def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None) -> str:
     """Returns one line for each figure of each row, then one for each comparison, then those of a study."""
-    out = io.StringIO()
-    writer = csv.DictWriter(out, ("prompt", "variant", "against", "figure", *_FIELDS), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(line for row in rows for line in data(row))
-    writer.writerows([*differences(pairs), *judgements(study)])
-    return out.getvalue()
+    columns = ("prompt", "variant", "against", "figure", *_FIELDS)
+    lines = [*(line for row in rows for line in data(row)), *differences(pairs), *judgements(study)]
+    return csv_text([columns, *([line.get(column) for column in columns] for line in lines)])
 
 
 def to_json(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import struct
 import warnings
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.reading import Reads
 from aidl_lang.tools.llm.messages import Image
 
 if TYPE_CHECKING:
@@ -36,16 +38,16 @@ class ImageError(Exception):
         self.diagnostic = Diagnostic("E0939", message, hints=hints)
 
 
-def read_image(name: str) -> Image:
+def read_image(name: str, reads: Reads | None = None) -> Image:
     """Returns the picture in a file, scaled down and turned upright if needed; raises ImageError."""
     try:
-        with open(name, "rb") as file:
-            data = file.read(MAX_FILE + 1)
+        data = (reads or Reads()).contents(name, MAX_FILE)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise ImageError(f"the image `{name}` cannot be read: {reason[:1].lower()}{reason[1:]}") from None
-    if len(data) > MAX_FILE:
-        raise ImageError(f"the image `{name}` has more than {MAX_FILE // 1_000_000} MB", "scale it down")
+        hints = ["scale it down"] if getattr(error, "errno", 0) == errno.EFBIG else []
+        raise ImageError(
+            f"the image `{name}` cannot be read: {reason[:1].lower()}{reason[1:]}", *hints
+        ) from None
     return to_image(data, name)
 
 

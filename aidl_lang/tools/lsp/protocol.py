@@ -68,9 +68,13 @@ class Protocol(LanguageServerProtocol):
             return
         asked = data.get("id") if "method" in data else None
         try:
+            method: Any = data.get("method")
             if asked is not None:
-                self._require_time(data["method"])
+                self._require_time(method)
+            elif method not in (None, types.EXIT) and not self._is_initialized:
+                return  # the protocol has notifications dropped until then
             message = self.structure_message(data)
+            self._is_initialized |= asked is not None and method == types.INITIALIZE
         except exceptions.JsonRpcException as trouble:
             log.warning("a message that cannot be understood: %s", trouble)
             if isinstance(asked, int | str):
@@ -82,7 +86,6 @@ class Protocol(LanguageServerProtocol):
         if method == types.INITIALIZE:
             if self._is_initialized:
                 raise exceptions.JsonRpcInvalidRequest("the server is initialized already")
-            self._is_initialized = True
         elif not self._is_initialized:
             raise exceptions.JsonRpcServerNotInitialized()
         elif self._shutdown:

@@ -147,6 +147,7 @@ class Runner:
         self.solving.drop(document)
         if self.active is document:
             self.active = None
+        self._tidier.release()
 
     def close(self) -> None:
         self._is_closing = True

@@ -169,7 +169,9 @@ class Server(LanguageServer):
             self.window_show_message(types.ShowMessageParams(types.MessageType.Error, message))
 
     def report_server_error(self, error: Exception, source: object) -> None:
-        if source is not exceptions.FeatureRequestError:  # of which the client hears anyway
+        # of a request the client hears anyway; a refusal of one that is sent as a notification is no crash
+        is_refusal = "pygls.exceptions." in str(error)
+        if source is not exceptions.FeatureRequestError and not is_refusal:
             self.crashed(error)
 
     def _publish(self, document: Document, known: VersionedView) -> None:
@@ -185,12 +187,16 @@ class Server(LanguageServer):
         return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
 
     async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
-        """Returns the data of the present text, or a newer one; with its outcome if that is there in time."""
+        """Returns the data of the present text, or a newer one; with its outcome if that is there in time.
+        None for a text that is longer than programs are: there is nothing to ask about it.
+        """
         serial = document.serial
         await document.until_seen(serial)
         if patience:
             await document.until_solved(serial, patience)
         if document.newest is None or not document.is_open:
+            return None
+        if len(document.newest.view.source.text) > self.limits.text.max_characters:
             return None
         return self.asked_now(document, document.newest)
 

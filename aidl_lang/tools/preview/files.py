@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MAX_BYTES
 from aidl_lang.tools.ide.edits import applied
 from aidl_lang.tools.ide.refusing import CannotError
 
@@ -60,13 +60,9 @@ def write(files: Sequence[tuple[Path, bytes]], put: Write) -> None:
 
 def _read(path: Path) -> bytes:
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        return Reads().contents(path)
     except OSError as reason:
         raise CannotError(f"{path.name} cannot be read: {_why(reason)}") from None
-    if len(data) > MAX_BYTES:
-        raise CannotError(f"{path.name} is too large for a program")
-    return data
 
 
 def _mark(data: bytes) -> bytes:

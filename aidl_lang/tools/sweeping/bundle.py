@@ -9,7 +9,7 @@ from functools import cached_property
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import FileError, ReadFailure, World, normalize
+from aidl_lang.common.world import FileError, ReadFailure, World, normalize, reads_of
 from aidl_lang.pipeline import Settings
 
 _SPARE = 10.0
@@ -56,6 +56,7 @@ class Gathering:
 
     def __init__(self, world: World) -> None:
         self._world = world
+        self.reads = reads_of(world)
         self.files: dict[str, Content] = {}
 
     def read_bytes(self, path: str) -> bytes:

@@ -10,6 +10,7 @@ from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, named, ticked
+from aidl_lang.common.reading import Reads
 from aidl_lang.tools.sweeping.axes import MOST, Value, value
 from aidl_lang.tools.sweeping.plan import Rows
 
@@ -17,9 +18,9 @@ _MOST_BYTES = 500_000_000
 _LONGEST_CELL = 1_000_000
 
 
-def read_table(path: Path, knobs: Sequence[Knob]) -> Rows:
+def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
     """Returns the rows of a CSV file. An empty cell leaves its param as written. Raises AidlError."""
-    rows = _cells(path)
+    rows = _cells(path, reads)
     try:
         _, head = next(rows)
     except StopIteration:
@@ -48,12 +49,10 @@ def read_table(path: Path, knobs: Sequence[Knob]) -> Rows:
     )
 
 
-def _cells(path: Path):  # type: ignore[no-untyped-def]
+def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
     """Yields the rows of a CSV file, each with the number of its line."""
     try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise _wrong(f"`{path}` is larger than {_MOST_BYTES // 1_000_000} MB")
-        text = path.read_bytes().decode("utf-8-sig")
+        text = reads.contents(path, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
         raise _wrong(f"there is no file `{path}`") from None
     except OSError as error:

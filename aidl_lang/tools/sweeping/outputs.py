@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePath
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.records import record
 from aidl_lang.common.replacing import replace
 from aidl_lang.export import FORMATS, file_names, require, suffix_of
@@ -47,7 +48,7 @@ class Outputs:
         return next((Path(each.folder, f"{stem}.sweep") for each in self.patterns), None)
 
 
-def outputs(names: Sequence[str], plan: Plan, program: str, fallback: str | None = None) -> Outputs:
+def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None = None) -> Outputs:
     """Sorts the names of outputs. Raises AidlError for one that no sweep can write."""
     patterns: list[Pattern] = []
     tables: list[str] = []
@@ -71,9 +72,7 @@ def outputs(names: Sequence[str], plan: Plan, program: str, fallback: str | None
             sheets.append(name)
         else:
             raise _shared(name, suffix, plan)
-    for name in (*tables, *sheets):
-        if os.path.realpath(name) == os.path.realpath(program):
-            raise AidlError(Diagnostic("E0908", f"`{name}` is the program itself and is not overwritten"))
+    reads.require_unread((*tables, *sheets))
     if sheets and len(plan) > MOST_PICTURES:
         few = f"a contact sheet has up to {MOST_PICTURES}"
         raise AidlError(Diagnostic("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}"))
@@ -97,12 +96,17 @@ def _shared(name: str, suffix: str, plan: Plan) -> AidlError:
 class Drawings:
     """Writes the drawings of variants, each under a name of its own below the folder of its pattern."""
 
-    def __init__(self, outputs: Outputs, plan: Plan) -> None:
-        """Names the drawings of all variants; of names that are alike all but the first get a number."""
+    def __init__(self, outputs: Outputs, plan: Plan, reads: Reads) -> None:
+        """Names the drawings of all variants; of names that are alike all but the first get a number. Raises
+        AidlError if one of them was read.
+        """
         self.renamed = 0
         self._patterns = outputs.patterns
         self._names = [list(self._named(each, plan)) for each in outputs.patterns]
         self._written: dict[str, int] = {}
+        self._reads = reads
+        for names in self._names:
+            reads.require_unread(names)
 
     def _named(self, each: Pattern, plan: Plan) -> Iterator[str]:
         plain = [each.named(variant) for variant in plan]
@@ -124,6 +128,7 @@ class Drawings:
                     other = self._written[path.casefold()]
                     message = f"`{path}` would hold variant {other} and variant {variant.number}"
                     raise AidlError(Diagnostic("E0973", message, hints=("begin the name with `{n}`",)))
+                self._reads.require_unread([path])  # also those that were read since
                 write(path, data)
                 written.append(path)
         return written

@@ -63,7 +63,7 @@ class Sweep:
         """Returns a sweep that is about to run. Raises AidlError."""
         bundle, gathering, knobs = opened(source, world, settings or Settings())
         axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
-        rows = None if table is None else read_table(Path(table), knobs)
+        rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
         plan = planned(knobs, axes, rows, drawn)
 
         def command(variant: Variant, name: str) -> str:
@@ -74,7 +74,7 @@ class Sweep:
             bundle,
             gathering,
             Making(options=options, best_effort=best_effort),
-            sorted_outputs(outputs, plan, source.name, fallback),
+            sorted_outputs(outputs, plan, gathering.reads, fallback),
             command,
             cache,
             resumes=resumes,

@@ -95,10 +95,10 @@ class Session:
         start = time.monotonic()
         job = self.job
         with ExitStack() as stack:
+            drawings = Drawings(job.outputs, job.plan, job.world.reads)
             store, own = self._store()
             if store is not None:
                 stack.callback(store.close)
-            drawings = Drawings(job.outputs, job.plan)
             self.renamed, self.unfinished = drawings.renamed, own
             run = Run(job.plan, job.bundle, job.world, self._making, self.engine, store, job.seconds)
             try:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.csv_text import csv_text
 from aidl_lang.export import require
 from aidl_lang.tools.sweeping.axes import shown
 from aidl_lang.tools.sweeping.rows import Cell, Columns, Row, as_mapping
@@ -20,12 +20,8 @@ ARROW_EXTRA = "parquet"
 
 def to_csv(columns: Columns, rows: Sequence[Row]) -> bytes:
     """Returns a table as CSV: lists are joined by semicolons, nothing stands where nothing is known."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(columns.names)
-    for row in rows:
-        writer.writerow([_csv(cell) for cell in columns.cells(row)])
-    return out.getvalue().encode("utf-8", "backslashreplace")
+    cells = ([_csv(cell) for cell in columns.cells(row)] for row in rows)
+    return csv_text([columns.names, *cells]).encode("utf-8", "backslashreplace")
 
 
 def _csv(cell: Cell) -> str:

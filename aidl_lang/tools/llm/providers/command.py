@@ -15,12 +15,14 @@ from contextlib import contextmanager, suppress
 from typing import IO
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import EXEC, Connection
+from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, EXEC, Connection
 from aidl_lang.tools.llm.providers.draft import MAX_TEXT, Draft, count, dig, dollars, one_line, too_long
 
 _BLOCK = 65_536
 _TAIL = 2_000
 _LINES = 3
+_OTHERS = tuple(f"{kind.upper()}_" for kind in DEFAULT_URL)
+"""Beginnings of variables that are for other providers, as those of their keys."""
 
 
 class Command:
@@ -59,7 +61,12 @@ class Command:
         pipe = subprocess.PIPE
         try:
             process = subprocess.Popen(
-                self._command, stdin=asked, stdout=pipe, stderr=pipe, start_new_session=True
+                self._command,
+                stdin=asked,
+                stdout=pipe,
+                stderr=pipe,
+                start_new_session=True,
+                env={name: value for name, value in os.environ.items() if not name.startswith(_OTHERS)},
             )
         except (OSError, ValueError) as error:
             raise ProviderError(

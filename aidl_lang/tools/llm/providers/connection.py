@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from urllib.parse import urlsplit
@@ -62,6 +63,16 @@ class Connection:
 
     key: str = ""
 
+    @property
+    def address(self) -> str:
+        """The base URL as it may be shown."""
+        return without_credentials(self.base_url)
+
+
+def without_credentials(text: str) -> str:
+    """Returns a text without the user, the password and the query of a URL in it."""
+    return re.sub(r"\?[^\s#]+", "?…", re.sub(r"(^|//)[^/\s]*@", r"\1…@", text))
+
 
 def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
     """Returns the connection completed from the environment; only `model` may stay empty."""
@@ -106,7 +117,7 @@ def _server(decided: Connection, environment: Mapping[str, str]) -> Connection:
     if given and not _is_address(given):
         raise ProviderError(
             "E0930",
-            f"`{given}` is no base URL",
+            f"`{without_credentials(given)}` is no base URL",
             "it starts with http:// or https://, as http://localhost:11434/v1",
         )
     if not key and not given:

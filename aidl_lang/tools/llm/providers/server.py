@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import httpx2
 
 from aidl_lang.tools.llm.messages import Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, Connection
+from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, Connection, without_credentials
 from aidl_lang.tools.llm.providers.draft import UNKNOWN, Draft, dig, one_line, words
 from aidl_lang.tools.llm.providers.http import is_silence
 
@@ -120,9 +120,10 @@ class Server(ABC):
         except sdk.APITimeoutError:
             raise self._silence() from None
         except sdk.APIConnectionError as error:
+            why = without_credentials(one_line(str(error.__cause__)))
             raise ProviderError(
                 "E0936",
-                f"there is no connection to {self._connection.base_url}: {one_line(str(error.__cause__))}",
+                f"there is no connection to {self._connection.address}: {why}",
                 "is the server running, and is the base URL right?",
             ) from None
         except sdk.APIError as error:  # told in the middle of a stream
@@ -161,7 +162,7 @@ class Server(ABC):
         except self._sdk.APIError:
             known = []
         if not known:
-            yield f"is {self._connection.base_url} right? Most base URLs end in /v1"
+            yield f"is {self._connection.address} right? Most base URLs end in /v1"
             return
         near = get_close_matches(self._model, known, n=_SHOWN, cutoff=0.3) or known
         yield f"the server has {_few(near, known)}"
@@ -184,25 +185,25 @@ class Server(ABC):
         if len(known) == 1:
             return known[0]
         self.close()
-        shown = [f"{self._connection.base_url} has {_few(known, known)}"] if known else []
+        shown = [f"{self._connection.address} has {_few(known, known)}"] if known else []
         raise ProviderError("E0930", "no model is named", "say --model NAME, or set AIDL_MODEL", *shown)
 
     def _silence(self) -> ProviderError:
         return ProviderError(
             "E0937",
-            f"{self._connection.base_url} was silent for {self._connection.timeout:g} seconds",
+            f"{self._connection.address} was silent for {self._connection.timeout:g} seconds",
             "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide",
         )
 
     def _out_of_order(self, said: str) -> ProviderError:
         because = f": {said}" if said else ", and does not say why"
-        return ProviderError("E0936", f"{self._connection.base_url} fails{because}", "try again later")
+        return ProviderError("E0936", f"{self._connection.address} fails{because}", "try again later")
 
     def _not_protocol(self, stream: Any) -> ProviderError:
         kind = stream.response.headers.get("content-type", "nothing")
         return ProviderError(
             "E0938",
-            f"{self._connection.base_url} sent no reply in the protocol of {self.kind} but {one_line(kind)}",
+            f"{self._connection.address} sent no reply in the protocol of {self.kind} but {one_line(kind)}",
             "look at the base URL, and at what stands between you and the server",
         )
 
