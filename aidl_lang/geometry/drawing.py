@@ -5,7 +5,7 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
@@ -17,7 +17,7 @@ from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape
+from aidl_lang.geometry.faces import Shape, region_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -28,7 +28,6 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
-from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note
@@ -351,6 +350,7 @@ def _inked(
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
     seen: set[str] = set()
+    alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
@@ -367,31 +367,36 @@ def _inked(
         if is_asked and look.color and hidden and all(hidden):
             lost.setdefault(look.color, []).append(shape.geometry.name)
         over = look.color if any(hidden) and not is_asked else None
-        for pieces, faces in _told_apart(shape, ground.network):
-            yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over, faces=faces)
+        # What is engraved as areas is one area, the rest a stroke for each shape.
+        alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
+    for (look, over, _), together in alike.items():
+        for pieces, faces in _told_apart(together, ground.network, is_area=look.is_area):
+            yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
         if whole := [name for name in names if _array(name) not in seen]:
             notes.append(covered_note(drawing, whole, by))
 
 
-def _told_apart(shape: Shape, network: Network) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
-    """Yields the letters of a shape, which are filled, and the rest of it, each with its faces."""
-    number_of = {id(leaf): number for leaf, number in shape.leaves}
-    letters: list[Piece] = []
-    faces: list[Face] = []
-    for glyph in (g for g in shape.geometry.walk() if g.filled):
-        own = [leaf for leaf in glyph.parts if id(leaf) in number_of]
-        outline = [network.curves[number_of[id(leaf)]] for leaf in own]
-        if found := letter_faces(outline) if outline else ():
-            letters += outline
-            faces += found
-            for leaf in own:
-                del number_of[id(leaf)]
-    if rest := tuple(network.curves[number] for number in number_of.values()):
-        yield rest, ()
-    if letters:
-        yield tuple(letters), tuple(faces)
+def _told_apart(
+    shapes: Sequence[Shape], network: Network, *, is_area: bool
+) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
+    """Yields the lines of shapes, and with its faces the outlines of what is filled of them: letters, what
+    closed shapes of a file enclose together, as in a solid, and all that is to be an area.
+    """
+    drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
+    parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
+    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
+    inked = (
+        (shape.geometry, [(leaf, network.curves[k]) for leaf, k in shape.leaves if id(leaf) in filled])
+        for shape in shapes
+    )
+    region, loose = region_of((g, leaves) for g, leaves in inked if leaves)
+    filled -= {id(leaf) for leaf in loose}
+    if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
+        yield lines, ()
+    if region:
+        yield region.pieces, region.faces
 
 
 def _array(name: str) -> str:

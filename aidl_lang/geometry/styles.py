@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, Scalar, SolvedGeometry, SolvedStructure
@@ -95,6 +96,11 @@ class Style:
     def is_unlined(self) -> bool:
         """True if its solids have no outline."""
         return self.stroke == 0
+
+    @property
+    def is_area(self) -> bool:
+        """True if drawings are engraved as areas: on a layer of that name."""
+        return self.layer is not None and fold(self.layer) == "fill"
 
     def dashes(self, size: float) -> tuple[float, ...] | None:
         """Returns dashes and gaps by turns, mm, in a drawing of a size; None for whole lines."""
