@@ -5,7 +5,7 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
@@ -30,7 +30,7 @@ from aidl_lang.geometry.legibility import (
 )
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note
+from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
@@ -66,7 +66,8 @@ class Seam:
 class Stroke:
     """Curves drawn as lines.
 
-    `role` is `drawing` for the curves of a drawing, `open` for curves of other structures that bound no face,
+    `role` is `drawing` for the curves of a drawing and the outlines of holes that end in
+    their solid, `open` for curves of other structures that bound no face,
     `hole` for the outline of a hole that nothing holds. `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
     which is filled where it can be; `pieces` are their outlines.
@@ -130,15 +131,21 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     curves, boxes, shapes = _collect(model.root, notes)
     clips, around = clip_shapes(model.root, len(curves))
     network = Network([*curves, *around], [*boxes, *map(bounds, around)])
-    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips)
+    styles = styles_of(model.root)
+    blind = [path for path, style in styles.items() if style.is_blind]
+    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips, blind)
     notes += [gap_note(gap) for gap in gaps]
     notes += crossing_notes(network, model.root, shapes)
     regions = {path: outline.region for path, outline in traced.items()}
-    styles = styles_of(model.root)
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
+    notes += [
+        upright_note(s)
+        for s in model.root.walk()
+        if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
+    ]
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
     touching = contacts(network, solids)
     found = [
@@ -181,16 +188,20 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 
 
 def _closed(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
+    root: SolvedStructure,
+    network: Network,
+    shapes: dict[str, list[Shape]],
+    clips: Clips,
+    blind: Collection[str],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network after small gaps between curves are closed, what the curves enclose, and these
     gaps.
     """
-    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips))
+    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps))
-        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips))
+        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -201,10 +212,14 @@ def _closed(
 
 
 def _arranged(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
+    root: SolvedStructure,
+    network: Network,
+    shapes: dict[str, list[Shape]],
+    clips: Clips,
+    blind: Collection[str],
 ) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
-    walk = Bodies(network, shapes, clip_sections(network, root, clips))
+    walk = Bodies(network, shapes, clip_sections(network, root, clips), blind)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
     paths = [s.path for s in root.walk() if s.path in walk.sections]
@@ -326,6 +341,8 @@ def _strokes(
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+        if style.is_blind and path in regions:
+            yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
             if pieces := walk.inner_pieces(structure, number):
                 yield Stroke(path, leaf.path, pieces, style, "open")

@@ -2,7 +2,7 @@
 
 export const words = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -947,8 +947,8 @@ export const about = {
   "clearance_diameter": "The diameter of the through hole of a screw: `close`, `medium` or `loose` (ISO 273).",
   "clearance_hole": "The through hole of a screw, placed with `at`; in a `hole` its rim, a circle.",
   "tap_hole": "The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle.",
-  "counterbore": "The bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`; in a `hole` its rim.",
-  "countersink": "A countersink in which a flat head lies flush, as wide as at its top, placed with `at`; in a `hole` its rim.",
+  "counterbore": "A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`.",
+  "countersink": "A through hole with a cone of 90° in which a flat head lies flush, placed with `at`.",
   "hex_pocket": "A pocket that holds a hexagon nut, `play` wider than it across its flats, placed with `at`; in a `hole` its outline.",
   "screw_hole": "A hole for a screw to go through, to be placed with `at`.",
   "bolt": "A metric bolt or screw seen from the side, upright with its head on top; `head`: hex, socket, pan or countersunk.",
