@@ -22,7 +22,7 @@ from aidl_lang.export.chains import chains
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Body, Drawing, Stroke
+from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
 from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.nearness import inside, near_pairs
@@ -82,14 +82,15 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
     tolerance = RELATIVE_TOLERANCE * drawing.size
     areas = count(1)
     for (path, role, style), group in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
-        layer = role if role == OPEN else style.layer or role
+        layer = role if role == OPEN else style.layer or (HOLE if role == SLIT else role)
         made = partial(Outline, path=path, layer=layer, style=style)
         if role == HOLE:
             operation = profile.operation(style.layer, INNER)
             for loop in drawing.regions[path].loops:
                 yield made(loop.pieces, True, operation=operation, clockwise=loop.reversed)
             continue
-        operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
+        by_kind = INNER if role == SLIT else ENGRAVE
+        operation = "" if role == OPEN else profile.operation(style.layer, by_kind)
         followed: list[Piece] = []
         for stroke in group:
             loops = _bounding(stroke, operation, profile, tolerance)

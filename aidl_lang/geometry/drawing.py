@@ -39,6 +39,8 @@ from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace_all
 
+SLIT = "slit"
+
 
 @record()
 class Body:
@@ -68,7 +70,8 @@ class Stroke:
 
     `role` is `drawing` for the curves of a drawing and the outlines of holes that end in
     their solid, `open` for curves of other structures that bound no face,
-    `hole` for the outline of a hole that nothing holds. `over`: the colour of what it lies on, where it
+    `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
+    `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
     which is filled where it can be; `pieces` are their outlines.
     """

@@ -9,7 +9,7 @@ import numpy as np
 
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Body, Stroke
+from aidl_lang.geometry.drawing import SLIT, Body, Stroke
 from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds, reverse
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
@@ -26,7 +26,7 @@ def engraved(
     on: dict[str, list[Stroke]] = {}
     off: list[Stroke] = []
     for stroke in strokes:
-        if stroke.role != "drawing":
+        if stroke.role not in ("drawing", SLIT):
             continue
         holder = owner(by_path, stroke.path)
         if holder is not None and holder not in around:
