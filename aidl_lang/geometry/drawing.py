@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
@@ -38,6 +39,7 @@ from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructu
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
 
@@ -131,7 +133,7 @@ class Drawing:
 def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
     notes: list[Diagnostic] = []
-    curves, boxes, shapes = _collect(model.root, notes)
+    curves, boxes, shapes, engraved = _collect(model.root, notes)
     clips, around = clip_shapes(model.root, len(curves))
     network = Network([*curves, *around], [*boxes, *map(bounds, around)])
     styles = styles_of(model.root)
@@ -174,9 +176,12 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for b, m in zip(bodies, masses, strict=True)
     ]
     drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
-    inked = [number for path in drawings for shape in shapes[path] for number in shape.numbers]
+    on_parts = [shape for path in drawings for shape in shapes[path]] + [
+        s for e in engraved.values() for s in e
+    ]
+    inked = [number for shape in on_parts for number in shape.numbers]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
-    strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
+    strokes = tuple(_strokes(model.root, shapes, engraved, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
@@ -233,13 +238,14 @@ def _arranged(
 
 def _collect(
     root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]]]:
+) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]], dict[str, list[Shape]]]:
     """Returns all curves that can be drawn, numbered, their boxes, and by structure the shapes they belong
-    to.
+    to, and the outlines that a file says are engraved.
     """
     curves: list[Piece] = []
     boxes: list[Bounds] = []
     shapes: dict[str, list[Shape]] = {}
+    engraved: dict[str, list[Shape]] = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.drawn:
@@ -248,6 +254,7 @@ def _collect(
                 continue
             leaves = []
             vanished = []
+            on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
             for leaf in _leaves(geometry):
                 usable = _usable(leaf.curve) if leaf.curve else None
                 if usable is None:
@@ -256,12 +263,19 @@ def _collect(
                 leaves.append((leaf, len(curves)))
                 curves.append(usable[0])
                 boxes.append(usable[1])
+            numbers = {id(leaf): (leaf, number) for leaf, number in leaves}
+            engraved.setdefault(structure.path, []).extend(
+                Shape(part, tuple(numbers[id(leaf)] for leaf in part.parts if id(leaf) in numbers))
+                for part in geometry.walk()
+                if part.type == ENGRAVED
+            )
+            leaves = [leaf for leaf in leaves if id(leaf[0]) not in on_part]
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
-    return curves, boxes, shapes
+    return curves, boxes, shapes, engraved
 
 
 def _has_strokes(geometry: SolvedGeometry) -> bool:
@@ -331,6 +345,7 @@ def _covered_letters(
 def _strokes(
     root: SolvedStructure,
     shapes: dict[str, list[Shape]],
+    engraved: dict[str, list[Shape]],
     walk: Bodies,
     styles: dict[str, Style],
     regions: dict[str, Region],
@@ -344,6 +359,10 @@ def _strokes(
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+        for shape in engraved.get(path, ()):
+            look = styled(replace(style, color=None), shape.geometry)
+            for pieces, faces in _told_apart([shape], ground.network, is_area=look.is_area):
+                yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
         if style.is_blind and path in regions:
             yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
