@@ -12,8 +12,8 @@ from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
-from aidl_lang.geometry.engraving import owner
 from aidl_lang.geometry.evaluate import LARGEST
+from aidl_lang.geometry.overhanging import owner
 from aidl_lang.geometry.placement import GROUND, Plane, planes, thickness_of
 from aidl_lang.geometry.region import Region
 

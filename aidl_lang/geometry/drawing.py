@@ -32,6 +32,7 @@ from aidl_lang.geometry.legibility import (
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
+from aidl_lang.geometry.overhanging import overhanging_notes
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
@@ -184,6 +185,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     strokes = tuple(_strokes(model.root, shapes, engraved, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
+    notes += overhanging_notes(model.root, bodies, strokes)
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
     notes += idle_orders(model.root, [b.path for b in bodies])
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
