@@ -1058,6 +1058,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},
   {"prefix": "@orientation", "title": "how a part stands", "body": "@orientation(${1:front})$0", "place": "attribute"},
+  {"prefix": "@depth", "title": "how deep a hole is that ends in its solid", "body": "@depth(${1:2mm})$0", "place": "attribute"},
   {"prefix": "@quantity", "title": "how many pieces are made of a part", "body": "@quantity(${1:4})$0", "place": "attribute"},
   {"prefix": "@elevation", "title": "how high a part lies", "body": "@elevation(${1:18mm})$0", "place": "attribute"},
   {"prefix": "@note", "title": "a note on the drawing", "body": "@note(\"${1:glue here}\")$0", "place": "attribute"},
