@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -65,7 +65,7 @@ def _recesses(job: Job, body: Body, plane: Plane, thickness: float) -> Iterator[
     bodies, styles = {other.path: other for other in job.drawing.bodies}, job.drawing.styles
     grows_up = float(np.cross(plane.u, plane.v) @ plane.growth) > 0
     for path, region in job.drawing.regions.items():
-        if not styles[path].is_blind or owner(bodies, path) != body.path:
+        if not styles[path].is_blind or not _holds(bodies, path, body.path):
             continue
         depth, *taper = styles[path].depth
         slope = math.tan(math.radians(taper[0] / 2)) if taper else 0.0
@@ -75,6 +75,15 @@ def _recesses(job: Job, body: Body, plane: Plane, thickness: float) -> Iterator[
             depth = min(depth, circle.radius / slope)
         bottom = plane.shifted(thickness - depth) if grows_up else plane
         yield Recess(region, bottom, depth, depth * slope)
+
+
+def _holds(bodies: Mapping[str, Body], hole: str, body: str) -> bool:
+    """Tells whether a hole takes away of a body: the one around it, or all in the assembly around it."""
+    if (holder := owner(bodies, hole)) is not None:
+        return holder == body
+    while hole and not any(path.startswith(f"{hole}.") for path in bodies):
+        hole = hole.rpartition(".")[0]
+    return body.startswith(f"{hole}.")
 
 
 def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:

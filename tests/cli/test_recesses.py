@@ -104,3 +104,16 @@ def test_a_depth_is_that_of_a_hole(aidl: Aidl, folder: Path) -> None:
             "E0517]: `@depth` takes a length above 0, and for a cone its angle, "
             "as in `@depth(2mm)` or `@depth(2mm, 90deg)`"
         ) in aidl("check", "p.aidl").err
+
+
+def test_a_hole_of_an_assembly_is_sunk_into_all_its_parts(aidl: Aidl, folder: Path) -> None:
+    (folder / "p.aidl").write_text(
+        """@thickness(6mm) assembly pair {
+            @detached solid a { b = rectangle(bottom_left: fixed((-20, -10)), width: 20, height: 20) }
+            @detached solid c { b = rectangle(bottom_left: fixed((0, -10)), width: 20, height: 20) }
+            @depth(2mm) hole pocket { rim = square(center: fixed((0, 0)), size: 10) }
+        }"""
+    )
+    assert aidl("compile", "p.aidl", "-o", "p.step").code == 0
+    parts = step_reading.read((folder / "p.step").read_bytes(), folder).parts
+    assert [part.volume for part in parts] == pytest.approx([20 * 20 * 6 - 10 * 5 * 2] * 2)
