@@ -137,40 +137,48 @@ hole tap_hole(size) {
     rim = tap_hole(size, center: fixed((0, 0)))
 }
 
-/// The bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`; in a `hole` its rim.
+/// A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`. In a `hole` or a
+/// `drawing` it is the rim of that bore.
+///
+/// The bore is as deep as the head is high, and 0.4 mm, above M6 0.6 mm, more: a `@depth`, so that cutters engrave its rim.
 ///
 /// ```aidl
-/// assembly clamp {
-///     solid lower {
-///         body = square(size: 20)
-///         hole bolt { rim = clearance_hole("m5") }
-///     }
-///     @detached solid upper at (30, 0) {
-///         body = square(size: 20)
-///         hole pocket { rim = counterbore("m5") }
-///     }
+/// @thickness(12mm)
+/// solid foot {
+///     body = rectangle(center: origin, width: 60, height: 20)
+///     left = counterbore("m5") at (-20, 0)
+///     right = counterbore("m5") at (20, 0)
 /// }
 /// ```
 fn counterbore(size, center: point = (0, 0)) =
     circle(center: center, diameter: screw(size).counterbore)
-hole counterbore(size) {
-    rim = counterbore(size, center: fixed((0, 0)))
+hole counterbore(size, fit: text = "medium") {
+    bore = clearance_hole(size, center: fixed((0, 0)), fit: fit)
+    @depth(screw(size).diameter + (if screw(size).diameter > 6 then 0.6 else 0.4)) hole sink {
+        rim = counterbore(size, center: fixed((0, 0)))
+    }
 }
 
-/// A countersink in which a flat head lies flush, as wide as at its top, placed with `at`; in a `hole` its rim.
+/// A through hole with a cone of 90° in which a flat head lies flush, placed with `at`. In a `drawing` it is the rim of that
+/// cone, as wide as at its top.
+///
+/// The cone has a `@depth`: it is cut in STEP, STL and 3MF, and cutters engrave its rim.
 ///
 /// ```aidl
+/// @thickness(3mm)
 /// solid hinge_leaf {
-///     body = rectangle(width: 30, height: 16)
-///     hole bolt { rim = clearance_hole("m3") }
-///     drawing sunk { rim = countersink("m3") }
-///     constrain sunk.rim.center == bolt.rim.center
+///     body = rectangle(center: origin, width: 30, height: 16)
+///     left = countersink("m3") at (-10, 0)
+///     right = countersink("m3") at (10, 0)
 /// }
 /// ```
 fn countersink(size, center: point = (0, 0)) =
     circle(center: center, diameter: screw(size).countersink)
-hole countersink(size) {
-    rim = countersink(size, center: fixed((0, 0)))
+hole countersink(size, fit: text = "medium") {
+    bore = clearance_hole(size, center: fixed((0, 0)), fit: fit)
+    @depth((screw(size).countersink - clearance_diameter(size, fit)) / 2, 90deg) hole sink {
+        rim = countersink(size, center: fixed((0, 0)))
+    }
 }
 
 /// A pocket that holds a hexagon nut, `play` wider than it across its flats, placed with `at`; in a `hole` its outline.

@@ -67,6 +67,8 @@ def test_only_pages_about_use_do_without_programs() -> None:
         "W0733",
         "W0736",
         "W0757",
+        "N0756",
+        "N0757",
         "W0758",
         "N0754",
         "N0755",

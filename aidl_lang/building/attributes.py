@@ -24,7 +24,7 @@ from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.names import find
-from aidl_lang.common.prose import ticked
+from aidl_lang.common.prose import ticked, with_article
 from aidl_lang.syntax import ast
 
 STROKED = ("color", "stroke", "dash", "opacity")
@@ -167,6 +167,14 @@ def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attri
             hints=[f"put `{attribute.span.one_line}` before a `solid` or an `assembly`"],
         )
         return False
+    if name == "depth" and of.kind != "hole":
+        it.report(
+            "E0517",
+            f"`@{attribute.name.text}` is said of holes, and `{of.name}` is {with_article(of.kind)}",
+            attribute,
+            hints=["make it a `hole`: what it encloses is taken away down to that depth"],
+        )
+        return False
     if name != "stroke" or of.kind != "drawing" or values != [NO_OUTLINE]:
         return True
     it.report(
@@ -200,6 +208,14 @@ def _thickness(values: list[Value]) -> str:
     if (lengths := _numbers(values, units.LENGTH)) is None or len(lengths) != 1:
         return "a length above 0, as in `@thickness(3mm)`"
     return "" if lengths[0] > 0 else "a thickness above 0"
+
+
+def _depth(values: list[Value]) -> str:
+    length, taper = _numbers(values[:1], units.LENGTH), _numbers(values[1:], units.ANGLE)
+    wanted = "a length above 0, and for a cone its angle, as in `@depth(2mm)` or `@depth(2mm, 90deg)`"
+    if not length or taper is None or len(taper) > 1:
+        return wanted
+    return "" if length[0] > 0 and all(0 < angle < 180 for angle in taper) else wanted
 
 
 def _elevation(values: list[Value]) -> str:
@@ -280,6 +296,7 @@ def _numbers(values: list[Value], dimension: units.Dimension) -> list[float] | N
 _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "orientation": _orientation,
     "thickness": _thickness,
+    "depth": _depth,
     "elevation": _elevation,
     "quantity": _quantity,
     "layer": _text("layer"),

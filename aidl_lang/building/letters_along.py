@@ -11,7 +11,7 @@ from aidl_lang.building.along import KINDS, reading_way
 from aidl_lang.building.construct import size
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.lettering import Arguments, bridge, is_filled, report_once, typeset
-from aidl_lang.building.model import Geometry, reach_of
+from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, reach_of
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
@@ -25,7 +25,7 @@ from aidl_lang.building.values import (
     point,
     spliced,
 )
-from aidl_lang.checking.units import ANGLE
+from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common import lettering
 from aidl_lang.common.prose import with_article
 from aidl_lang.syntax import ast
@@ -86,6 +86,14 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         found.append(g)
         if reach is not None:
             it.following.append(g)
+    extent = max(glyph.box[2] for glyph in glyphs) - min(glyph.box[0] for glyph in glyphs)
+    assert height is not None
+    fits = Comparison("<=", ex.mul(height, ex.constant(extent)), way.length, LENGTH)
+    call = it.call_sites[-1]
+    place = it.place(call) or call.span
+    it.assertions.append(
+        Assertion(env.here, Condition("and", (fits,)), None, place.one_line, place, extent=extent)
+    )
     whole = env.scope.declaring().container
     if isinstance(whole, Geometry):
         whole.reach = reach

@@ -503,6 +503,8 @@ class Assertion:
     """the outline whose box a constraint foresaw to be as this asks"""
     is_followed: bool = False
     """the members of a pattern are where they are on a curve that was solved to another form"""
+    extent: float = 0.0
+    """the length of a text along a curve, in heights of a capital, which the curve is to have room for"""
 
 
 @record(eq=False)

@@ -185,7 +185,7 @@ MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 
 ATTRIBUTES = (
-    *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity"),
+    *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
     *(
         "detached",
         "note",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.numbers import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.leaving import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
@@ -108,6 +110,8 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         return None
     if assertion.is_followed:
         return _lost_way(assertion)
+    if assertion.extent:
+        return _too_long(assertion, evaluate)
     message = assertion.message or f"`{assertion.text}` does not hold"
     where = f" [{assertion.label}]" if assertion.label else ""
     false = list(_false_parts(assertion.condition, evaluate))
@@ -137,6 +141,33 @@ def _lost_way(assertion: Assertion) -> Diagnostic:
         assertion.span,
         "laid out along the curve as it was written",
         hints=("write the points of the curve near to where the constraints bring them",),
+    )
+
+
+def _too_long(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
+    """Returns the warning about a text that is longer than the curve that it is written along."""
+    assert isinstance(assertion.condition, Condition)
+    (fits,) = assertion.condition.comparisons()
+    length, room = evaluate(fits.left), evaluate(fits.right)
+    height = math.floor(100 * room / assertion.extent) / 100
+    span = assertion.span
+    behind = span.text.rfind('"') + 1  # not in the text itself
+    stated = re.compile(r"\bheight\s*:\s*([\d.]+(?:mm)?)(?=\s*[,)])").search(span.text, behind)
+    fix = None
+    if stated is not None and height > 0:
+        at = Span(span.source, *(span.start + place for place in stated.span(1)))
+        edit = Edit(at, fixed(height))
+        fix = Fix(f"write letters of {fixed(height)} mm", (edit,))
+    return Diagnostic(
+        "W0761",
+        f"this text is {rough(length)} mm long, and the way along which it is written {rough(room)} mm",
+        span,
+        "it goes on past the end, and on a round way over itself",
+        hints=(
+            f"letters of {fixed(height)} mm fit: `height: {fixed(height)}`",
+            "or write it along a longer way",
+        ),
+        fix=fix,
     )
 
 

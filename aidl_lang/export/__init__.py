@@ -291,9 +291,10 @@ def _emptiness(job: Job) -> list[Diagnostic]:
 
 
 def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    from aidl_lang.export.unsaid import followed_notes, unsaid_notes
+    from aidl_lang.export.unsaid import blind_notes, followed_notes, unsaid_notes
 
-    return unsaid_notes(job, suffix, cuts=cuts) + (followed_notes(job) if cuts else [])
+    said = [*blind_notes(job, suffix), *followed_notes(job)] if cuts else []
+    return unsaid_notes(job, suffix, cuts=cuts) + said
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:

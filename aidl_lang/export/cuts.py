@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import count, groupby
 
@@ -19,16 +20,18 @@ from aidl_lang.common.numbers import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.chains import chains
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
+from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Body, Drawing, Stroke
+from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
 from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.nearness import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, union_bounds
-from aidl_lang.geometry.region import Face, Loop
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 from aidl_lang.geometry.tessellate import loop_points
+from aidl_lang.solver.components import connected
 
 HOLE, OPEN = "hole", "open"
 
@@ -60,9 +63,8 @@ class Outline:
 def outlines(model: SolvedModel, drawing: Drawing, profile: Profile = PLAIN) -> list[Outline]:
     """Returns all outlines of a drawing in the order of drawing and cutting."""
     rank = {operation: place for place, operation in enumerate(("", *profile.order))}
-    return sorted(
-        [*_lines(drawing, profile), *_cuts(model, drawing, profile)], key=lambda o: rank[o.operation]
-    )
+    lines = _apart(list(_lines(drawing, profile)), profile)
+    return sorted([*lines, *_cuts(model, drawing, profile)], key=lambda o: rank[o.operation])
 
 
 def unfilled(drawing: Drawing, profile: Profile) -> list[str]:
@@ -80,14 +82,15 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
     tolerance = RELATIVE_TOLERANCE * drawing.size
     areas = count(1)
     for (path, role, style), group in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
-        layer = role if role == OPEN else style.layer or role
+        layer = role if role == OPEN else style.layer or (HOLE if role == SLIT else role)
         made = partial(Outline, path=path, layer=layer, style=style)
         if role == HOLE:
             operation = profile.operation(style.layer, INNER)
             for loop in drawing.regions[path].loops:
                 yield made(loop.pieces, True, operation=operation, clockwise=loop.reversed)
             continue
-        operation = "" if role == OPEN else profile.operation(style.layer, ENGRAVE)
+        by_kind = INNER if role == SLIT else ENGRAVE
+        operation = "" if role == OPEN else profile.operation(style.layer, by_kind)
         followed: list[Piece] = []
         for stroke in group:
             loops = _bounding(stroke, operation, profile, tolerance)
@@ -103,6 +106,31 @@ def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
                 yield made(pieces, True, operation=FILL, area=next(areas))
             else:
                 yield made(pieces, False, operation=ENGRAVE)
+
+
+def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
+    """Yields outlines with areas of one colour that lie on each other made one, under the name of the first:
+    machines fill all closed outlines of a colour together, by alternation.
+    """
+    areas = [list(run) for area, run in groupby(found, key=lambda o: o.area) if area]
+    boxes = [union_bounds([bounds(piece) for o in area for piece in o.pieces]) for area in areas]
+    colors = [profile.color(first) for first, *_ in areas]
+    pairs = [pair for pair in near_pairs(boxes, 0.0) if colors[pair[0]] == colors[pair[1]]]
+    one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    first_of = connected(one, other, len(areas))
+    yield from (outline for outline in found if not outline.area)
+    for k, area in enumerate(areas):
+        together = [areas[j] for j in np.flatnonzero(first_of == k)]
+        if len(together) < 2:
+            yield from area if together else ()
+            continue
+        for loop in united(*map(_region, together)).loops:
+            yield replace(area[0], pieces=loop.pieces, clockwise=loop.reversed)
+
+
+def _region(area: Sequence[Outline]) -> Region:
+    first, *others = (Loop(outline.pieces, outline.clockwise) for outline in area)
+    return Region((Face(first, tuple(others)),))
 
 
 def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float) -> list[Loop]:

@@ -8,7 +8,8 @@ other curves in it has an entity for each piece.
 The order is that of `cuts`, the layers those of `dxf_layers`, the lines those of `dxf_lines`.
 
 Each entity carries the path of its body as XDATA of the application AIDL, and that of the hole it comes from
-as XDATA of AIDL_HOLE. A GROUP would need the path changed to what DXF takes as a name, and is lost when an
+as XDATA of AIDL_HOLE; what is engraved has the operation and its layer as XDATA of AIDL_ENGRAVED. A GROUP
+would need the path changed to what DXF takes as a name, and is lost when an
 entity is copied to another file.
 """
 
@@ -20,13 +21,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.drawings.dxf import ENGRAVED
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers, color_attributes
 from aidl_lang.export.dxf_lines import Lines
 from aidl_lang.export.labels import labels
 from aidl_lang.export.marks import Text
-from aidl_lang.export.profiles import PLAIN, Look, Profile
+from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -73,7 +75,7 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     found = outlines(job.model, job.drawing, profile or PLAIN)
     if profile is not None:
         found = [outline for outline in found if outline.operation]
-    for application in (BODY, HOLE):
+    for application in (BODY, HOLE, ENGRAVED):
         document.appids.new(application)
     if not is_old:
         document.header["$MEASUREMENT"] = METRIC
@@ -89,7 +91,12 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
             if outline.style.color is not None:
                 attributes |= color_attributes(outline.style.color, is_old)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
+        said = [outline.operation, outline.style.layer or ""] if outline.operation in ON_PARTS else []
+        if outline.operation in (FILL, SCORE) and not outline.style.layer:
+            said[1] = outline.operation
         for entity in entities.add(outline, attributes):
+            if said:
+                entity.set_xdata(ENGRAVED, [(1000, text[: TEXT_BYTES // ESCAPED]) for text in said])
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
     _add_labels(document, labels(job), layers)

@@ -7,6 +7,7 @@ by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import manifold3d
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
-from aidl_lang.export.solids import PlacedBody, thick_bodies
+from aidl_lang.export.solids import PlacedBody, Recess, thick_bodies
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
@@ -68,7 +69,7 @@ def _mesh(placed: PlacedBody) -> Mesh:
     center = np.array(((left + right) / 2, (bottom + top) / 2))
     tolerance = max(FINEST, FINENESS * max(right - left, top - bottom))
     faces = [[p - center for p in face_polygons(face, tolerance)] for face in body.region.faces]
-    made = _extruded(faces, thickness)
+    made = _extruded(faces, thickness, [_tool(r, thickness, center, tolerance) for r in placed.recesses])
     if made is None:
         raise ExportError(
             "E0918",
@@ -81,9 +82,30 @@ def _mesh(placed: PlacedBody) -> Mesh:
     return Mesh(body, points, np.asarray(made.tri_verts, dtype=np.int64))
 
 
-def _extruded(faces: list[list[NDArray[np.float64]]], thickness: float) -> manifold3d.Mesh64 | None:
-    """Extrudes faces, each given by its outline and its holes; returns None if Manifold's numbers do not
-    reach.
+def _tool(
+    recess: Recess, thickness: float, center: NDArray[np.float64], tolerance: float
+) -> manifold3d.Manifold:
+    """Returns what a recess takes away, and as much above the face, so that no skin is left on it."""
+    bottom = thickness - recess.depth
+    made = []
+    for face in recess.region.faces:
+        polygons = [p - center for p in face_polygons(face, tolerance)]
+        if recess.narrowing:
+            middle = polygons[0].mean(axis=0)
+            radius, sides = float(np.hypot(*(polygons[0][0] - middle))), len(polygons[0])
+            low, high = max(radius - recess.narrowing, 0.0), radius + recess.narrowing
+            cone = manifold3d.Manifold.cylinder(2 * recess.depth, low, high, sides)
+            made.append(cone.translate((*middle, bottom)))
+        else:
+            made.append(_upright(polygons, 2 * recess.depth).translate((0.0, 0.0, bottom)))
+    return manifold3d.Manifold.batch_boolean(made, manifold3d.OpType.Add)
+
+
+def _extruded(
+    faces: list[list[NDArray[np.float64]]], thickness: float, tools: Sequence[manifold3d.Manifold]
+) -> manifold3d.Mesh64 | None:
+    """Extrudes faces, each given by its outline and its holes, and cuts tools out of them; returns None if
+    Manifold's numbers do not reach.
     """
     try:
         if max(map(len, faces)) > _MANY:
@@ -92,6 +114,8 @@ def _extruded(faces: list[list[NDArray[np.float64]]], thickness: float) -> manif
             solid = _upright([polygon for face in faces for polygon in face], thickness)
     except RuntimeError:
         return None
+    for tool in tools:
+        solid -= tool
     return None if solid.is_empty() else solid.to_mesh64()
 
 

@@ -31,6 +31,8 @@ MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 _SEAM_OPACITY = 0.55
+_DRAWN = ":drawn"
+"""Behind the path of a solid or a hole: what is engraved there and no drawing of its own."""
 
 
 def picture(job: Job) -> Picture:
@@ -115,7 +117,10 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     for path, mark in marks:
         of[path].append(mark)
     for structure in stacked(model.root):
-        yield Group(structure.path, tuple(of[structure.path]), _identity(structure, drawing))
+        identity = _identity(structure, drawing)
+        yield Group(structure.path, tuple(of[structure.path]), identity)
+        if drawn := of.get(f"{structure.path}{_DRAWN}"):
+            yield Group(f"{structure.path}{_DRAWN}", tuple(drawn), {**identity, "data-kind": "drawing"})
 
 
 def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
@@ -143,9 +148,11 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
             line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
             for mark in halos.around_stroke(stroke, line):
                 yield stroke.path, mark
+    kinds = {structure.path: structure.kind for structure in root.walk()}
     for stroke, own in marks:
+        is_on_part = stroke.role == "drawing" and kinds[stroke.path] != "drawing"
         for mark in own:
-            yield stroke.path, mark
+            yield f"{stroke.path}{_DRAWN}" if is_on_part else stroke.path, mark
 
 
 def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:

@@ -22,6 +22,7 @@ FILL, ENGRAVE, SCORE, INNER, OUTER = OPERATIONS = ("fill", "engrave", "score", "
 CUT = "cut"
 """As the operation of a layer: the outlines of parts stay what they are, and lines are cut as inner ones."""
 CUTS = (INNER, OUTER)
+ON_PARTS = (FILL, ENGRAVE, SCORE)
 
 
 @record()

@@ -7,18 +7,22 @@ Lines become planes and arcs cylinders, all else linear extrusions; nothing is a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from OCP.BRep import BRep_Builder
-from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakePrism
 from OCP.collections import Array1_gp_Pnt
 from OCP.Geom import Geom_BezierCurve, Geom_Circle, Geom_Ellipse, Geom_Line, Geom_Plane
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
-from OCP.TopAbs import TopAbs_Orientation
+from OCP.StdFail import StdFail_NotDone
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.export.solids import Recess
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, ends, round_range
 from aidl_lang.geometry.placement import Plane
@@ -53,6 +57,16 @@ class Shapes:
             checkpoint()
             self._build.Add(made, self._wire(loop))
         return made
+
+    def recess(self, of: Recess) -> Iterator[TopoDS_Shape]:
+        """Yields the solids that a recess is, on its plane."""
+        circle = of.region.circle
+        if of.narrowing and circle is not None:
+            axes = _axes(circle.center, 0.0).Transformed(self._motion)
+            bottom = circle.radius - of.narrowing
+            yield BRepPrimAPI_MakeCone(axes, bottom, circle.radius, of.depth).Shape()
+        else:
+            yield from map(self.solid, of.region.faces)
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         """Returns an edge for each piece."""
@@ -93,6 +107,20 @@ class Shapes:
         self._build.Add(made, end.Oriented(TopAbs_Orientation.TopAbs_REVERSED))
         self._build.Range(made, first, last)
         return made.Reversed() if is_clockwise else made
+
+
+def without(solid: TopoDS_Shape, tools: Iterable[TopoDS_Shape]) -> list[TopoDS_Shape]:
+    """Returns the solids that are left of one."""
+    for tool in tools:
+        cut = BRepAlgoAPI_Cut(solid, tool)
+        if not cut.IsDone():
+            raise StdFail_NotDone("not cut")
+        solid = cut.Shape()
+    found, solids = TopExp_Explorer(solid, TopAbs_ShapeEnum.TopAbs_SOLID), []
+    while found.More():
+        solids.append(found.Current())
+        found.Next()
+    return solids
 
 
 def together(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:

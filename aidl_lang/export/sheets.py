@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import fixed, size_text
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import counted, listed, named
 from aidl_lang.export import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.unsaid import twice_compensated
 from aidl_lang.geometry.arcs import as_arcs, has_slivers
-from aidl_lang.geometry.drawing import Drawing, Stroke
+from aidl_lang.geometry.drawing import SLIT, Drawing, Stroke
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nesting import NestingError
 from aidl_lang.geometry.network import union_bounds
@@ -19,8 +19,11 @@ from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.parts import Size
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sheets import laid_out
+from aidl_lang.geometry.slits import WIDEST, Slit, without_slits
 from aidl_lang.geometry.solved import SolvedModel
 
+_SAME = 1e-6
+"""Difference of widths, relative to the cut, that is none."""
 MOST_PARTS = 5000
 """More parts are a mistake, and would take minutes to pack."""
 
@@ -30,7 +33,9 @@ def grown(job: Job, progress: Progress) -> tuple[Job, list[Diagnostic]]:
     if not job.options.kerf:
         return job, []
     notes = twice_compensated(job.model.root, job.options.kerf)
-    return replace(job, drawing=_widened(job, job.options.kerf / 2, progress), whole=job), notes
+    drawing, slits = _widened(job, job.options.kerf / 2, progress)
+    notes += _slit_notes(job, slits)
+    return replace(job, drawing=drawing, whole=job), notes
 
 
 def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
@@ -103,22 +108,41 @@ def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
     )
 
 
-def _widened(job: Job, by: float, progress: Progress) -> Drawing:
+def _slit_notes(job: Job, slits: Mapping[str, Sequence[Slit]]) -> Iterator[Diagnostic]:
+    """Yields a note on slits that become as wide as the cut, and were drawn in another width."""
+    kerf = job.options.kerf
+    others = {path: [s for s in own if abs(s.width - kerf) > _SAME * kerf] for path, own in slits.items()}
+    for path, own in others.items():
+        if own:
+            structure, widths = job.model.root.find(path), sorted({fixed(round(s.width, 6)) for s in own})
+            is_one = len(own) == 1
+            yield Diagnostic(
+                "N0757",
+                f"{counted(len(own), 'slit')} of `{path}` {'is' if is_one else 'are'} cut in one pass: "
+                f"{fixed(kerf)} mm wide, as the cut, and drawn {listed(widths)} mm wide",
+                None if structure is None else structure.span,
+                hints=(f"gaps wider than {fixed(WIDEST * kerf)} mm are cut along both sides",),
+            )
+
+
+def _widened(job: Job, by: float, progress: Progress) -> tuple[Drawing, dict[str, list[Slit]]]:
     """Returns the drawing with all material grown by half the width of the cut, and holes shrunk by as
-    much. Outlines with pieces too short to be cut are drawn anew.
+    much, and the slits that are lines in it. Outlines with pieces too short to be cut are drawn anew.
     """
     drawing = job.drawing
     holes = {s.path for s in job.model.root.walk() if s.kind == "hole"}
     grown = dict.fromkeys(holes, -by) | {body.path: by for body in drawing.bodies}
     regions = {}
+    filled = {body.path: without_slits(body.region, 2 * by) for body in drawing.bodies}
     for done, (path, region) in enumerate(drawing.regions.items()):
         progress(done, len(drawing.regions))
+        region, _ = filled.get(path, (region, ()))
         regions[path] = offset(region, grown.get(path, 0.0))
     progress(len(drawing.regions), len(drawing.regions))
     bodies = []
     for body in drawing.bodies:
         region = regions[body.path]
-        if len(region.loops) != len(body.region.loops):
+        if len(region.loops) != len(filled[body.path][0].loops):
             raise ExportError(
                 "E0924",
                 f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm",
@@ -126,8 +150,15 @@ def _widened(job: Job, by: float, progress: Progress) -> Drawing:
             )
         region = _smoothed(region, job.options.tolerance)
         bodies.append(replace(body, region=region, box=region_bounds(region)))
+    slits = {path: found for path, (_, found) in filled.items()}
+    cuts = tuple(
+        Stroke(path, path, (slit.way,), drawing.styles[path], SLIT)
+        for path, found in slits.items()
+        for slit in found
+    )
     box = union_bounds([drawing.box, *(body.box for body in bodies)])
-    return replace(drawing, bodies=tuple(bodies), regions=regions, box=box)
+    strokes = drawing.strokes + cuts
+    return replace(drawing, bodies=tuple(bodies), strokes=strokes, regions=regions, box=box), slits
 
 
 def _smoothed(region: Region, tolerance: float) -> Region:

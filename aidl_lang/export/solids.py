@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -10,7 +13,9 @@ from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.evaluate import LARGEST
+from aidl_lang.geometry.overhanging import owner
 from aidl_lang.geometry.placement import GROUND, Plane, planes, thickness_of
+from aidl_lang.geometry.region import Region
 
 THINNEST = 1e-6
 """mm. A smaller thickness is lost among the tolerances of programs that read the file."""
@@ -20,12 +25,27 @@ _NAMED = 6
 
 
 @record()
+class Recess:
+    """An area that a hole which ends in its solid takes away of it, down from the face that is seen.
+
+    plane      that of its bottom, `depth` mm below the face
+    narrowing  how much less the radius of a circle is there, mm
+    """
+
+    region: Region
+    plane: Plane
+    depth: float
+    narrowing: float = 0.0
+
+
+@record()
 class PlacedBody:
-    """A body, its plane, and its thickness in mm; None if it stays flat."""
+    """A body, its plane, its thickness in mm, None if it stays flat, and what is taken away of that."""
 
     body: Body
     plane: Plane
     thickness: float | None
+    recesses: tuple[Recess, ...] = ()
 
 
 def placed_bodies(job: Job) -> list[PlacedBody]:
@@ -36,16 +56,43 @@ def placed_bodies(job: Job) -> list[PlacedBody]:
         thickness = thickness_of(body, job.options.thickness)
         _require_size(body, thickness)
         _require_place(body.path, stand[body.path])
-        found.append(PlacedBody(body, stand[body.path], thickness))
+        recesses = _recesses(job, body, stand[body.path], thickness) if thickness is not None else ()
+        found.append(PlacedBody(body, stand[body.path], thickness, tuple(recesses)))
     return found
 
 
+def _recesses(job: Job, body: Body, plane: Plane, thickness: float) -> Iterator[Recess]:
+    bodies, styles = {other.path: other for other in job.drawing.bodies}, job.drawing.styles
+    grows_up = float(np.cross(plane.u, plane.v) @ plane.growth) > 0
+    for path, region in job.drawing.regions.items():
+        if not styles[path].is_blind or not _holds(bodies, path, body.path):
+            continue
+        depth, *taper = styles[path].depth
+        slope = math.tan(math.radians(taper[0] / 2)) if taper else 0.0
+        if (circle := region.circle) is None:
+            slope = 0.0
+        elif slope:  # no deeper than its point
+            depth = min(depth, circle.radius / slope)
+        bottom = plane.shifted(thickness - depth) if grows_up else plane
+        yield Recess(region, bottom, depth, depth * slope)
+
+
+def _holds(bodies: Mapping[str, Body], hole: str, body: str) -> bool:
+    """Tells whether a hole takes away of a body: the one around it, or all in the assembly around it."""
+    if (holder := owner(bodies, hole)) is not None:
+        return holder == body
+    while hole and not any(path.startswith(f"{hole}.") for path in bodies):
+        hole = hole.rpartition(".")[0]
+    return body.startswith(f"{hole}.")
+
+
 def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
-    """Returns the strokes with the planes they lie in."""
+    """Returns the strokes with the planes they lie in, without the outlines of recesses."""
     stand = _planes(job)
     for stroke in job.drawing.strokes:
         _require_place(stroke.path, stand[stroke.path])
-    return [(stroke, stand[stroke.path]) for stroke in job.drawing.strokes]
+    solid = {path for path, style in job.drawing.styles.items() if style.is_blind}
+    return [(stroke, stand[stroke.path]) for stroke in job.drawing.strokes if stroke.path not in solid]
 
 
 def _planes(job: Job) -> dict[str, Plane]:

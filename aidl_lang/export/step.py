@@ -39,7 +39,7 @@ from OCP.XSControl import XSControl_WorkSession
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
-from aidl_lang.export.shapes import Shapes, together
+from aidl_lang.export.shapes import Shapes, together, without
 from aidl_lang.export.solids import placed_bodies, placed_strokes
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
@@ -94,6 +94,9 @@ def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
             shapes = Shapes(placed.plane, tolerance, placed.thickness or 0.0)
             make = shapes.face if placed.thickness is None else shapes.solid
             made = [_valid(make, face) for face in body.region.faces]
+            tools = [t for r in placed.recesses for t in Shapes(r.plane, tolerance, r.depth).recess(r)]
+            if tools:
+                made = [solid for shape in made for solid in without(shape, tools)]
         yield _Part(body.path, made, body.style)
 
 

@@ -11,6 +11,7 @@ from aidl_lang.export import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_unlined
 
+_NAMED = 6
 _UNLINED = "stroke(none)"
 _WITHOUT: Mapping[str, str] = {
     "stroke": "cutter .step .stl .3mf",
@@ -49,6 +50,26 @@ def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
             stated[0].span,
             "stated here" if len(stated) == 1 else f"stated here first, {len(stated)} times in all",
             hints=("pictures (.svg, .png, .pdf) are drawn so",),
+        )
+    ]
+
+
+def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
+    """Returns a note on holes that end in their solid, of which a cutter can engrave the outline alone."""
+    depths = {path: s.depth for path, s in job.drawing.styles.items() if s.is_blind}
+    blind = [path for path in job.drawing.regions if path in depths]
+    if not blind or (job.options.followed is None and suffix != ".dxf"):
+        return []
+    structure = job.model.root.find(blind[0])
+    is_one = len(blind) == 1
+    deep = {fixed(depths[path][0]) for path in blind}
+    return [
+        Diagnostic(
+            "N0756",
+            f"{named(blind, _NAMED)} {'ends' if is_one else 'end'} in {'its' if is_one else 'their'} solid: "
+            f"{'its outline is' if is_one else 'their outlines are'} engraved, and nothing is cut there",
+            None if structure is None else structure.span,
+            hints=(f"sink or mill there to the depth that is said: {listed(sorted(deep))} mm",),
         )
     ]
 

@@ -11,7 +11,7 @@ draws itself is one more, and its holes cut them all. Where this leaves a choice
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from aidl_lang.common.records import record
@@ -134,12 +134,14 @@ Finding = OwnFinding | CrossedOutline
 @record(frozen=False)
 class Bodies:
     """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
-    what each draws itself. `clips`: for each structure that is clipped, what it may lie in.
+    what each draws itself. `clips`: for each structure that is clipped, what it may lie in. `blind`: the
+    holes that end in their solid, which stays whole as seen from above.
     """
 
     network: Network
     shapes: Mapping[str, Sequence[Shape]]
     clips: Mapping[str, Section] = field(default_factory=dict)
+    blind: Collection[str] = ()
     sections: dict[str, Section] = field(default_factory=dict)
     faces: dict[str, list[OwnFace]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
@@ -164,6 +166,8 @@ class Bodies:
         holes = ([] if own is None else [Void(hole, own)]) + [v for c in inner for v in c.holes]
         if holes:
             self.sections[hole.path] = union([v.section for v in holes])
+        if hole.path in self.blind:
+            holes = [void for void in holes if void.hole is not hole]
         return Cut(tuple(holes), tuple(islands))
 
     def _own(self, structure: SolvedStructure) -> Section | None:

@@ -5,7 +5,8 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
@@ -17,7 +18,7 @@ from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape
+from aidl_lang.geometry.faces import Shape, region_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -28,10 +29,10 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
-from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note
+from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
+from aidl_lang.geometry.overhanging import overhanging_notes
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
@@ -39,6 +40,9 @@ from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructu
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.geometry.tracing import ENGRAVED
+
+SLIT = "slit"
 
 
 @record()
@@ -67,8 +71,10 @@ class Seam:
 class Stroke:
     """Curves drawn as lines.
 
-    `role` is `drawing` for the curves of a drawing, `open` for curves of other structures that bound no face,
-    `hole` for the outline of a hole that nothing holds. `over`: the colour of what it lies on, where it
+    `role` is `drawing` for the curves of a drawing and the outlines of holes that end in
+    their solid, `open` for curves of other structures that bound no face,
+    `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
+    `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
     which is filled where it can be; `pieces` are their outlines.
     """
@@ -128,18 +134,24 @@ class Drawing:
 def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
     notes: list[Diagnostic] = []
-    curves, boxes, shapes = _collect(model.root, notes)
+    curves, boxes, shapes, engraved = _collect(model.root, notes)
     clips, around = clip_shapes(model.root, len(curves))
     network = Network([*curves, *around], [*boxes, *map(bounds, around)])
-    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips)
+    styles = styles_of(model.root)
+    blind = [path for path, style in styles.items() if style.is_blind]
+    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips, blind)
     notes += [gap_note(gap) for gap in gaps]
     notes += crossing_notes(network, model.root, shapes)
     regions = {path: outline.region for path, outline in traced.items()}
-    styles = styles_of(model.root)
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
+    notes += [
+        upright_note(s)
+        for s in model.root.walk()
+        if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
+    ]
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
     touching = contacts(network, solids)
     found = [
@@ -165,11 +177,15 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for b, m in zip(bodies, masses, strict=True)
     ]
     drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
-    inked = [number for path in drawings for shape in shapes[path] for number in shape.numbers]
+    on_parts = [shape for path in drawings for shape in shapes[path]] + [
+        s for e in engraved.values() for s in e
+    ]
+    inked = [number for shape in on_parts for number in shape.numbers]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
-    strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
+    strokes = tuple(_strokes(model.root, shapes, engraved, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
+    notes += overhanging_notes(model.root, bodies, strokes)
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
     notes += idle_orders(model.root, [b.path for b in bodies])
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
@@ -182,16 +198,20 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 
 
 def _closed(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
+    root: SolvedStructure,
+    network: Network,
+    shapes: dict[str, list[Shape]],
+    clips: Clips,
+    blind: Collection[str],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network after small gaps between curves are closed, what the curves enclose, and these
     gaps.
     """
-    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips))
+    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps))
-        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips))
+        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -202,10 +222,14 @@ def _closed(
 
 
 def _arranged(
-    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]], clips: Clips
+    root: SolvedStructure,
+    network: Network,
+    shapes: dict[str, list[Shape]],
+    clips: Clips,
+    blind: Collection[str],
 ) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
-    walk = Bodies(network, shapes, clip_sections(network, root, clips))
+    walk = Bodies(network, shapes, clip_sections(network, root, clips), blind)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
     paths = [s.path for s in root.walk() if s.path in walk.sections]
@@ -216,13 +240,14 @@ def _arranged(
 
 def _collect(
     root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]]]:
+) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]], dict[str, list[Shape]]]:
     """Returns all curves that can be drawn, numbered, their boxes, and by structure the shapes they belong
-    to.
+    to, and the outlines that a file says are engraved.
     """
     curves: list[Piece] = []
     boxes: list[Bounds] = []
     shapes: dict[str, list[Shape]] = {}
+    engraved: dict[str, list[Shape]] = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.drawn:
@@ -231,6 +256,7 @@ def _collect(
                 continue
             leaves = []
             vanished = []
+            on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
             for leaf in _leaves(geometry):
                 usable = _usable(leaf.curve) if leaf.curve else None
                 if usable is None:
@@ -239,12 +265,19 @@ def _collect(
                 leaves.append((leaf, len(curves)))
                 curves.append(usable[0])
                 boxes.append(usable[1])
+            numbers = {id(leaf): (leaf, number) for leaf, number in leaves}
+            engraved.setdefault(structure.path, []).extend(
+                Shape(part, tuple(numbers[id(leaf)] for leaf in part.parts if id(leaf) in numbers))
+                for part in geometry.walk()
+                if part.type == ENGRAVED
+            )
+            leaves = [leaf for leaf in leaves if id(leaf[0]) not in on_part]
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
-    return curves, boxes, shapes
+    return curves, boxes, shapes, engraved
 
 
 def _has_strokes(geometry: SolvedGeometry) -> bool:
@@ -314,6 +347,7 @@ def _covered_letters(
 def _strokes(
     root: SolvedStructure,
     shapes: dict[str, list[Shape]],
+    engraved: dict[str, list[Shape]],
     walk: Bodies,
     styles: dict[str, Style],
     regions: dict[str, Region],
@@ -327,6 +361,12 @@ def _strokes(
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+        for shape in engraved.get(path, ()):
+            look = styled(replace(style, color=None), shape.geometry)
+            for pieces, faces in _told_apart([shape], ground.network, is_area=look.is_area):
+                yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
+        if style.is_blind and path in regions:
+            yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
             if pieces := walk.inner_pieces(structure, number):
                 yield Stroke(path, leaf.path, pieces, style, "open")
@@ -351,6 +391,7 @@ def _inked(
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
     seen: set[str] = set()
+    alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
@@ -367,31 +408,36 @@ def _inked(
         if is_asked and look.color and hidden and all(hidden):
             lost.setdefault(look.color, []).append(shape.geometry.name)
         over = look.color if any(hidden) and not is_asked else None
-        for pieces, faces in _told_apart(shape, ground.network):
-            yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over, faces=faces)
+        # What is engraved as areas is one area, the rest a stroke for each shape.
+        alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
+    for (look, over, _), together in alike.items():
+        for pieces, faces in _told_apart(together, ground.network, is_area=look.is_area):
+            yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
         if whole := [name for name in names if _array(name) not in seen]:
             notes.append(covered_note(drawing, whole, by))
 
 
-def _told_apart(shape: Shape, network: Network) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
-    """Yields the letters of a shape, which are filled, and the rest of it, each with its faces."""
-    number_of = {id(leaf): number for leaf, number in shape.leaves}
-    letters: list[Piece] = []
-    faces: list[Face] = []
-    for glyph in (g for g in shape.geometry.walk() if g.filled):
-        own = [leaf for leaf in glyph.parts if id(leaf) in number_of]
-        outline = [network.curves[number_of[id(leaf)]] for leaf in own]
-        if found := letter_faces(outline) if outline else ():
-            letters += outline
-            faces += found
-            for leaf in own:
-                del number_of[id(leaf)]
-    if rest := tuple(network.curves[number] for number in number_of.values()):
-        yield rest, ()
-    if letters:
-        yield tuple(letters), tuple(faces)
+def _told_apart(
+    shapes: Sequence[Shape], network: Network, *, is_area: bool
+) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
+    """Yields the lines of shapes, and with its faces the outlines of what is filled of them: letters, what
+    closed shapes of a file enclose together, as in a solid, and all that is to be an area.
+    """
+    drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
+    parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
+    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
+    inked = (
+        (shape.geometry, [(leaf, network.curves[k]) for leaf, k in shape.leaves if id(leaf) in filled])
+        for shape in shapes
+    )
+    region, loose = region_of((g, leaves) for g, leaves in inked if leaves)
+    filled -= {id(leaf) for leaf in loose}
+    if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
+        yield lines, ()
+    if region:
+        yield region.pieces, region.faces
 
 
 def _array(name: str) -> str:

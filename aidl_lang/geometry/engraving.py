@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from aidl_lang.geometry.boolean import section_of
+from aidl_lang.geometry.boolean import common, section_of, without
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Body, Stroke
-from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds, reverse
+from aidl_lang.geometry.drawing import SLIT, Body, Stroke
+from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.overhanging import Holders
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import inside_mask
 
@@ -21,50 +22,39 @@ def engraved(
     bodies: Sequence[Body], strokes: Sequence[Stroke]
 ) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
     """Returns the strokes of drawings by the path of their body, and the strokes on no body."""
-    by_path = {body.path: body for body in bodies}
-    around = {owner(by_path, body.path.rpartition(".")[0]) for body in bodies}  # these have others in them
+    holders = Holders(bodies)
     on: dict[str, list[Stroke]] = {}
     off: list[Stroke] = []
     for stroke in strokes:
-        if stroke.role != "drawing":
+        if stroke.role not in ("drawing", SLIT):
             continue
-        holder = owner(by_path, stroke.path)
-        if holder is not None and holder not in around:
-            on.setdefault(holder, []).append(stroke)
+        holder = holders.of(stroke)
+        if holder is not None:
+            on.setdefault(holder.path, []).append(stroke)
             continue
-        rest = stroke.pieces
+        rest: Stroke | None = stroke
         for body in _by_cover(stroke, bodies):
-            if not rest:
+            if rest is None:
                 break
-            inside, rest = divided(rest, body.region)
-            if inside:
-                on.setdefault(body.path, []).extend(_cut_off(stroke, inside))
-        if _length(rest) > NO_LENGTH:
-            off.append(replace(stroke, pieces=rest))
+            inside, rest = _cut_off(rest, body.region)
+            if inside is not None:
+                on.setdefault(body.path, []).append(inside)
+        if rest is not None and _length(rest.pieces) > NO_LENGTH:
+            off.append(rest)
     return on, off
 
 
-def _cut_off(stroke: Stroke, inside: tuple[Piece, ...]) -> Iterator[Stroke]:
-    """Yields a stroke as far as it lies on a body: letters whole, with what they enclose, or as lines."""
-    if not stroke.faces or inside == stroke.pieces:
-        yield replace(stroke, pieces=inside)
-        return
-    here = {*inside, *map(reverse, inside)}
-    whole = [f for f in stroke.faces if all(p in here for loop in f.loops for p in loop.pieces)]
-    enclosing = {p for f in whole for loop in f.loops for p in loop.pieces}
-    enclosing |= {*map(reverse, enclosing)}
-    letters = tuple(p for p in inside if p in enclosing)
-    if letters:
-        yield replace(stroke, pieces=letters, faces=tuple(whole))
-    if rest := tuple(p for p in inside if p not in enclosing):
-        yield replace(stroke, pieces=rest, faces=())
-
-
-def owner(bodies: Mapping[str, Body], path: str) -> str | None:
-    """Returns the nearest body at a path or above it."""
-    while path and path not in bodies:
-        path = path.rpartition(".")[0]
-    return path or None
+def _cut_off(stroke: Stroke, region: Region) -> tuple[Stroke | None, Stroke | None]:
+    """Returns a stroke as far as it lies on a region, and the rest of it: areas as areas, lines as lines."""
+    inside, outside = divided(stroke.pieces, region)
+    if not outside or not inside:
+        return (stroke, None) if inside else (None, stroke)
+    if not stroke.faces:
+        return replace(stroke, pieces=inside), replace(stroke, pieces=outside)
+    area = Region(stroke.faces)
+    found = (operation(area, region) for operation in (common, without))
+    here, there = (replace(stroke, pieces=a.pieces, faces=a.faces) if a else None for a in found)
+    return here, there
 
 
 def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:

@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.network import Network, Use
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.network import Network, Use, with_finer_chords
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.geometry.trace import trace
@@ -295,6 +297,28 @@ def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
     for use in uses:
         parts[root(first_node(network, use))].append(use)
     return list(parts.values())
+
+
+def region_of(
+    geometry: Iterable[tuple[SolvedGeometry, Sequence[tuple[SolvedGeometry, Piece]]]],
+) -> tuple[Region, list[SolvedGeometry]]:
+    """Returns the region that geometries enclose together, each given with its primitives and their curves,
+    and the primitives that bound nothing.
+    """
+    curves: list[Piece] = []
+    shapes = []
+    for g, leaves in geometry:
+        shapes.append(Shape(g, tuple((leaf, k) for k, (leaf, _) in enumerate(leaves, len(curves)))))
+        curves += [curve for _, curve in leaves]
+    if not curves:
+        return Region(), []
+    network = Network(curves)
+
+    def traced() -> tuple[Region, list[SolvedGeometry]]:
+        found = own_faces(network, shapes)
+        return trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
+
+    return with_finer_chords(network, traced)
 
 
 def union_of(faces: Iterable[OwnFace]) -> Section:

@@ -98,6 +98,15 @@ def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) 
     return Fix(f"make `{geometry.name}` a hole", (Edit(span, hole),))
 
 
+def upright_note(hole: SolvedStructure) -> Diagnostic:
+    return Diagnostic(
+        "W0760",
+        f"`{hole.path}` is to narrow as a cone, and is no circle: its walls stand upright",
+        hole.span,
+        hints=("leave the angle of `@depth` out, or draw one circle in a hole of its own",),
+    )
+
+
 def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     s = finding.structure
     names = _whole_names(s, [g for g, _ in finding.curves])

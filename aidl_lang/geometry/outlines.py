@@ -14,13 +14,12 @@ from aidl_lang.geometry.clipping import clipped, clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
 from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
-from aidl_lang.geometry.faces import Shape, own_faces, union_of
+from aidl_lang.geometry.faces import region_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.letters import letter_faces
 from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.misfits import Misfit, merged_notes, misfits
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
@@ -32,7 +31,6 @@ from aidl_lang.geometry.tiling import (
     tiled_bars,
     tiled_strokes,
 )
-from aidl_lang.geometry.trace import trace
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 """Primitives that are drawn, with their curves."""
@@ -429,9 +427,8 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
         return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
 
     def inner(g: SolvedGeometry) -> SolvedGeometry:
-        own = [c for _, c in _leaves(g)] if g.filled else []
-        if own and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
-            return replace(g, parts=parts(g, common(Region(letter_faces(own)), region).pieces))
+        if g.filled and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
+            return replace(g, parts=parts(g, common(_region([g]), region).pieces))
         curve, one = kept.get(id(g), (None, None))
         if one is None or one.inner == (curve,):
             return replace(g, parts=tuple(map(inner, g.parts)))
@@ -442,19 +439,8 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
 
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:
     """Returns the region that some geometry encloses together."""
-    curves: list[Piece] = []
-    shapes = []
-    for g in geometry:
-        leaves = []
-        for leaf, curve in _leaves(g):
-            leaves.append((leaf, len(curves)))
-            curves.append(curve)
-        if leaves:
-            shapes.append(Shape(g, tuple(leaves)))
-    network = Network(curves)
-    return with_finer_chords(
-        network, lambda: trace(network, union_of(own_faces(network, shapes).faces)).region
-    )
+    found = ((g, list(_leaves(g))) for g in geometry)
+    return region_of((g, leaves) for g, leaves in found if leaves)[0]
 
 
 def _pieces(region: Region) -> list[Piece]:

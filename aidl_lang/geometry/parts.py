@@ -13,10 +13,11 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
-from aidl_lang.geometry.engraving import boxes_meet, engraved, owner
+from aidl_lang.geometry.engraving import boxes_meet, engraved
 from aidl_lang.geometry.evaluate import Bounds, bounds, inward
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.overhanging import owner
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.tessellate import face_polygons

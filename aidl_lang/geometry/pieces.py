@@ -226,20 +226,72 @@ def fallen_piece_notes(
     held = _held_by_others(solids, pairs)
     known, holes = {s.path: s for s in root.walk()}, _holes(root, masses)
     for mass, solid in zip(masses, solids, strict=True):
-        if mass.structure.path in free or mass.section.num_contour() < _RING:
+        if mass.structure.path in free or mass.section.num_contour() < 2:
+            continue
+        others = held.get(solid.path, ())
+        islands = union([f.section for s in _islands(mass.structure) for f in walk.faces.get(s.path, ())])
+        yield from _severed(walk, mass, holes.get(mass.structure.path, ()), others, islands)
+        if mass.section.num_contour() < _RING:
             continue
         loose: dict[str, _Loose] = {}
-        islands = union([f.section for s in _islands(mass.structure) for f in walk.faces.get(s.path, ())])
         for piece, gap in _enclosed(mass.section.decompose()):
             if not is_nothing(intersection(piece, islands)):
                 continue  # put there on purpose
-            if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, held.get(solid.path, ())):
+            if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
                 for path, around in _cutting(walk, holes.get(mass.structure.path, ()), gap, piece):
                     fallen = loose.setdefault(path, _Loose([], {}))
                     fallen.pieces.append(piece)
                     fallen.around.update(around)
         for path, fallen in loose.items():
             yield _fallen(known[path], mass.structure, walk, fallen)
+
+
+def _severed(
+    walk: Bodies,
+    mass: Mass,
+    holes: Sequence[SolvedStructure],
+    others: Sequence[Solid],
+    islands: Section,
+) -> Iterator[Diagnostic]:
+    """Yields the warning that holes leave a solid in pieces beside one another which were one before, and of
+    which nothing else holds those that are not the largest.
+    """
+    pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
+    enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
+    beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
+    faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
+    for whole in union(faces).decompose():
+        parts = [piece for piece in beside if covers(whole, piece)]
+        apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
+        cut = [h for h in holes if h.path in walk.sections and _links(walk.sections[h.path], parts)]
+        if apart and cut:
+            yield _cut_through(walk, mass.structure, cut, [parts[0], *apart])
+
+
+def _links(hole: Section, pieces: Sequence[Section]) -> bool:
+    """Tells whether pieces would hang together if a hole were filled."""
+    return len(union([hole, *pieces]).decompose()) < len(pieces)
+
+
+def _cut_through(
+    walk: Bodies, solid: SolvedStructure, holes: Sequence[SolvedStructure], pieces: Sequence[Section]
+) -> Diagnostic:
+    boxes = [region_bounds(traced.region) for traced in trace_all(walk.network, pieces)]
+    sizes = [f"{rough(b[2] - b[0])} × {rough(b[3] - b[1])} mm" for b in boxes[:_MOST]]
+    more = f" and {len(boxes) - _MOST} more" if len(boxes) > _MOST else ""
+    first = holes[0]
+    return Diagnostic(
+        "W0762",
+        f"{solid.kind} `{solid.path}` falls into {len(pieces)} pieces: "
+        f"{named([hole.path for hole in holes], _MOST)} {'cuts' if len(holes) == 1 else 'cut'} through it",
+        first.span or solid.span,
+        f"what is left measures {', '.join(sizes)}{more}",
+        hints=(
+            f"end `{first.name}` within the material, or leave a bridge: a `solid` in `{first.name}` stays",
+            "if they are parts of their own, make each a `solid`",
+            f"if that is meant, say so: `@detached` before `{solid.name}`",
+        ),
+    )
 
 
 @record()

@@ -52,6 +52,12 @@ class Region:
     def loops(self) -> tuple[Loop, ...]:
         return tuple(loop for face in self.faces for loop in face.loops)
 
+    @property
+    def circle(self) -> Circle | None:
+        """The circle that it is, if it is one."""
+        only = self.faces[0].outer.pieces[0] if len(self.loops) == 1 else None
+        return only if isinstance(only, Circle) else None
+
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """All that it is bounded by, loop by loop."""

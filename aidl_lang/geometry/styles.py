@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, Scalar, SolvedGeometry, SolvedStructure
@@ -60,6 +61,7 @@ class Style:
     shade    how the fill of a body changes over it
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
+    depth    of a hole that ends in its solid, mm, and the angle of a cone, degrees; none if it goes through
     quantity  how many pieces are made of each part, those around it multiplied
     """
 
@@ -73,6 +75,7 @@ class Style:
     shade: Shade | None = None
     edges: str | None = None
     halo: float | None = None
+    depth: tuple[float, ...] = ()
     quantity: int = 1
 
     @property
@@ -95,6 +98,17 @@ class Style:
     def is_unlined(self) -> bool:
         """True if its solids have no outline."""
         return self.stroke == 0
+
+    @property
+    def is_blind(self) -> bool:
+        """True for holes that end in their solid, and for cones, which are wide at its face alone."""
+        is_deep = self.thickness is not None and self.depth[:1] >= (self.thickness,)
+        return bool(self.depth) and not (is_deep and len(self.depth) == 1)
+
+    @property
+    def is_area(self) -> bool:
+        """True if drawings are engraved as areas: on a layer of that name."""
+        return self.layer is not None and fold(self.layer) == "fill"
 
     def dashes(self, size: float) -> tuple[float, ...] | None:
         """Returns dashes and gaps by turns, mm, in a drawing of a size; None for whole lines."""
@@ -147,6 +161,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         around.shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
+        tuple(float(v) for v in stated.get("depth", ()) if isinstance(v, int | float)),
         around.quantity * int(_number(stated.get("quantity"), 1.0) or 1),
     )
 

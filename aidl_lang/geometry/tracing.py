@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TypeAlias
 
 from aidl_lang.building.model import Geometry
@@ -20,10 +21,11 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, 
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, is_nothing, union
-from aidl_lang.geometry.solved import SolvedGeometry
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry
 
 _WINDING = "winding_contours"
 CONTOURS = ("contours", _WINDING)
+ENGRAVED = "engraved_contours"
 """The types of a part that is one shape of a file: filled by alternation, or by the non-zero rule."""
 
 Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
@@ -103,17 +105,13 @@ def _contours(
         )
 
     edges = tuple(edge(k, curve) for k, curve in enumerate(curves))
-    return SolvedGeometry(
-        f"{label}[{number}]",
-        path,
-        CONTOURS[element.is_winding],
-        {},
-        None,
-        edges,
-        g.construction,
-        g.span,
-        filled=g.filled,
-    )
+    name, kind, is_filled = f"{label}[{number}]", CONTOURS[element.is_winding], g.filled
+    looks: dict[str, tuple[Scalar, ...]] = {}
+    if (engraving := element.engraving) is not None:
+        kind, is_filled = ENGRAVED, is_filled or engraving.is_area
+        looks = {k: (v,) for k, v in (("layer", engraving.layer), ("color", engraving.color)) if v}
+    made = SolvedGeometry(name, path, kind, {}, None, edges, g.construction, g.span, filled=is_filled)
+    return replace(made, attributes=looks)
 
 
 def is_winding(shape: SolvedGeometry) -> bool:

@@ -134,6 +134,7 @@ SNIPPETS = (
     Snippet("@material", "the material", '@material("${1:birch plywood}")$0', "attribute"),
     Snippet("@thickness", "the thickness", "@thickness(${1:3mm})$0", "attribute"),
     Snippet("@orientation", "how a part stands", "@orientation(${1:front})$0", "attribute"),
+    Snippet("@depth", "how deep a hole is that ends in its solid", "@depth(${1:2mm})$0", "attribute"),
     Snippet("@quantity", "how many pieces are made of a part", "@quantity(${1:4})$0", "attribute"),
     Snippet("@elevation", "how high a part lies", "@elevation(${1:18mm})$0", "attribute"),
     Snippet("@note", "a note on the drawing", '@note("${1:glue here}")$0', "attribute"),

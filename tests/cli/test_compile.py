@@ -236,3 +236,21 @@ def test_only_regular_files_of_bounded_size_are_read(aidl: Aidl, folder: Path) -
     result = aidl("check", "main.aidl")
     assert result.code == 1
     assert "it cannot be read" in result.err
+
+
+@pytest.mark.parametrize("text", ["", "// only a remark\n", "solid part(w = 3) { b = square(size: w) }\n"])
+@pytest.mark.parametrize("more", [(), ("--quiet",)])
+def test_nothing_replaces_no_drawing(aidl: Aidl, folder: Path, text: str, more: tuple[str, ...]) -> None:
+    assert aidl("compile", "good.aidl", "-o", "plate.svg", "-o", "plate.dxf").code == 0
+    before = (folder / "plate.svg").read_bytes(), (folder / "plate.dxf").read_bytes()
+    (folder / "none.aidl").write_text(text)
+    result = aidl("compile", "none.aidl", "-o", "new.svg", "-o", "plate.svg", "-o", "plate.dxf", *more)
+    assert result.code == 2
+    assert "error[E0929]: nothing is drawn, so `plate.svg` is left as it is\n" in result.err
+    assert "= hint: if it shall be empty, delete it first\n" in result.err
+    assert ((folder / "plate.svg").read_bytes(), (folder / "plate.dxf").read_bytes()) == before
+    assert not (folder / "new.svg").exists()
+    # Where there is none yet, or a drawing of nothing, one is written.
+    for _ in range(2):
+        assert aidl("compile", "none.aidl", "-o", "new.svg", *more).code == 0
+    assert (folder / "new.svg").exists()

@@ -105,11 +105,16 @@ def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:
             time.sleep(1.0)
             (folder / "good.aidl").write_text("solid plate { edge = }\n")
             second = process.stderr.readline()
+            drawn = (folder / "watched.svg").read_bytes()
+            (folder / "good.aidl").write_text("")
+            third = process.stderr.readline()
         finally:
             process.send_signal(signal.SIGINT)
         rest = process.stderr.read()
     assert "watched.svg: solved" in first
     assert "error[E0" in second
+    assert "error[E0929]: nothing is drawn, so `watched.svg` is left as it is" in third
+    assert (folder / "watched.svg").read_bytes() == drawn
     assert "Traceback" not in rest
     assert process.returncode == 130
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,7 @@ import ezdxf
 import pypdfium2
 import pytest
 import trimesh
-from shapely.geometry import Polygon
+from shapely import LineString, Polygon, unary_union
 
 from aidl_lang import AidlError
 from tests import compiled
@@ -428,3 +429,51 @@ def test_what_falls_out_is_counted_named_and_measured() -> None:
     (warning,) = (d for d in compiled.compiled(text.replace('"AB"', '"I"')).diagnostics if d.code == "W0714")
     assert warning.message == "a piece falls out of solid `sign`: hole `sign.name` cuts all around it"
     assert warning.label == "nothing holds what is inside `groove`: 16 × 16 mm"
+
+
+# --- Slits ---------------------------------------------------------------------------------------
+
+HINGE = """\
+solid cover {
+    sheet = rectangle(center: origin, width: 80, height: 60)
+    hole bend { slits = living_hinge(width: 30, height: 60, rows: 2, spacing: 3, slit: 0.2) }
+    hole slot { gap = rectangle(center: (-25, 0), width: 0.4, height: 30) }
+    constrain bend.center == sheet.center
+}
+"""
+
+
+@pytest.mark.parametrize("more", [(), ("--sheet", "200x100")])
+def test_slits_are_cut_once(aidl: Aidl, folder: Path, more: tuple[str, ...]) -> None:
+    """What a cut of 0.2 mm leaves is the part that is drawn, but for the corners of its openings."""
+    (folder / "h.aidl").write_text(HINGE)
+    result = aidl("compile", "h.aidl", "-o", "h.dxf", "--kerf", "0.2", "--profile", "lightburn", *more)
+    assert "N0757" not in result.err
+    assert result.code == 0
+    found = list(ezdxf.readfile(folder / "h.dxf").modelspace())
+    lines = [LineString([e.dxf.start.vec2, e.dxf.end.vec2]) for e in found if e.dxftype() == "LINE"]
+    outer, slot = sorted(
+        (Polygon(e.get_points("xy")) for e in found if e.dxftype() == "LWPOLYLINE"), key=_size
+    )
+    assert len(lines) == 27
+    assert {e.dxf.layer for e in found if e.dxftype() == "LINE"} == {"C05-inner"}
+    ways = [*lines, outer.exterior, slot.exterior]
+    left = (outer - slot).difference(unary_union([way.buffer(0.1, 64) for way in ways]))
+    # A round cut leaves something in each corner: of a slit two at each end, and 10 of them have one end.
+    corners = 2 * (2 * 27 - 10) + 4
+    drawn = compiled.compiled(HINGE).drawing.measures["cover"].area
+    assert left.area == pytest.approx(drawn + corners * 0.1**2 * (1 - math.pi / 4), abs=1e-3)
+
+
+def _size(polygon: Polygon) -> float:
+    return -polygon.area
+
+
+def test_slits_of_another_width_than_the_cut_are_told(aidl: Aidl, folder: Path) -> None:
+    (folder / "h.aidl").write_text(HINGE)
+    for kerf, widths in (("0.15", "0.15 mm wide, as the cut, and drawn 0.2"), ("0.3", "0.3")):
+        told = aidl("compile", "h.aidl", "-o", "h.dxf", "--kerf", kerf).err
+        count = 27 if kerf == "0.15" else 28
+        assert f"note[N0757]: {count} slits of `cover` are cut in one pass: {widths}" in told
+    assert "and drawn 0.2 and 0.4 mm wide" in told
+    assert "N0757" not in aidl("compile", "h.aidl", "-o", "h.dxf", "--kerf", "0.1").err

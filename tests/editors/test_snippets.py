@@ -37,6 +37,8 @@ def program(snippet: Snippet) -> str:
         around = "solid s { r = rectangle(width: 160, height: 40)\nSNIPPET\n}\n"
     if snippet.prefix in ("@behind", "@in_front"):  # of a sibling
         around = f"assembly s {{ solid other {SOLID}\nSNIPPET\nsolid p {SOLID} }}\n"
+    if snippet.prefix == "@depth":  # of a hole
+        around = f"solid s {{ b = rectangle(width: 60, height: 40)\nSNIPPET\nhole h {SOLID} }}\n"
     if snippet.prefix == "@clip":
         around = "SNIPPET\nsolid s { outline = circle(center: (0, 0), radius: 4) }\n"
     return around.replace("SNIPPET", snippet.expanded)

@@ -33,17 +33,30 @@ class DrawingError(Exception):
         self.hints = hints
 
 
+@record()
+class Engraving:
+    """What files of AIDL say of an outline that is engraved and not cut: its layer and its colour, where it
+    has them, and whether it is the border of an area.
+    """
+
+    layer: str | None = None
+    color: str | None = None
+    is_area: bool = False
+
+
 @record(eq=False)
 class Element:
     """One outline of a file, or some that belong together, contour by contour.
 
     names    those by which the file calls it, from the outermost group to its own
     is_winding  what it encloses goes by the non-zero rule; otherwise nested contours alternate
+    engraving   None for what bounds material, as far as the file says
     """
 
     names: tuple[str, ...]
     strokes: tuple[Stroke, ...]
     is_winding: bool = False
+    engraving: Engraving | None = None
 
 
 @record(eq=False)
@@ -111,7 +124,14 @@ class Collector:
     curves: int = 0
     numbers: int = 0
 
-    def add(self, names: Sequence[str], strokes: Iterable[Stroke], *, is_winding: bool = False) -> None:
+    def add(
+        self,
+        names: Sequence[str],
+        strokes: Iterable[Stroke],
+        *,
+        is_winding: bool = False,
+        engraving: Engraving | None = None,
+    ) -> None:
         """Adds an element. Raises DrawingError for one that has no place on a plane, or one too many."""
         found = tuple(strokes)
         kept = tuple(stroke for stroke in found if has_length(stroke))
@@ -126,7 +146,7 @@ class Collector:
                     "look whether a coordinate or a transform in it is what was meant",
                 )
         if kept:
-            self.elements.append(Element(tuple(names), kept, is_winding))
+            self.elements.append(Element(tuple(names), kept, is_winding, engraving))
 
     def count_numbers(self, text: str) -> None:
         """Counts the numbers of an attribute before it is read. Raises DrawingError."""

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Remark
+from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
 from aidl_lang.common.drawings.splines import cubics
 from aidl_lang.common.drawings.strokes import TURN, Bow, Matrix, Stroke, ends, mapped
 from aidl_lang.common.font_files import Vec
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 MOST_ENTITIES = 100_000
 _MOST_INSERTS = 20_000
 _DEEPEST = 20
+ENGRAVED = "AIDL_ENGRAVED"
+"""The application under which AIDL says of an entity that it is engraved, and how."""
 
 _NAMES = {
     "TEXT": "text",
@@ -112,7 +114,7 @@ class _Walk:
         self.document = document
         self.name = name
         self.found = Collector(name)
-        self.open: dict[tuple[str, ...], list[Stroke]] = defaultdict(list)
+        self.open: dict[tuple[tuple[str, ...], Engraving | None], list[Stroke]] = defaultdict(list)
         self.inserts = self.fitted = 0
         self.circular: list[str] = []
         hidden = (layer for layer in document.layers if layer.is_off() or layer.is_frozen())
@@ -120,8 +122,8 @@ class _Walk:
         self.unit = _millimetres(document.header.get("$INSUNITS", 0))
 
     def done(self) -> tuple[Collector, list[Remark]]:
-        for names, strokes in self.open.items():
-            self.found.add(names, strokes)
+        for (names, engraving), strokes in self.open.items():
+            self.found.add(names, strokes, engraving=engraving)
         return self.found, list(self._remarks())
 
     def entities(self, entities: Iterable[Any], blocks: tuple[str, ...], around: str) -> None:
@@ -165,10 +167,13 @@ class _Walk:
             return
         unit = self.unit or 1.0
         strokes = [mapped(s, (unit, 0.0, 0.0, unit, 0.0, 0.0)) for s in strokes]
-        if ends(strokes[0])[0] == ends(strokes[-1])[1]:
-            self.found.add(names, strokes)
+        engraving = _engraving(entity)
+        # The outlines of one area alternate.
+        is_alone = engraving is None or not engraving.is_area
+        if is_alone and ends(strokes[0])[0] == ends(strokes[-1])[1]:
+            self.found.add(names, strokes, engraving=engraving)
         else:
-            self.open[names] += strokes
+            self.open[names, engraving] += strokes
             self.found.curves += len(strokes)
             self.found.check()
 
@@ -210,6 +215,19 @@ class _Walk:
                 f"`{self.name}` does not say its unit, and is taken to be in millimetres",
                 ("if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn",),
             )
+
+
+def _engraving(entity: Any) -> Engraving | None:
+    """Returns what AIDL says of an entity that is engraved: the operation, and the layer of the program; None
+    for all others.
+    """
+    if not entity.has_xdata(ENGRAVED):
+        return None
+    operation, layer = ([text for code, text in entity.get_xdata(ENGRAVED) if code == 1000] + ["", ""])[:2]
+    color = entity.rgb
+    return Engraving(
+        layer or None, None if color is None else "#{:02x}{:02x}{:02x}".format(*color), operation == "fill"
+    )
 
 
 def _millimetres(units: object) -> float | None:

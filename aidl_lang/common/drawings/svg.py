@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings import xml
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Remark
+from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
 from aidl_lang.common.drawings.strokes import (
     STILL,
     Matrix,
@@ -50,13 +50,15 @@ _UNSEEN = frozenset(
 _GROUPS = frozenset({"svg", "g", "a", "switch"})
 _OTHERS = {"text": "text", "image": "image", "foreignObject": "foreign object"}
 """What can be seen and is no outline."""
+_ENGRAVED = ("fill", "engrave", "score")
 _INHERITED = ("fill", "fill-rule", "visibility", "stroke")
 
 
 @record()
 class _Place:
     """The circumstances of an element: how its coordinates go to the page's, what is inherited, the names
-    of the groups around it, and what it stands in, directly or by being used.
+    of the groups around it, and what it stands in, directly or by being used; in a file of AIDL the
+    operation that is said of it, `` for what a picture has drawn on a part, None for material.
     """
 
     matrix: Matrix
@@ -64,6 +66,8 @@ class _Place:
     style: Mapping[str, str]
     names: tuple[str, ...] = ()
     around: tuple[Node, ...] = ()
+    operation: str | None = None
+    layer: str | None = None
 
 
 def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
@@ -81,6 +85,7 @@ class _Walk:
         self.broken: list[str] = []
         self.circular: list[str] = []
         self.uses = 0
+        self.is_own = any("data-path" in node.attributes for node in root.walk())
         for node in root.walk():
             if "id" in node.attributes:
                 self.by_id.setdefault(node.attributes["id"], node)
@@ -130,12 +135,19 @@ class _Walk:
         if node.tag in _UNSEEN or node.tag == "":
             return
         style = self._style(node, place.style)
-        if style.get("display") == "none":
+        if style.get("display") == "none" or (self.is_own and _explains(node)):
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
         matrix = self._transform(node, style, place.matrix)
-        place = _Place(matrix, place.page, style, (*place.names, *_names(node)), (*place.around, node))
+        place = _Place(
+            matrix,
+            place.page,
+            style,
+            (*place.names, *_names(node)),
+            (*place.around, node),
+            *_engraved(node, place),
+        )
         if node.tag == "use":
             self._use(node, place)
         elif node.tag == "svg":
@@ -166,7 +178,16 @@ class _Walk:
         is_winding = is_filled and place.style.get("fill-rule", "nonzero") != "evenodd"
         if is_filled and place.style.get("stroke", "none") == "none":
             strokes = list(_closed(strokes))
-        self.found.add(place.names, (mapped(s, place.matrix) for s in strokes), is_winding=is_winding)
+        engraving = None
+        if place.operation is not None:
+            color = place.style.get("fill" if is_filled else "stroke") if place.operation == "" else None
+            engraving = Engraving(place.layer, color, is_filled)
+        self.found.add(
+            place.names,
+            (mapped(s, place.matrix) for s in strokes),
+            is_winding=is_winding,
+            engraving=engraving,
+        )
 
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
@@ -297,6 +318,24 @@ class _Walk:
 def _states(node: Node, name: str) -> bool:
     text = node.attributes.get(name, "auto").strip()
     return text not in ("", "auto") and not text.endswith("%")
+
+
+def _explains(node: Node) -> bool:
+    """Tells whether something in a picture of AIDL is no part of what is drawn."""
+    return not {"overlay", "dimension", "seam"}.isdisjoint(node.attributes.get("class", "").split())
+
+
+def _engraved(node: Node, around: _Place) -> tuple[str | None, str | None]:
+    """Returns what AIDL says of a group: the operation along its lines, and the layer of the program."""
+    said = node.attributes
+    if "data-path" not in said:
+        return around.operation, around.layer
+    operation = said.get("data-operation")
+    if operation is not None:
+        is_layer = operation in ("fill", "score")
+        return (operation, operation if is_layer else None) if operation in _ENGRAVED else (None, None)
+    is_drawn = said.get("data-kind") == "drawing"
+    return ("", said.get("data-layer")) if is_drawn else (None, None)
 
 
 def _sizes(node: Node) -> dict[str, str]:

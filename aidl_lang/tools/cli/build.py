@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -171,6 +171,8 @@ def _write(
         for target in outputs:
             found, said = contents(writing, target.name, target.suffix)
             require_one(target.name, len(found))
+            if target.suffix != ".json" and any(note.code == "W0721" for note in said):
+                _keep_drawn(found)
             made += found
             notes += said
     except ExportError as reason:
@@ -182,6 +184,19 @@ def _write(
     for name, data in made:
         files.write(name, data)
     return tuple(name for name, _ in made), tuple(dict.fromkeys(notes))
+
+
+def _keep_drawn(made: Iterable[tuple[str, bytes]]) -> None:
+    """Refuses to replace files by drawings of nothing; the same drawing of nothing may be written again."""
+    for name, data in made:
+        path = Path(name)
+        if name != files.STANDARD and path.is_file() and path.read_bytes() != data:
+            raise UseError(
+                "E0929",
+                f"nothing is drawn, so `{name}` is left as it is",
+                "if it shall be empty, delete it first",
+                "`aidl check` tells why nothing is drawn",
+            )
 
 
 def _is_pattern(name: str) -> bool:

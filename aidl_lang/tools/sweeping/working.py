@@ -116,7 +116,7 @@ def _outcome(compiled: Compiled, making: Making) -> Outcome:
         ),
         0
         if compiled.built is None
-        else sum(not a.shape and a.outline is None for a in compiled.built.assertions),
+        else sum(not a.shape and not a.extent and a.outline is None for a in compiled.built.assertions),
         None if model is None else model.degrees,
         files=files,
         picture=picture,

@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -947,8 +947,8 @@ export const about: Record<string, string> = {
   "clearance_diameter": "The diameter of the through hole of a screw: `close`, `medium` or `loose` (ISO 273).",
   "clearance_hole": "The through hole of a screw, placed with `at`; in a `hole` its rim, a circle.",
   "tap_hole": "The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle.",
-  "counterbore": "The bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`; in a `hole` its rim.",
-  "countersink": "A countersink in which a flat head lies flush, as wide as at its top, placed with `at`; in a `hole` its rim.",
+  "counterbore": "A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`.",
+  "countersink": "A through hole with a cone of 90° in which a flat head lies flush, placed with `at`.",
   "hex_pocket": "A pocket that holds a hexagon nut, `play` wider than it across its flats, placed with `at`; in a `hole` its outline.",
   "screw_hole": "A hole for a screw to go through, to be placed with `at`.",
   "bolt": "A metric bolt or screw seen from the side, upright with its head on top; `head`: hex, socket, pan or countersunk.",
@@ -1058,6 +1058,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},
   {"prefix": "@orientation", "title": "how a part stands", "body": "@orientation(${1:front})$0", "place": "attribute"},
+  {"prefix": "@depth", "title": "how deep a hole is that ends in its solid", "body": "@depth(${1:2mm})$0", "place": "attribute"},
   {"prefix": "@quantity", "title": "how many pieces are made of a part", "body": "@quantity(${1:4})$0", "place": "attribute"},
   {"prefix": "@elevation", "title": "how high a part lies", "body": "@elevation(${1:18mm})$0", "place": "attribute"},
   {"prefix": "@note", "title": "a note on the drawing", "body": "@note(\"${1:glue here}\")$0", "place": "attribute"},

@@ -21,7 +21,7 @@ from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.vocabulary import vocabulary
 
 _ATTRIBUTES: dict[str, Type] = {
-    **dict.fromkeys(("thickness", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
+    **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
     **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
     **dict.fromkeys(STACKING, StructureType()),
     CLIP: GeometryType(""),

@@ -1,0 +1,84 @@
+"""Files that AIDL has written, imported again: parts are parts, and what is engraved stays engraved."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+
+import ezdxf
+import pytest
+from svgelements import SVG
+from svgelements import Path as SvgPath
+
+from tests.commands import Result
+
+Aidl = Callable[..., Result]
+
+TAG = """\
+@thickness(6mm)
+solid tag {
+    plate = rounded_rectangle(center: origin, width: 60, height: 30, radius: 4)
+    screw = countersink("m4") at fixed((-22, 6))
+    drawing name { letters = text("AIO", center: fixed((4, 3)), height: 9) }
+    @color("red") drawing dot { c = circle(center: fixed((20, -8)), radius: 3) }
+    @layer("score") drawing fold { crease = line(fixed((-20, -9)), fixed((15, -9))) }
+    @layer("fill") drawing mark { r = ring(center: fixed((-22, -6)), outer_radius: 3, inner_radius: 2) }
+}
+"""
+CUTTER = ("--profile", "lightburn")
+
+
+def operations(path: Path) -> dict[str, list[float]]:
+    """The lengths of what is done along lines, by operation, in an SVG for a cutter."""
+    found = defaultdict(list)
+    for each in SVG.parse(path, ppi=25.4).elements(lambda e: isinstance(e, SvgPath)):
+        lengths = [SvgPath(way).length() for way in each.as_subpaths()]
+        found[each.values["data-operation"]] += lengths
+    return {operation: sorted(lengths) for operation, lengths in found.items()}
+
+
+def wholly(found: dict[str, list[float]]) -> list[tuple[str, float]]:
+    return [(operation, length) for operation in sorted(found) for length in found[operation]]
+
+
+@pytest.mark.parametrize(
+    ("name", "profile"),
+    [("p.svg", ()), ("p.svg", CUTTER), ("p.dxf", CUTTER), ("p.dxf", ("--profile", "plain"))],
+)
+def test_what_is_engraved_stays_engraved(
+    aidl: Aidl, folder: Path, name: str, profile: tuple[str, ...]
+) -> None:
+    (folder / "tag.aidl").write_text(TAG)
+    (folder / "again.aidl").write_text(f'import "{name}" as tag\nsolid again {{ body = tag() }}\n')
+    kept = profile if profile[1:] == ("plain",) else CUTTER  # which letters are followed by
+    assert aidl("compile", "tag.aidl", "-o", name, *profile).code == 0
+    assert aidl("compile", "tag.aidl", "-o", "first.svg", *kept).code == 0
+    assert aidl("check", "again.aidl").err == "again.aidl: no mistakes found\n"
+    assert aidl("compile", "again.aidl", "-o", "second.svg", *kept).code == 0
+    first, second = (operations(folder / f"{n}.svg") for n in ("first", "second"))
+    assert {operation: len(of) for operation, of in second.items()} == {k: len(of) for k, of in first.items()}
+    lengths = [length for _, length in wholly(first)]
+    assert [length for _, length in wholly(second)] == pytest.approx(
+        lengths, abs=0.01 if "dxf" in name else 1e-4
+    )
+
+
+@pytest.mark.parametrize("name", ["p.svg", "p.dxf"])
+def test_layers_and_colours_come_back(aidl: Aidl, folder: Path, name: str) -> None:
+    (folder / "tag.aidl").write_text(TAG)
+    (folder / "again.aidl").write_text(f'import "{name}" as tag\nsolid again {{ body = tag() }}\n')
+    assert aidl("compile", "tag.aidl", "-o", name).code == 0
+    assert aidl("compile", "again.aidl", "-o", "second.dxf").code == 0
+    found = list(ezdxf.readfile(folder / "second.dxf").modelspace())
+    assert {e.dxf.layer for e in found} == {"solid", "hole", "drawing", "score", "fill"}
+    assert (255, 0, 0) in {e.rgb for e in found if e.dxf.layer == "drawing"}
+
+
+def test_what_explains_a_picture_is_no_part_of_it(aidl: Aidl, folder: Path) -> None:
+    (folder / "tag.aidl").write_text(TAG)
+    (folder / "again.aidl").write_text('import "p.svg" as tag\nsolid again { body = tag() }\n')
+    aidl("compile", "tag.aidl", "-o", "p.svg", "--dimension", "--show", "names,points,bbox")
+    measured = aidl("measure", "again.aidl").out
+    assert "size       60 × 30 mm" in measured
+    assert "outline    1 piece, 1 hole" in measured
