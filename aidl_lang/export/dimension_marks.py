@@ -239,7 +239,8 @@ def words_of(of: Dimension, count: int = 1) -> str:
         case Opening():
             number += "°"
     number += _tolerance(of)
-    return f"{count}× {number}" if count > 1 else number
+    number = f"{count}× {number}" if count > 1 else number
+    return f"({number})" if of.is_auxiliary else number
 
 
 def _tolerance(of: Dimension) -> str:

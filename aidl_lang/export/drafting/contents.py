@@ -26,6 +26,8 @@ Wanted = tuple[Dimension, ...]
 """Equal dimensions that are shown once."""
 
 _ALIKE = 1e-6
+_FILED = frozenset({"glyphs", "traced"})
+"""Types of geometry whose outlines no dimensions tell: letters and imported drawings."""
 
 
 @record()
@@ -115,7 +117,8 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
     stated = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
-    done = completed(drawing, stated)
+    filed = (g for g in model.root.walk_geometry() if g.type in _FILED)
+    done = completed(drawing, stated, (curve for g in filed for curve in g.curves()))
     return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
 
 
