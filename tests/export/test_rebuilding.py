@@ -22,14 +22,14 @@ from aidl_lang.common.world import DiskWorld
 from aidl_lang.export.drafting.contents import View, contents
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body
-from aidl_lang.geometry.evaluate import bounds, derivative, ends, point
+from aidl_lang.geometry.evaluate import bounds, derivative, ends, nearest, point
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 from tests.documents import ROOT
 
 Equation = tuple[tuple[int, ...], Callable[[Sequence[complex]], complex]]
 Pair = tuple[int, int]
 
-SHAKE = 0.002
+SHAKE = 0.0005
 """How far the hand is off, relative to the part."""
 EXACT = 1e-6
 
@@ -49,10 +49,12 @@ class Part:
         self.levels: tuple[list[int], list[int]] = ([], [])
         self.seen: list[Equation] = []
         self.is_partial = False
+        self.filed: list[Piece] = []
         for loop in body.region.loops:
             pieces = list(loop.pieces)
             if any(not isinstance(p, Line | Arc | Circle) or middle(p) in filed for p in pieces):
                 self.is_partial = True
+                self.filed += pieces
             elif isinstance(pieces[0], Circle):
                 self.circle(pieces[0])
             else:
@@ -62,13 +64,10 @@ class Part:
         self.has_more = has_more or self.is_partial
         """something is drawn that is as in the file"""
         self.known: set[int] = set()
-        if self.is_partial:
-            left, bottom, right, top = body.box
-            for corner in ((left, bottom), (right, top)):
-                pair = self.pair(corner)
-                self.known |= set(pair)
-                for axis in (0, 1):
-                    self.levels[axis].append(pair[axis])
+        for side, end in enumerate(body.box):
+            if any(abs(box[side] - end) <= self.near for box in map(bounds, self.filed)):
+                self.known.add(self.number(end))
+                self.levels[side % 2].insert(0, len(self.truth) - 1)
         self.box = body.box
         self.aligned()
         for axis in (0, 1):
@@ -86,18 +85,30 @@ class Part:
 
     def held(self) -> list[Equation]:
         """Where the part lies on the table nobody tells; an outline that is as in the file lies there."""
-        known = self.known or {0, 1}
-        return [((i,), lambda z, i=i: z[i] - self.truth[i]) for i in known if i < len(self.truth)]
+        first = {next((i for i in own if i in self.known), own[0]) for own in self.levels if own}
+        return [((i,), lambda z, i=i: z[i] - self.truth[i]) for i in self.known | first]
 
-    def placed(self, circle: Circle, at: Vec) -> list[Equation]:
-        """The place of a hole of a table, from the lower left corner."""
-        center, radius, _ = next(r for r in self.rounds if r[2] is circle or r[2] == circle)
-        found: list[Equation] = [((radius,), lambda z: z[radius] - circle.radius)]
+    def placed(self, circle: Circle, at: Vec, datum: Vec) -> list[Equation]:
+        """The place of a hole of a table, from where the axes of the table begin."""
+        center, size, _ = next(r for r in self.rounds if r[2] == circle)
+        found: list[Equation] = [((size,), lambda z: z[size] - circle.radius)]
         for axis in (0, 1):
-            low = next(i for i in self.levels[axis] if abs(self.truth[i] - self.box[axis]) <= self.near)
-            i = center[axis]
-            found.append(((i, low), lambda z, i=i, low=low, k=axis: z[i] - z[low] - at[k]))
+            low = next(i for i in self.levels[axis] if abs(self.truth[i] - datum[axis]) <= self.near)
+            one = self.apart(
+                ((low, low), None, 0.0), (center, None, 0.0), (1.0 - axis, float(axis)), at[axis]
+            )
+            assert one is not None
+            found.append(one)
         return found
+
+    def is_of_file(self, of: Dimension) -> bool:
+        """Tells whether a dimension measures an outline that is as in the file: how large to make it."""
+        if not isinstance(of, Length) or of.origin == "derived" or not self.filed:
+            return False
+        spots = [*of.start, *of.end]
+        return of.origin == "overall" or any(
+            math.dist(point(c, nearest(c, p)), p) <= self.near for c in self.filed for p in spots
+        )
 
     def same(self, i: int, j: int) -> None:
         self.say((i, j), lambda z: z[i] - z[j])
@@ -457,8 +468,11 @@ def solved(equations: Sequence[Equation], start: np.ndarray) -> np.ndarray:
 def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
     """How far the part that was made from a sheet is off, and the dimensions that it did not need."""
     said = [(group, [e for of in group for e in part.said(of)]) for group in view.wanted]
-    table = [e for hole in view.holes for e in part.placed(hole.circle, (hole.x, hole.y))]
-    needed = [e for group, own in said for e in own if not group[0].is_auxiliary]
+    table = [e for hole in view.holes for e in part.placed(hole.circle, (hole.x, hole.y), view.datum)]
+    # The sizes of an outline that is as in the file tell how large to make it.
+    needed = [
+        e for group, own in said for e in own if not group[0].is_auxiliary and not part.is_of_file(group[0])
+    ]
     equations = [*part.seen, *part.held(), *table, *needed]
     truth = np.array(part.truth)
     shake = np.random.default_rng(len(truth)).uniform(-1, 1, len(truth))
@@ -471,7 +485,7 @@ def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
         words = f"{group[0].kind} {group[0].value:g} ({group[0].origin})"
         if not own and not part.has_more:
             idle.append(f"{words}: about nothing that is seen")
-        elif any(set(needs) - part.known for needs, _ in own) and not group[0].is_auxiliary:
+        elif own and not part.is_of_file(group[0]) and not group[0].is_auxiliary:
             kept = [k for k, e in enumerate(equations) if not any(e is other for other in own)]
             if rank(rows[kept]) == whole:
                 idle.append(words)
@@ -495,7 +509,7 @@ def sheets(path: Path | None, text: str) -> list[tuple[str, Part, View]]:
             strokes = [s.pieces for s in view.drawing.strokes]
             circles = [p[0] for p in strokes if len(p) == 1 and isinstance(p[0], Circle)]
             for body in view.drawing.bodies:
-                part = Part(body, circles, filed, has_more=any(len(p) > 1 for p in strokes))
+                part = Part(body, circles, filed, has_more=len(circles) < len(strokes))
                 parts.append((content.subject.path, part, view))
     return parts
 

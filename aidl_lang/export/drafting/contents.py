@@ -32,8 +32,8 @@ _FILED = frozenset({"glyphs", "traced"})
 
 @record()
 class Hole:
-    """A round hole of a table: its sign, a letter for its size and a number, and its place from the lower
-    left corner of the part.
+    """A round hole of a table: its sign, a letter for its size and a number, and its place from the datum of
+    the view.
     """
 
     sign: str
@@ -46,7 +46,7 @@ class Hole:
 class View:
     """Parts seen from one side. `label` tells it from others of the sheet; `balloons`: numbers of the list of
     parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell;
-    `holes`: those that a table tells.
+    `holes`: those that a table tells, from `datum`.
     """
 
     label: str
@@ -55,6 +55,7 @@ class View:
     balloons: tuple[tuple[int, Body], ...] = ()
     free: tuple[str, ...] = ()
     holes: tuple[Hole, ...] = ()
+    datum: Vec = (0.0, 0.0)
 
 
 @record()
@@ -119,12 +120,12 @@ def _view(model: SolvedModel, drawing: Drawing) -> View:
     stated = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
     filed = (g for g in model.root.walk_geometry() if g.type in _FILED)
     done = completed(drawing, stated, (curve for g in filed for curve in g.curves()))
-    return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
+    holes = tuple(_holes(done.holes, done.datum))
+    return View("", drawing, done.groups, free=done.free, holes=holes, datum=done.datum)
 
 
-def _holes(drawing: Drawing, circles: Sequence[Circle]) -> Iterator[Hole]:
+def _holes(circles: Sequence[Circle], datum: Vec) -> Iterator[Hole]:
     """Yields holes with their signs: equal ones of one letter, from left to right and upwards."""
-    left, bottom, _, _ = drawing.box
     sizes = sorted({round(c.radius, 6) for c in circles})
     for number, size in enumerate(sizes):
         own = sorted(
@@ -133,7 +134,7 @@ def _holes(drawing: Drawing, circles: Sequence[Circle]) -> Iterator[Hole]:
         )
         for k, circle in enumerate(own, 1):
             x, y = circle.center
-            yield Hole(f"{_letters(number)}{k}", circle, x - left, y - bottom)
+            yield Hole(f"{_letters(number)}{k}", circle, x - datum[0], y - datum[1])
 
 
 def _letters(number: int) -> str:

@@ -95,10 +95,11 @@ def _datum(view: View, factor: float) -> Iterator[Mark]:
     """Yields the axes from whose origin holes are placed, if there is a table of them."""
     if view.holes:
         left, bottom, _, _ = view.drawing.box
+        is_corner = abs(view.datum[0] - left) + abs(view.datum[1] - bottom) < 1e-6 * view.drawing.size
         size = SMALL / CAPITAL / factor
         reach, aside = 9.0 / factor, 1.0 / factor
         for way, sign in (((1.0, 0.0), "X"), ((0.0, 1.0), "Y")):
-            x, y = left - 3 * aside, bottom - 3 * aside
+            x, y = (left - 3 * aside, bottom - 3 * aside) if is_corner else view.datum
             end = x + reach * way[0], y + reach * way[1]
             yield Curves((Line((x, y), end),), Ink(BLACK, WIDE / factor), "datum")
             yield Text((end[0] + aside * way[0], end[1] + aside * way[1]), sign, size, BLACK, halo=False)

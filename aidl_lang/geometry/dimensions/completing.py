@@ -10,7 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
+
+import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
@@ -34,6 +36,10 @@ MOST_LEVELS = 150
 """A part with more levels than this is made from a file, not from dimensions."""
 
 _SLACK = 1e-6
+_NEEDED = 1e-6
+"""What is left of a number without a dimension, from which on it is not told without it."""
+_AUXILIARY = ("hand", "overall")
+"""Origins of dimensions that stand in brackets if others tell as much; further ones are left out."""
 _EVEN = 1e-4
 """Degrees by which equal steps on a circle may differ."""
 
@@ -41,12 +47,13 @@ _EVEN = 1e-4
 @record()
 class Completed:
     """Dimensions that tell a drawing. `free`: outlines that no dimension tells, of the bodies at these
-    paths; `holes`: round ones that are to be told in a table, by their places.
+    paths; `holes`: round ones that are to be told in a table, by their places from `datum`.
     """
 
     groups: tuple[Group, ...]
     free: tuple[str, ...] = ()
     holes: tuple[Circle, ...] = ()
+    datum: Vec = (0.0, 0.0)
 
 
 def completed(drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] = ()) -> Completed:
@@ -67,14 +74,16 @@ def completed(drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] 
     told_apart = Places[Piece](slack)
     for piece in filed:
         told_apart.add(_middle(piece), piece)
-    free = []
+    free, datum = [], (0.0, 0.0)
     for body in drawing.bodies:
         part = _Part(body, drawn, slack, holes, told_apart)
         if part.loose:
             free.append(body.path)
         groups = part.needed(groups)
         groups += part.missing()
-    return Completed(tuple(groups), tuple(free), holes)
+        groups = part.pruned(groups)
+        datum = part.datums[0].value, part.datums[1].value
+    return Completed(tuple(groups), tuple(free), holes, datum)
 
 
 def _centers_on(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> list[Vec]:
@@ -173,14 +182,16 @@ class _Part:
         self.loose = [piece for loop in loops if loop not in clear for piece in loop.pieces]
         self.drawn = [piece for pieces in drawn for piece in pieces]
         self.datums = [self._datum(axis) for axis in (0, 1)]
-        known = [datum.reading for datum in self.datums]
+        known = [*(datum.reading for datum in self.datums), *self._filed()]
         self.middles = mirror_levels(body, slack)
         for axis, middle in enumerate(self.middles):
             if middle is not None:
                 axle = self.sketch.mirror(axis, middle)
                 known += [] if self.datums[axis].reading.needs else [axle]
-        self.span = Span(self.sketch.count)
-        self._learn([*self.sketch.equations, *known])
+        self.seen, self.span = (Span(self.sketch.count) for _ in range(2))
+        self.rows = [self.sketch.row(reading) for reading in (*self.sketch.equations, *known)]
+        for span in (self.seen, self.span):
+            span.add_all(self.rows)
 
     def _datum(self, axis: int) -> Level:
         """Returns what levels are measured from: the left or lower end, the centre of what is round there."""
@@ -194,7 +205,16 @@ class _Part:
         ]
         for own in sorted(rounds, key=lambda r: -r.curve.radius):
             return next(n for n in levels if n.reading.needs == own.center.along(axis).needs)
+        self.sketch.fixed[axis] = low
         return Level(axis, low, Reading((), lambda _: low), tuple(self._ends_at(axis, low)), sk.EDGE)
+
+    def _filed(self) -> Iterator[Reading]:
+        """Yields the levels of the ends of the part that an outline without dimensions reaches."""
+        boxes = [bounds(piece) for piece in self.loose]
+        for side, end in enumerate(self.body.box):
+            number = self.sketch.level(side % 2, end)
+            if number is not None and any(abs(box[side] - end) <= self.slack for box in boxes):
+                yield sk.plain(number)
 
     # --- What is told ------------------------------------------------------------------------------
 
@@ -207,7 +227,9 @@ class _Part:
             members, is_new, is_judged = [], False, True
             for of in map(self._shifted, group):
                 readings = told(self.sketch, of)
-                if readings:
+                if self.loose and of.origin == "overall":
+                    is_judged = False
+                elif readings:
                     is_new |= self._learn(readings)
                 elif of.origin == "hand" or self._is_on_loose(of):
                     is_judged = False
@@ -216,9 +238,34 @@ class _Part:
                 members.append(of)
             if is_new or (members and not is_judged):
                 kept.append(tuple(members))
-            elif members and members[0].origin == "hand":
-                kept.append(tuple(replace(of, is_auxiliary=True) for of in members))
+            elif members and members[0].origin in _AUXILIARY:
+                kept.append(_bracketed(members))
         return kept
+
+    def pruned(self, groups: Sequence[Group]) -> list[Group]:
+        """Returns the groups without those that others tell after all: several numbers of one group may have
+        made an earlier one needless.
+        """
+        own = [self._rows_of(group) for group in groups]
+        rows = [row / np.linalg.norm(row) for row in chain(self.rows, *own) if row.any()]
+        gram = np.array(rows).T @ np.array(rows) if rows else np.zeros((0, 0))
+        kept = list(groups)
+        for k in reversed(range(len(groups))):
+            told_here = [row / np.linalg.norm(row) for row in own[k] if row.any()]
+            if not told_here:
+                continue
+            taken = np.array(told_here)
+            # The rest spans as much if no part of the group weighs as much as all that there is of it.
+            share = np.linalg.eigvalsh(taken @ np.linalg.solve(gram, taken.T))
+            if share[-1] < 1 - _NEEDED:
+                gram -= taken.T @ taken
+                kept[k] = _bracketed(groups[k]) if groups[k][0].origin in _AUXILIARY else ()
+        return [group for group in kept if group]
+
+    def _rows_of(self, group: Group) -> list[sk.Row]:
+        if group[0].is_auxiliary or (self.loose and group[0].origin == "overall"):
+            return []
+        return [self.sketch.row(reading) for of in group for reading in told(self.sketch, of) or ()]
 
     def _learn(self, readings: Iterable[Reading]) -> bool:
         """Tells whether any of some numbers says something new."""
@@ -275,9 +322,16 @@ class _Part:
                 key = type(own.curve).__name__, round(own.curve.radius / self.slack)
                 lacking.setdefault(key, []).append(own)
         for rounds in lacking.values():
-            if self._learn([sk.plain(own.radius) for own in rounds]):
-                group = "round", self.body.path, *rounds[0].curve.center
-                yield tuple(_derived(round_dimension(own.curve), group) for own in rounds)
+            first = self.sketch.row(sk.plain(rounds[0].radius))
+            group = "round", self.body.path, *rounds[0].curve.center
+            told_here = [
+                _derived(round_dimension(own.curve), group)
+                for own in rounds
+                if self._learn([sk.plain(own.radius)])
+                or not self.seen.lacks(self.sketch.row(sk.plain(own.radius)) - first)
+            ]
+            if told_here:
+                yield tuple(told_here)
 
     def _levels(self) -> Iterator[Group]:
         """Yields lengths that tie the levels that are tied to nothing."""
@@ -313,6 +367,10 @@ class _Part:
                     middle = (box[1 - axis] + box[3 - axis]) / 2
                     found.append((value, middle) if axis == 0 else (middle, value))
         return found
+
+
+def _bracketed(group: Iterable[Dimension]) -> Group:
+    return tuple(replace(of, is_auxiliary=True) for of in group)
 
 
 def _derived(of: Dimension, group: object) -> Dimension:

@@ -121,6 +121,8 @@ class Sketch:
     def __init__(self, loops: Iterable[Loop], box: Bounds, slack: float) -> None:
         self.slack, self.box = slack, box
         self.rounds: list[Round] = []
+        self.fixed: list[float | None] = [None, None]
+        """ends of the part that an outline without dimensions has, by axis"""
         self._values: list[float] = []
         self._levels: tuple[Places[int], Places[int]] = (Places(slack), Places(slack))
         self._seen: dict[int, tuple[int, list[Vec], int]] = {}

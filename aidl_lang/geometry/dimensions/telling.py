@@ -54,7 +54,8 @@ def level(sketch: Sketch, axis: int, points: Sequence[Vec]) -> Reading | None:
         for side in (-1.0, 1.0):
             if abs(own.curve.center[axis] + side * own.curve.radius - value) <= sketch.slack:
                 return _tip(own.center.along(axis), own.radius, side)
-    return None
+    fixed = sketch.fixed[axis]
+    return Reading((), lambda _: value) if fixed is not None and abs(fixed - value) <= sketch.slack else None
 
 
 def _tip(center: Reading, radius: int, side: float) -> Reading:
@@ -128,7 +129,8 @@ def centers_on(sketch: Sketch, ring: Circle | Arc) -> list[Spot]:
 
 def _on_ring(sketch: Sketch, ring: Circle) -> list[Reading] | None:
     """Returns where centres at equal steps on a circle are from its centre, if that is seen."""
-    middle = sketch.spot(ring.center)
+    seen = (own.center for own in sketch.rounds if own.is_seen)
+    middle = next((spot for spot in seen if math.dist(spot.at, ring.center) <= sketch.slack), None)
     if middle is None:
         return None
     return [less(spot.along(k), middle.along(k)) for spot in centers_on(sketch, ring) for k in (0, 1)]
