@@ -22,7 +22,7 @@ from aidl_lang.common.world import DiskWorld
 from aidl_lang.export.drafting.contents import View, contents
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body
-from aidl_lang.geometry.evaluate import bounds, derivative, ends, nearest, point
+from aidl_lang.geometry.evaluate import bounds, derivative, ends, point
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 from tests.documents import ROOT
 
@@ -101,13 +101,10 @@ class Part:
             found.append(one)
         return found
 
-    def is_of_file(self, of: Dimension) -> bool:
+    def is_of_file(self, of: Dimension, own: Sequence[Equation]) -> bool:
         """Tells whether a dimension measures an outline that is as in the file: how large to make it."""
-        if not isinstance(of, Length) or of.origin == "derived" or not self.filed:
-            return False
-        spots = [*of.start, *of.end]
-        return of.origin == "overall" or any(
-            math.dist(point(c, nearest(c, p)), p) <= self.near for c in self.filed for p in spots
+        return self.is_partial and (
+            of.origin == "overall" or all(set(needs) <= self.known for needs, _ in own)
         )
 
     def same(self, i: int, j: int) -> None:
@@ -471,7 +468,10 @@ def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
     table = [e for hole in view.holes for e in part.placed(hole.circle, (hole.x, hole.y), view.datum)]
     # The sizes of an outline that is as in the file tell how large to make it.
     needed = [
-        e for group, own in said for e in own if not group[0].is_auxiliary and not part.is_of_file(group[0])
+        e
+        for group, own in said
+        for e in own
+        if not group[0].is_auxiliary and not part.is_of_file(group[0], own)
     ]
     equations = [*part.seen, *part.held(), *table, *needed]
     truth = np.array(part.truth)
@@ -485,7 +485,7 @@ def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
         words = f"{group[0].kind} {group[0].value:g} ({group[0].origin})"
         if not own and not part.has_more:
             idle.append(f"{words}: about nothing that is seen")
-        elif own and not part.is_of_file(group[0]) and not group[0].is_auxiliary:
+        elif own and not part.is_of_file(group[0], own) and not group[0].is_auxiliary:
             kept = [k for k, e in enumerate(equations) if not any(e is other for other in own)]
             if rank(rows[kept]) == whole:
                 idle.append(words)

@@ -256,7 +256,7 @@ class _Part:
                 continue
             taken = np.array(told_here)
             # The rest spans as much if no part of the group weighs as much as all that there is of it.
-            share = np.linalg.eigvalsh(taken @ np.linalg.solve(gram, taken.T))
+            share = np.linalg.eigvalsh(taken @ np.linalg.pinv(gram, rcond=1e-12, hermitian=True) @ taken.T)
             if share[-1] < 1 - _NEEDED:
                 gram -= taken.T @ taken
                 kept[k] = _bracketed(groups[k]) if groups[k][0].origin in _AUXILIARY else ()
@@ -352,8 +352,11 @@ class _Part:
             if middle is not None and level.rank < sk.HIDDEN:
                 other = known[level.axis].find((2 * middle - level.value,)) or datum
                 other = datum if other is level else other
-            self._learn([less(level.reading, other.reading)])
-            if abs(level.value - other.value) > self.slack:
+            number = less(level.reading, other.reading)
+            self._learn([number])
+            if abs(level.value - other.value) <= self.slack:
+                self.rows.append(self.sketch.row(number))  # seen to be on one level
+            else:
                 found = length_between(other.points, level.points, ALONG[level.axis])
                 yield (_derived(found, ("level", self.body.path, level.axis, *level.points[0])),)
 

@@ -312,7 +312,9 @@ class Sketch:
         return found
 
     def spot(self, at: Vec) -> Spot | None:
-        return self._spots.find(at)
+        """Returns what is best seen of an outline at a point."""
+        here = self._spots.all(at)
+        return min(here, key=lambda spot: max(self._seen[n][2] for n in spot.needs), default=None)
 
     def level(self, axis: int, value: float) -> int | None:
         """Returns the unknown of a level that is seen."""
