@@ -32,7 +32,7 @@ DERIVED = "derived"
 """The origin of a dimension that the program does not state."""
 MOST_HOLES = 8
 """More round holes than this that stand in no row or circle are told in a table."""
-MOST_LEVELS = 150
+MOST_LEVELS = 100
 """A part with more levels than this is made from a file, not from dimensions."""
 
 _SLACK = 1e-6
@@ -177,7 +177,7 @@ class _Part:
         circles = [Loop((p[0],)) for p in drawn if len(p) == 1 and isinstance(p[0], Circle)]
         self.sketch = Sketch([*clear, *circles], body.box, slack)
         seen = [level for level in self.sketch.levels() if level.rank < sk.HIDDEN]
-        if max(sum(level.axis == axis for level in seen) for axis in (0, 1)) > MOST_LEVELS:
+        if len(seen) > MOST_LEVELS:
             clear, self.sketch = [], Sketch([], body.box, slack)
         self.loose = [piece for loop in loops if loop not in clear for piece in loop.pieces]
         self.drawn = [piece for pieces in drawn for piece in pieces]
@@ -249,16 +249,17 @@ class _Part:
         own = [self._rows_of(group) for group in groups]
         rows = [row / np.linalg.norm(row) for row in chain(self.rows, *own) if row.any()]
         gram = np.array(rows).T @ np.array(rows) if rows else np.zeros((0, 0))
-        kept = list(groups)
+        inverse, kept = None, list(groups)
         for k in reversed(range(len(groups))):
             told_here = [row / np.linalg.norm(row) for row in own[k] if row.any()]
-            if not told_here:
+            if not told_here or max(map(len, own)) == 1:
                 continue
+            if inverse is None:
+                inverse = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
             taken = np.array(told_here)
             # The rest spans as much if no part of the group weighs as much as all that there is of it.
-            share = np.linalg.eigvalsh(taken @ np.linalg.pinv(gram, rcond=1e-12, hermitian=True) @ taken.T)
-            if share[-1] < 1 - _NEEDED:
-                gram -= taken.T @ taken
+            if np.linalg.eigvalsh(taken @ inverse @ taken.T)[-1] < 1 - _NEEDED:
+                gram, inverse = gram - taken.T @ taken, None
                 kept[k] = _bracketed(groups[k]) if groups[k][0].origin in _AUXILIARY else ()
         return [group for group in kept if group]
 
