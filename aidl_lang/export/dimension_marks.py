@@ -235,10 +235,10 @@ def words_of(of: Dimension, count: int = 1) -> str:
     number = fixed(of.value, decimals)
     match of:
         case Roundness():
-            number = f"{'⌀' if of.kind == 'diameter' else 'R'}{number}"
+            number = of.label or f"{'⌀' if of.kind == 'diameter' else 'R'}{number}"
         case Opening():
             number += "°"
-    number += _tolerance(of)
+    number += _tolerance(of) + (f" {of.remark}" if of.remark else "")
     number = f"{count}× {number}" if count > 1 else number
     return f"({number})" if of.is_auxiliary else number
 

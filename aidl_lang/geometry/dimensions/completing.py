@@ -56,9 +56,15 @@ class Completed:
     datum: Vec = (0.0, 0.0)
 
 
-def completed(drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] = ()) -> Completed:
+Labels = Sequence[tuple[Circle, str, str]]
+"""Circles with what stands in place of their diameter, and behind it."""
+
+
+def completed(
+    drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] = (), labels: Labels = ()
+) -> Completed:
     """Returns the stated dimensions that are needed, and those that are missing. `filed`: curves of letters
-    and of imported drawings, which no dimensions tell.
+    and of imported drawings, which no dimensions tell; `labels`: of circles, with what is said of them.
     """
     slack = _SLACK * drawing.size
     pieces = [piece for body in drawing.bodies for piece in body.region.pieces]
@@ -69,7 +75,14 @@ def completed(drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] 
         or _is_told_by(group[0].curve, _centers_on(group[0].curve, pieces, slack))
     ]
     holes = _scattered(drawing, stated, slack)
-    groups = [group for group in _together(stated) if not any(_is_about(d, holes, slack) for d in group)]
+    said = Places[tuple[str, str]](slack)
+    for circle, label, remark in labels:
+        said.add((*circle.center, circle.radius), (label, remark))
+    groups = [
+        group
+        for group in _together(_labelled(stated, said))
+        if not any(_is_about(d, holes, slack) for d in group)
+    ]
     drawn = [stroke.pieces for stroke in drawing.strokes]
     told_apart = Places[Piece](slack)
     for piece in filed:
@@ -80,7 +93,7 @@ def completed(drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] 
         if part.loose:
             free.append(body.path)
         groups = part.needed(groups)
-        groups += part.missing()
+        groups += [group for each in part.missing() for group in _labelled([each], said)]
         groups = part.pruned(groups)
         datum = part.datums[0].value, part.datums[1].value
     return Completed(tuple(groups), tuple(free), holes, datum)
@@ -144,14 +157,26 @@ def _is_about(of: Dimension, holes: Sequence[Circle], slack: float) -> bool:
     return False
 
 
-def _together(groups: Sequence[Group]) -> Iterator[Group]:
+def _labelled(groups: Iterable[Group], said: Places[tuple[str, str]]) -> Iterator[Group]:
+    """Yields the groups with what is said of their circles; apart where that differs."""
+    for group in groups:
+        apart: dict[tuple[str, str], list[Dimension]] = {}
+        for of in group:
+            words = "", ""
+            if isinstance(of, Roundness) and isinstance(of.curve, Circle) and of.origin != "pattern":
+                words = said.find((*of.curve.center, of.curve.radius)) or words
+            apart.setdefault(words, []).append(replace(of, label=words[0], remark=words[1]))
+        yield from map(tuple, apart.values())
+
+
+def _together(groups: Iterable[Group]) -> Iterator[Group]:
     """Yields the groups, those of equal whole circles as one, wherever they are written."""
     alike: dict[object, list[Dimension]] = {}
     for number, group in enumerate(groups):
         first = group[0]
         is_circle = isinstance(first, Roundness) and isinstance(first.curve, Circle)
         is_plain = is_circle and first.origin != "pattern" and first.limits is None and not first.fit
-        key = ("circle", round(first.value, 9)) if is_plain else number
+        key = ("circle", round(first.value, 9), first.label, first.remark) if is_plain else number
         alike.setdefault(key, []).extend(group)
     return map(tuple, alike.values())
 
