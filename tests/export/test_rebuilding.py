@@ -1,14 +1,16 @@
 """Parts are made again from their drawing sheets: from what is seen of the outline and from the dimensions.
 
-Who reads a sheet sees how an outline goes on (edges along the axes, smooth joints, right corners, what stands on one
-level, axes of symmetry) and knows the numbers. Both are equations; solved from a sketch drawn by a shaky hand they must
-give the part, and none of the numbers may be left out. Nothing here is shared with what chooses the dimensions.
+Who reads a sheet sees how an outline goes on (edges along the axes, smooth joints, right corners, what
+stands on one level, axes of symmetry) and knows the numbers. Both are equations; solved from a sketch drawn
+by a shaky hand they must give the part, and none of the numbers may be left out. Nothing here is shared
+with what chooses the dimensions.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -148,31 +150,44 @@ class Part:
                 assert isinstance(p, Line)
                 self.edge(corners[k], corners[(k + 1) % count], p)
         for k in range(count):
-            before, after = pieces[k - 1], pieces[k]
-            pair, far = corners[k], (corners[k - 1], corners[(k + 1) % count])
-            if not smooth(before, after):
-                for axis in (0, 1):
-                    self.levels[axis].append(pair[axis])
-                if is_right(before, after):
-                    self.turned(far[0], pair, pair, far[1], dot)
-                continue
-            own = [arcs[n % count][0] for n in (k - 1, k) if n % count in arcs and isinstance(pieces[n], Arc)]
-            if len(own) == 2:
-                self.turned(pair, own[0], pair, own[1], cross)
-            else:
-                self.turned(pair, own[0], pair, far[0] if isinstance(before, Line) else far[1], dot)
+            self.joint(pieces, corners, arcs, k)
         for k in arcs:
-            before, after = pieces[k - 1], pieces[(k + 1) % count]
-            if not (smooth(before, pieces[k]) and smooth(pieces[k], after)):
-                continue
-            if isinstance(before, Line) and isinstance(after, Line):
-                a, b, c, d = (corners[(k + n) % count] for n in (-1, 0, 1, 2))
-                if is_right(before, after):
-                    self.turned(a, b, c, d, dot)
-                elif abs(abs(pieces[k].sweep) - math.pi) < 1e-6:  # type: ignore[union-attr]
-                    self.turned(a, b, c, d, cross)
-                if (at := crossing_of(before, after)) is not None:
-                    self.corner(a, b, c, d, at)
+            self.rounded(pieces, corners, k)
+
+    def joint(
+        self, pieces: list[Piece], corners: list[Pair], arcs: dict[int, tuple[Pair, int]], k: int
+    ) -> None:
+        """What is seen where a piece begins."""
+        count = len(pieces)
+        before, after = pieces[k - 1], pieces[k]
+        pair, far = corners[k], (corners[k - 1], corners[(k + 1) % count])
+        if not smooth(before, after):
+            for axis in (0, 1):
+                self.levels[axis].append(pair[axis])
+            if is_right(before, after):
+                self.turned(far[0], pair, pair, far[1], dot)
+            return
+        own = [arcs[n % count][0] for n in (k - 1, k) if n % count in arcs]
+        if len(own) == 2:
+            self.turned(pair, own[0], pair, own[1], cross)
+        else:
+            self.turned(pair, own[0], pair, far[0] if isinstance(before, Line) else far[1], dot)
+
+    def rounded(self, pieces: list[Piece], corners: list[Pair], k: int) -> None:
+        """What is seen of a rounded corner or a round end."""
+        count, arc = len(pieces), pieces[k]
+        before, after = pieces[k - 1], pieces[(k + 1) % count]
+        if not (isinstance(before, Line) and isinstance(after, Line) and isinstance(arc, Arc)):
+            return
+        if not (smooth(before, arc) and smooth(arc, after)):
+            return
+        a, b, c, d = (corners[(k + n) % count] for n in (-1, 0, 1, 2))
+        if is_right(before, after):
+            self.turned(a, b, c, d, dot)
+        elif abs(abs(arc.sweep) - math.pi) < 1e-6:
+            self.turned(a, b, c, d, cross)
+        if (at := crossing_of(before, after)) is not None:
+            self.corner(a, b, c, d, at)
 
     def edge(self, start: Pair, end: Pair, line: Line) -> None:
         self.edges.append((start, end, line))
@@ -258,23 +273,22 @@ class Part:
     def spots(self, points: Sequence[Vec], along: Vec) -> Iterator[tuple[Pair, int | None, float]]:
         """The numbers at points: of a corner or a centre, of a tip of what is round, of a level."""
         for p in points:
-            for pair, at in self.points:
-                if math.dist(p, at) <= self.near:
-                    yield pair, None, 0.0
-            for pair, r, c in self.rounds:
-                for side in (-1.0, 1.0):
-                    tip = c.center[0] + side * c.radius * along[0], c.center[1] + side * c.radius * along[1]
-                    if math.dist(p, tip) <= self.near:
-                        yield pair, r, side
+            yield from ((pair, None, 0.0) for pair, at in self.points if math.dist(p, at) <= self.near)
+            yield from self.tips(lambda tip, p=p: math.dist(p, tip) <= self.near, along)
         if along in ((1.0, 0.0), (0.0, 1.0)):
-            axis = int(along[1])
+            axis, value = int(along[1]), points[0][int(along[1])]
             for i in self.levels[axis]:
-                if abs(self.truth[i] - points[0][axis]) <= self.near:
+                if abs(self.truth[i] - value) <= self.near:
                     yield (i, i), None, 0.0
-            for pair, r, c in self.rounds:
-                for side in (-1.0, 1.0):
-                    if abs(c.center[axis] + side * c.radius - points[0][axis]) <= self.near:
-                        yield pair, r, side
+            yield from self.tips(lambda tip: abs(tip[axis] - value) <= self.near, along)
+
+    def tips(self, is_there: Callable[[Vec], bool], along: Vec) -> Iterator[tuple[Pair, int | None, float]]:
+        for pair, r, c in self.rounds:
+            for side in (-1.0, 1.0):
+                if is_there(
+                    (c.center[0] + side * c.radius * along[0], c.center[1] + side * c.radius * along[1])
+                ):
+                    yield pair, r, side
 
     def apart(self, a, b, along: Vec, value: float) -> Equation | None:
         (p, r, s), (q, t, u) = a, b
@@ -341,7 +355,7 @@ def tip(z, radius: int | None, side: float):
 
 
 def from_edge(end, a: Pair, b: Pair, value: float) -> Equation:
-    pair, r, s = end
+    pair, r, _ = end
     needs = (*pair, *a, *b, *(() if r is None else (r,)))
 
     def of(z):
@@ -405,6 +419,10 @@ def crossing_of(a: Line, b: Line) -> Vec | None:
     return a.start[0] + t * u[0], a.start[1] + t * u[1]
 
 
+def is_one_circle(a: Arc, b: Arc) -> bool:
+    return math.dist(a.center, b.center) + abs(a.radius - b.radius) < 1e-9 * a.radius
+
+
 def joined(pieces: list[Piece]) -> list[Piece]:
     """The pieces with edges and arcs that go straight on as one."""
     k = 0
@@ -413,9 +431,8 @@ def joined(pieces: list[Piece]) -> list[Piece]:
         one: Piece | None = None
         if isinstance(a, Line) and isinstance(b, Line) and smooth(a, b):
             one = Line(a.start, b.end)
-        elif isinstance(a, Arc) and isinstance(b, Arc) and math.dist(a.center, b.center) < 1e-9 * a.radius:
-            if smooth(a, b) and abs(a.radius - b.radius) < 1e-9 * a.radius:
-                one = Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
+        elif isinstance(a, Arc) and isinstance(b, Arc) and smooth(a, b) and is_one_circle(a, b):
+            one = Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
         if one is None:
             k += 1
         else:
@@ -561,8 +578,6 @@ def test_small_parts_are_made_again(body: str):
 def test_a_sheet_without_one_of_its_dimensions_is_not_enough():
     """The rebuilding itself tells what is missing."""
     ((_, part, view),) = sheets(None, "solid s { b = rectangle(width: 80, height: 50) }")
-    from dataclasses import replace
-
     assert rebuilt(part, view)[0] <= EXACT
     assert rebuilt(part, replace(view, wanted=view.wanted[:-1]))[0] > EXACT
     assert rebuilt(part, replace(view, wanted=view.wanted * 2))[1]

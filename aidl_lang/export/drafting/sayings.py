@@ -43,7 +43,7 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
         is_part = structure.path in bodies
         said = [] if is_part else [*_texts(structure.attributes, "note")]
         depth = _depth(structure)
-        rest = [*said, *([f"↧{depth[0]}"] if depth else [])]
+        rest = [*said, *([f"{depth[0]} deep"] if depth else [])]
         is_bored = not is_part and around[structure.path].kind == "hole"
         for geometry in structure.geometry:
             curves, own = tuple(geometry.curves()), [*_texts(geometry.attributes, "note")]
@@ -65,11 +65,11 @@ def _middle(piece: Piece) -> Vec:
 
 
 def _of_circle(circle: Circle, thread: str, depth: Sequence[str], *, is_bored: bool) -> str:
-    """Returns the thread or the diameter of a round hole, and how it is sunk (ISO 129-1, ISO 15786)."""
+    """Returns the thread or the diameter of a round hole, and how it is sunk."""
     size = thread or f"⌀{fixed(2 * circle.radius, 2)}"
     if len(depth) > 1:
-        return f"⌵ {size} × {depth[1]}°"
-    return f"{'⌴ ' if is_bored else ''}{size} ↧{depth[0]}" if depth else size
+        return f"{size} × {depth[1]}° countersunk"
+    return f"{size}{' counterbored' if is_bored else ''}, {depth[0]} deep" if depth else size
 
 
 def _depth(hole: SolvedStructure) -> list[str]:

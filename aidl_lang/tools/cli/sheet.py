@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _default(program: str) -> str:
-    return files.STANDARD if program == files.STANDARD else str(Path(program).withsheet_suffix(_DEFAULT))
+    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT))
 
 
 def sheet_suffix(name: str) -> str:
