@@ -466,8 +466,8 @@ def test_how_a_hole_is_sunk_stands_behind_its_diameter(depth: tuple[float, ...],
         (
             "b = rectangle(width: 80, height: 50) hole h { c = circle(center: (7, 5), radius: 4) }"
             " dimension(b.left, h.c.center) dimension(h.c.center, b.right) dimension(b.left, b.right)",
-            {"47", "33", "(80)"},
-            {"80"},
+            {"80", "47", "(33)"},
+            {"33"},
         ),
     ],
 )

@@ -39,7 +39,9 @@ EXACT = 1e-6
 class Part:
     """A part as it is seen on a sheet: numbers without values, and the equations that anybody sees."""
 
-    def __init__(self, body: Body, circles: Sequence[Circle], filed: set[Vec], has_more: bool) -> None:
+    def __init__(
+        self, body: Body, circles: Sequence[Circle], filed: set[Vec], *, has_more: bool, is_whole: bool
+    ) -> None:
         self.size = max(body.box[2] - body.box[0], body.box[3] - body.box[1])
         self.near = 1e-6 * self.size
         self.truth: list[float] = []
@@ -54,7 +56,9 @@ class Part:
         self.filed: list[Piece] = []
         for loop in body.region.loops:
             pieces = list(loop.pieces)
-            if any(not isinstance(p, Line | Arc | Circle) or middle(p) in filed for p in pieces):
+            if any(not isinstance(p, Line | Arc | Circle) or middle(p) in filed for p in pieces) or (
+                is_whole and len(body.region.pieces) > 60
+            ):
                 self.is_partial = True
                 self.filed += pieces
             elif isinstance(pieces[0], Circle):
@@ -526,7 +530,10 @@ def sheets(path: Path | None, text: str) -> list[tuple[str, Part, View]]:
             strokes = [s.pieces for s in view.drawing.strokes]
             circles = [p[0] for p in strokes if len(p) == 1 and isinstance(p[0], Circle)]
             for body in view.drawing.bodies:
-                part = Part(body, circles, filed, has_more=len(circles) < len(strokes))
+                # A part of very many levels is as in the file altogether, and its sheet says so.
+                clear = not any(not isinstance(p, Line | Arc | Circle) for p in body.region.pieces)
+                is_whole = clear and body.path in view.free
+                part = Part(body, circles, filed, has_more=len(circles) < len(strokes), is_whole=is_whole)
                 parts.append((content.subject.path, part, view))
     return parts
 
