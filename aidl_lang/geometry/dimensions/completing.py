@@ -92,9 +92,10 @@ def completed(
         part = _Part(body, drawn, slack, holes, told_apart)
         if part.loose:
             free.append(body.path)
-        groups = part.needed(groups)
+        tips = [group for group in groups if part.is_of_tip(group)]
+        groups = part.needed(group for group in groups if group not in tips)
         groups += [group for each in part.missing() for group in _labelled([each], said)]
-        groups = part.pruned(groups)
+        groups = part.pruned([*groups, *part.needed(tips)])
         datum = part.datums[0].value, part.datums[1].value
     return Completed(tuple(groups), tuple(free), holes, datum)
 
@@ -247,7 +248,7 @@ class _Part:
         """Returns the groups without those that tell nothing more than the ones before them; what is asked
         for by hand stays as an auxiliary dimension.
         """
-        kept = []
+        kept: list[Group] = []
         for group in groups:
             members, is_new, is_judged = [], False, True
             for of in map(self._shifted, group):
@@ -266,6 +267,13 @@ class _Part:
             elif members and members[0].origin in _AUXILIARY:
                 kept.append(_bracketed(members))
         return kept
+
+    def is_of_tip(self, group: Group) -> bool:
+        """Tells whether the size of the whole ends at a rounded corner, so that others tell it better."""
+        if group[0].origin != "overall":
+            return False
+        readings = told(self.sketch, group[0]) or ()
+        return any(self.sketch.fillets.intersection(reading.needs) for reading in readings)
 
     def pruned(self, groups: Sequence[Group]) -> list[Group]:
         """Returns the groups without those that others tell after all: several numbers of one group may have
@@ -301,12 +309,9 @@ class _Part:
         """Returns a length along an axis between points that are seen, if it has others but there are some as
         far from each other.
         """
-        if (
-            not isinstance(of, Length)
-            or of.along not in ALONG
-            or of.origin == "hand"
-            or told(self.sketch, of)
-        ):
+        if not isinstance(of, Length) or of.along not in ALONG or of.origin == "hand":
+            return of
+        if told(self.sketch, of) and self._is_there(of.start) and self._is_there(of.end):
             return of
         axis = ALONG.index(of.along)
         seen = [n for n in self.sketch.levels() if n.axis == axis and n.rank < sk.HIDDEN]
@@ -318,22 +323,28 @@ class _Part:
         away, _, best = min(found, default=(math.inf, 0, of))
         return best if away <= of.value else of
 
+    def _is_there(self, points: Sequence[Vec]) -> bool:
+        """Tells whether any of some points is seen: on an outline, or as a centre with its lines."""
+        centers = [own.curve.center for own in self.sketch.rounds if own.is_seen]
+        return self._is_on(self.body.region.pieces, points) or any(
+            math.dist(p, center) <= self.slack for p in points for center in centers
+        )
+
+    def _is_on(self, pieces: Iterable[Piece], points: Sequence[Vec]) -> bool:
+        return any(
+            math.dist(point(piece, nearest(piece, p)), p) <= self.slack for piece in pieces for p in points
+        )
+
     def _is_on_loose(self, of: Dimension) -> bool:
         """Tells whether a dimension measures what is told by no dimensions: free outlines, drawings."""
         match of:
             case Length(start=start, end=end):
-                return self._is_loose(start) or self._is_loose(end)
+                loose = (*self.loose, *self.drawn)
+                return self._is_on(loose, start) or self._is_on(loose, end)
             case Roundness(curve=curve):
                 return any(_is_same(p, curve, self.slack) for p in (*self.loose, *self.drawn))
             case _:
                 return False
-
-    def _is_loose(self, points: Sequence[Vec]) -> bool:
-        return any(
-            math.dist(point(piece, nearest(piece, p)), p) <= self.slack
-            for piece in (*self.loose, *self.drawn)
-            for p in points
-        )
 
     # --- What is missing ---------------------------------------------------------------------------
 

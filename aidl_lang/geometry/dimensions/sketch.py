@@ -128,6 +128,8 @@ class Sketch:
         self._seen: dict[int, tuple[int, list[Vec], int]] = {}
         """Levels: their axis, the points at them, how they are seen."""
         self._corners: list[Spot] = []
+        self.fillets: set[int] = set()
+        """radii of rounded corners"""
         self.lines: list[tuple[Spot, Spot]] = []
         self.equations: list[Reading] = []
         self._spots: Places[Spot] = Places(slack)
@@ -197,6 +199,9 @@ class Sketch:
                     self._turn(b, c, c, d, is_right=True)
             elif is_smooth(before, piece) and is_smooth(piece, after):
                 self._between(a, b, c, d, before, after)
+                is_corner = isinstance(before, Line) and isinstance(after, Line)
+                if is_corner and isinstance(piece, Arc) and not is_half_round(piece):
+                    self.fillets.add(self._round(piece).radius)
 
     def _joint(self, a: Spot, b: Spot, c: Spot, before: Piece, after: Piece) -> None:
         """Notes what is seen where a piece from `a` to `b` meets one from `b` to `c`."""
