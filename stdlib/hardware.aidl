@@ -133,7 +133,7 @@ hole clearance_hole(size, fit: text = "medium") {
 /// }
 /// ```
 fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: screw(size).tap)
-hole tap_hole(size) {
+@thread("M" + str(screw(size).diameter)) hole tap_hole(size) {
     rim = tap_hole(size, center: fixed((0, 0)))
 }
 

@@ -302,6 +302,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "layer": _text("layer"),
     "material": _text("material"),
     **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
+    **{name: _text(name) for name in ("thread", "tolerance", "finish")},
     "detached": _detached,
     "stroke": _stroke,
     "dash": _dash,

@@ -121,9 +121,9 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
 
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
-    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for; one named as a
-    side of its shape that does not lie as its name says (slanted, or a level `left`) stands for that side of
-    the shape's box.
+    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for. One named as
+    a side of its shape that does not lie as its name says (slanted, or a level `left`) stands for that side
+    of the shape's box.
     """
     core = look(it, edge, node, env)
     (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])

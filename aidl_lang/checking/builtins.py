@@ -199,7 +199,7 @@ ATTRIBUTES = (
         "in_front",
         "clip",
     ),
-    *("title", "author", "number", "revision", ast.ALLOW),
+    *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 

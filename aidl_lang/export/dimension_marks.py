@@ -235,11 +235,12 @@ def words_of(of: Dimension, count: int = 1) -> str:
     number = fixed(of.value, decimals)
     match of:
         case Roundness():
-            number = f"{'⌀' if of.kind == 'diameter' else 'R'}{number}"
+            number = of.label or f"{'⌀' if of.kind == 'diameter' else 'R'}{number}"
         case Opening():
             number += "°"
-    number += _tolerance(of)
-    return f"{count}× {number}" if count > 1 else number
+    number += _tolerance(of) + (f" {of.remark}" if of.remark else "")
+    number = f"{count}× {number}" if count > 1 else number
+    return f"({number})" if of.is_auxiliary else number
 
 
 def _tolerance(of: Dimension) -> str:

@@ -275,6 +275,9 @@ class Dimension:
     offset  of its line from what it measures, to the right or upwards, mm; None where it is placed freely
     limits  the lower and upper deviation that are allowed, mm or degrees
     fit     the tolerance class that they come from, where it is one
+    label   stands in place of the value of something round: a thread, how a hole is sunk
+    remark  stands behind it
+    is_auxiliary    it follows from others and stands in brackets
     """
 
     value: float
@@ -285,6 +288,9 @@ class Dimension:
     offset: float | None = None
     limits: tuple[float, float] | None = None
     fit: str = ""
+    label: str = ""
+    remark: str = ""
+    is_auxiliary: bool = False
 
     @property
     def kind(self) -> str:

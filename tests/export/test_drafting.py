@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 
@@ -393,3 +394,84 @@ def test_parts_of_one_shape_and_two_sizes_are_two():
         }"""
     )
     assert [sorted(values(page)) for page in found[1:]] == [["⌀18"], ["⌀8"]]
+
+
+SAID = """
+@tolerance("ISO 2768-mK") @finish("Ra 3.2") @note("Break all edges") @thickness(8mm)
+solid plate {
+    body = rectangle(width: 100, height: 60)
+    t1 = tap_hole("m6") at (-35, 15)
+    t2 = tap_hole("m6") at (35, 15)
+    @note("reamed") hole odd { rim = circle(center: fixed((20, -11)), diameter: 5) }
+    @thread("M8x1") hole fine { rim = circle(center: fixed((0, -11)), diameter: 7) }
+    @note("file by hand") hole win { w = slot(center: fixed((-5, 8)), length: 30, width: 8) }
+    @note("this is more than has a place beside a hole") hole lo {
+        rim = circle(center: fixed((-30, -11)), diameter: 9)
+    }
+    dimension(lo.rim, fit: "H7")
+}
+"""
+
+
+def test_what_is_said_of_holes_and_parts_stands_on_the_sheet():
+    (page,) = pages(SAID)
+    assert {"2× M6", "⌀5 reamed", "M8x1", "⌀9 H7 (+0.015/0) note 1"} <= values(page)
+    assert not [said for said in values(page) if said.startswith(("⌀7", "3×"))]
+    assert {"General tolerances: ISO 2768-mK", "Surface: Ra 3.2", "Break all edges", "file by hand"} <= set(
+        words(page)
+    )
+    assert "Note 1: this is more than has a place beside a hole" in words(page)
+
+
+def test_threads_are_told_in_the_table_of_holes_too():
+    text = PANEL.replace("for i, p", """t = tap_hole("m5") at fixed((-40, -20)) for i, p""")
+    (page,) = pages(text)
+    table = next(g for g in page.groups if g.name == "holes")
+    assert "M5" in {m.text for m in table.marks if isinstance(m, Text)}
+
+
+@pytest.mark.parametrize(("depth", "wanted"), [((2.0,), "⌀8, 2 deep"), ((2.0, 90.0), "⌀8 × 90° countersunk")])
+def test_how_a_hole_is_sunk_stands_behind_its_diameter(depth: tuple[float, ...], wanted: str):
+    found = compiled("solid s { b = rectangle(width: 40, height: 30) hole e { c = circle(radius: 4) } }")
+    assert found.model is not None
+    assert found.drawing is not None
+    root = found.model.root
+    holes = tuple(replace(h, attributes=h.attributes | {"depth": depth}) for h in root.structures)
+    model = replace(found.model, root=replace(root, structures=holes))
+    (page,) = drafted(Job(model, found.drawing), Draft())
+    assert wanted in values(page)
+
+
+@pytest.mark.parametrize(
+    ("body", "wanted", "unwanted"),
+    [
+        # In the middle of the outline, whose axis is not drawn.
+        (
+            "b = rectangle(width: 100, height: 60) hole a { c = circle(center: (0, -12), diameter: 6) }"
+            " hole d { c = circle(center: (30, 10), diameter: 8) }",
+            {"50", "80"},
+            set(),
+        ),
+        # A flange that is not symmetric: from its centre.
+        ("b = circle(radius: 40) hole a { c = circle(center: (10, 12), radius: 4) }", {"10", "12"}, {"50"}),
+        # The middle of a slot is not seen, the centres of its ends are.
+        (
+            "b = rectangle(width: 90, height: 50) for i in 0..1 {"
+            " hole w[i] { s = slot(center: fixed((20 * i, 4)), length: 16, width: 6) } }"
+            " constrain w[1].s.center.x == w[0].s.center.x + 20",
+            {"20"},
+            set(),
+        ),
+        # What is asked for and follows from the rest is auxiliary.
+        (
+            "b = rectangle(width: 80, height: 50) hole h { c = circle(center: (7, 5), radius: 4) }"
+            " dimension(b.left, h.c.center) dimension(h.c.center, b.right) dimension(b.left, b.right)",
+            {"80", "47", "(33)"},
+            {"33"},
+        ),
+    ],
+)
+def test_centres_are_tied_to_what_is_seen(body: str, wanted: set[str], unwanted: set[str]):
+    (page,) = pages(f"solid s {{ {body} }}")
+    assert wanted <= values(page)
+    assert not unwanted & values(page)

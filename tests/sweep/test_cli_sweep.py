@@ -328,3 +328,28 @@ def test_no_cell_of_a_table_is_a_formula(folder: Path, aidl: Command) -> None:
     assert "'=note" in head
     told = [f"'{name}" for name in names[:4]] + names[4:]
     assert [row[head.index("name")] for row in rows] == [row[head.index("'=note")] for row in rows] == told
+
+
+def test_a_drawing_sheet_for_each_variant(aidl: Command, tmp_path: Path):
+    (tmp_path / "plate.aidl").write_text(
+        "solid plate { param width = 100 in 60..140 body = rectangle(width: width, height: 50) }"
+    )
+    made = ("sweep", "plate.aidl", "-D", "width=60,80")
+    done = aidl(*made, "-o", "{n}.svg", "-o", "table.csv", "--drawing-sheet", "--no-timings")
+    assert done.code == 0, done.err
+    for number, width in ((1, 60), (2, 80)):
+        drawn = (tmp_path / f"{number}.svg").read_text("utf-8")
+        assert "title-block" in drawn
+        assert f'data-value="{width}"' in drawn
+    command = next(csv.DictReader((tmp_path / "table.csv").read_text("utf-8-sig").splitlines()))["command"]
+    before = (tmp_path / "1.svg").read_bytes()
+    assert aidl(*shlex.split(command)[1:]).code == 0
+    assert (tmp_path / "1.svg").read_bytes() == before
+    for more, code in (
+        (("-o", "{n}.dxf"), "error[E0905]: there are no sheets of the format `dxf`"),
+        (("-o", "t.csv"), "error[E0973]: `--drawing-sheet` has no sheets to make"),
+        (("-o", "{n}.pdf", "--kerf", "0.1"), "error[E0973]: a drawing sheet has no `--kerf=0.1`"),
+    ):
+        refused = aidl(*made, *more, "--drawing-sheet")
+        assert refused.code != 0
+        assert refused.err.startswith(code)

@@ -150,17 +150,15 @@ def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] |
 
 def _tables(content: Content) -> list[Table]:
     """Returns the tables of a sheet, the lowest first."""
-    found = [_list_of_parts(content)] if content.items else []
+    found = [Table("notes", ("Notes",), tuple((line,) for line in content.lines))] if content.lines else []
+    found += [_list_of_parts(content)] if content.items else []
     return found + [_table_of_holes(view) for view in content.views if view.holes]
 
 
 def _table_of_holes(view: View) -> Table:
     """Returns the places of holes, from top to bottom and then further to the right."""
     count = -(-len(view.holes) // _SIDE_BY_SIDE)
-    cells = [
-        (hole.sign, fixed(hole.x, 2), fixed(hole.y, 2), f"⌀{fixed(2 * hole.circle.radius, 2)}")
-        for hole in view.holes
-    ]
+    cells = [(hole.sign, fixed(hole.x, 2), fixed(hole.y, 2), hole.words) for hole in view.holes]
     cells += [("", "", "", "")] * (count * _SIDE_BY_SIDE - len(cells))
     rows = tuple(tuple(chain(*cells[row::count])) for row in range(count))
     return Table("holes", ("Hole", "X", "Y", "⌀") * _SIDE_BY_SIDE, rows, frozenset(range(4 * _SIDE_BY_SIDE)))

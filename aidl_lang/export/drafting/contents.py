@@ -10,6 +10,7 @@ from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import Pen
 from aidl_lang.export.dimension_sheet import Sheet
 from aidl_lang.export.dimensioning import visible
+from aidl_lang.export.drafting.sayings import Labels, Notes, general, said_of
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions, overall
@@ -26,25 +27,29 @@ Wanted = tuple[Dimension, ...]
 """Equal dimensions that are shown once."""
 
 _ALIKE = 1e-6
+_FILED = frozenset({"glyphs", "traced"})
+"""Types of geometry whose outlines no dimensions tell: letters and imported drawings."""
 
 
 @record()
 class Hole:
-    """A round hole of a table: its sign, a letter for its size and a number, and its place from the lower
-    left corner of the part.
+    """A round hole of a table: its sign, a letter for its size and a number, and its place from the datum of
+    the view.
     """
 
     sign: str
     circle: Circle
     x: float
     y: float
+    words: str
 
 
 @record()
 class View:
     """Parts seen from one side. `label` tells it from others of the sheet; `balloons`: numbers of the list of
     parts with the bodies that bear them; `free`: paths of bodies whose outline no dimensions tell;
-    `holes`: those that a table tells.
+    `holes`: those that a table tells, from `datum`; `notes`: what is said of something, with its outline;
+    `lines`: longer notes.
     """
 
     label: str
@@ -53,6 +58,9 @@ class View:
     balloons: tuple[tuple[int, Body], ...] = ()
     free: tuple[str, ...] = ()
     holes: tuple[Hole, ...] = ()
+    datum: Vec = (0.0, 0.0)
+    notes: Notes = ()
+    lines: tuple[str, ...] = ()
 
 
 @record()
@@ -82,13 +90,14 @@ class Item:
 
 @record()
 class Content:
-    """A sheet: what it is of, and its views. `items` is the list of parts that it bears."""
+    """A sheet: what it is of, and its views. `items`: the list of parts that it bears; `lines`: its notes."""
 
     subject: SolvedStructure
     style: Style
     views: tuple[View, ...]
     items: tuple[Item, ...] = ()
     count: int = 1
+    lines: tuple[str, ...] = ()
 
 
 def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
@@ -98,7 +107,10 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
     root, styles = model.root, drawing.styles
     if len(drawing.bodies) < 2:
         style = drawing.bodies[0].style if drawing.bodies else styles[root.path]
-        return [Content(root, style, (_view(model, drawing),), count=style.quantity)]
+        subject = (root.find(drawing.bodies[0].path) if drawing.bodies else None) or root
+        view = _view(model, drawing)
+        lines = (*general(root, subject), *view.lines)
+        return [Content(root, style, (view,), count=style.quantity, lines=lines)]
     items = _items(drawing.bodies)
     parts = []
     on, _ = engraved(drawing.bodies, drawing.strokes)
@@ -107,30 +119,49 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
         alone = _only(drawing, [body], on.get(body.path, ()))
         subject = root.find(body.path) or root
         own = _of_body(model, alone, [b.path for b in drawing.bodies if b is not body])
-        parts.append(Content(subject, body.style, (_view(own, alone),), count=item.count))
+        view = _view(own, alone)
+        lines = (*general(root, subject), *view.lines)
+        parts.append(Content(subject, body.style, (view,), count=item.count, lines=lines))
     shown = {d.group for content in parts for view in content.views for g in view.wanted for d in g}
     between = [size for size in model.sizes if size.origin == "hand" and size.group not in shown]
-    return [Content(root, styles[root.path], tuple(_overview(model, drawing, items, between)), items), *parts]
+    views, lines = tuple(_overview(model, drawing, items, between)), tuple(general(root, root))
+    return [Content(root, styles[root.path], views, items, lines=lines), *parts]
 
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
     stated = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
-    done = completed(drawing, stated)
-    return View("", drawing, done.groups, free=done.free, holes=tuple(_holes(drawing, done.holes)))
+    filed = (g for g in model.root.walk_geometry() if g.type in _FILED)
+    labels, notes, lines = said_of(model, drawing)
+    done = completed(drawing, stated, (curve for g in filed for curve in g.curves()), labels)
+    holes = tuple(_holes(done.holes, done.datum, labels))
+    return View(
+        "",
+        drawing,
+        done.groups,
+        free=done.free,
+        holes=holes,
+        datum=done.datum,
+        notes=notes,
+        lines=tuple(lines),
+    )
 
 
-def _holes(drawing: Drawing, circles: Sequence[Circle]) -> Iterator[Hole]:
+def _holes(circles: Sequence[Circle], datum: Vec, labels: Labels) -> Iterator[Hole]:
     """Yields holes with their signs: equal ones of one letter, from left to right and upwards."""
-    left, bottom, _, _ = drawing.box
-    sizes = sorted({round(c.radius, 6) for c in circles})
-    for number, size in enumerate(sizes):
+    said = [
+        next((" ".join(words).strip() for known, *words in labels if known == circle), "")
+        for circle in circles
+    ]
+    keys = [(round(c.radius, 6), words) for c, words in zip(circles, said, strict=True)]
+    for number, (size, words) in enumerate(sorted(set(keys))):
         own = sorted(
-            (c for c in circles if round(c.radius, 6) == size),
+            (c for c, key in zip(circles, keys, strict=True) if key == (size, words)),
             key=lambda c: (round(c.center[0], 6), round(c.center[1], 6)),
         )
         for k, circle in enumerate(own, 1):
             x, y = circle.center
-            yield Hole(f"{_letters(number)}{k}", circle, x - left, y - bottom)
+            shown = words or f"⌀{fixed(2 * circle.radius, 2)}"
+            yield Hole(f"{_letters(number)}{k}", circle, x - datum[0], y - datum[1], shown)
 
 
 def _letters(number: int) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from aidl_lang.common.records import record
@@ -15,8 +15,9 @@ from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Text
 from aidl_lang.export.scaling import Placing
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.completing import mirror_levels
-from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import Bounds, point
+from aidl_lang.geometry.dimensions.sketch import is_half_round
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import Bounds, bounds, point
 from aidl_lang.geometry.network import union_bounds
 
 _BEYOND = 2.5
@@ -50,7 +51,14 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     """Draws a view. `factor`: millimetres on paper for one of the part; `digits`: height of the values."""
     pen = Pen(digits / HEIGHT / factor)
     signs = tuple(_signs(view, factor))
-    callouts = [Callout(f"item-{number}", str(number), tuple(_spots(body))) for number, body in view.balloons]
+    callouts = [
+        Callout(f"item-{number}", str(number), tuple(_spots(body.box, body.region.faces[0].outer.pieces)))
+        for number, body in view.balloons
+    ]
+    callouts += [
+        Callout(f"note-{number}", words, tuple(_spots(union_bounds([bounds(p) for p in pieces]), pieces)))
+        for number, (words, pieces) in enumerate(view.notes, 1)
+    ]
     box, dimensions, left = dimensioned_to_scale(view.drawing, pen, view.wanted, callouts, signs)
     centers = tuple(_center_lines(view.drawing, factor))
     outlines = Group("outline", tuple(_outlines(view.drawing, factor)), {"class": "outline"})
@@ -71,10 +79,10 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     return DrawnView(width, height, tuple(placed), left)
 
 
-def _spots(body: Body) -> Iterator[tuple[Vec, Vec]]:
-    """Yields places on the outline of a body with the way from there to the outside, about."""
-    left, bottom, right, top = body.box
-    for piece in body.region.faces[0].outer.pieces:
+def _spots(box: Bounds, pieces: Sequence[Piece]) -> Iterator[tuple[Vec, Vec]]:
+    """Yields places on an outline with the way from there to the outside, about."""
+    left, bottom, right, top = box
+    for piece in pieces:
         for t in (0.5, 0.3, 0.7):
             tip = point(piece, t)
             for turn in (45, 135, -45, -135, 20, 160, 70, 110):
@@ -95,10 +103,11 @@ def _datum(view: View, factor: float) -> Iterator[Mark]:
     """Yields the axes from whose origin holes are placed, if there is a table of them."""
     if view.holes:
         left, bottom, _, _ = view.drawing.box
+        is_corner = abs(view.datum[0] - left) + abs(view.datum[1] - bottom) < 1e-6 * view.drawing.size
         size = SMALL / CAPITAL / factor
         reach, aside = 9.0 / factor, 1.0 / factor
         for way, sign in (((1.0, 0.0), "X"), ((0.0, 1.0), "Y")):
-            x, y = left - 3 * aside, bottom - 3 * aside
+            x, y = (left - 3 * aside, bottom - 3 * aside) if is_corner else view.datum
             end = x + reach * way[0], y + reach * way[1]
             yield Curves((Line((x, y), end),), Ink(BLACK, WIDE / factor), "datum")
             yield Text((end[0] + aside * way[0], end[1] + aside * way[1]), sign, size, BLACK, halo=False)
@@ -121,12 +130,13 @@ def _center_lines(drawing: Drawing, factor: float) -> Iterator[Curves]:
     """Yields crosses at the centres of all that is round for half a turn or more."""
     largest: dict[tuple[int, int], Circle | Arc] = {}
     slack = 1e-6 * drawing.size
-    for body in drawing.bodies:
-        for piece in body.region.pieces:
-            if isinstance(piece, Circle) or (isinstance(piece, Arc) and abs(piece.sweep) >= math.pi - 1e-6):
-                key = round(piece.center[0] / slack), round(piece.center[1] / slack)
-                if key not in largest or largest[key].radius < piece.radius:
-                    largest[key] = piece
+    on_part = [stroke.pieces[0] for stroke in drawing.strokes if len(stroke.pieces) == 1]
+    rounds = [piece for body in drawing.bodies for piece in body.region.pieces if is_half_round(piece)]
+    for piece in (*rounds, *(piece for piece in on_part if isinstance(piece, Circle))):
+        if isinstance(piece, Arc | Circle):
+            key = round(piece.center[0] / slack), round(piece.center[1] / slack)
+            if key not in largest or largest[key].radius < piece.radius:
+                largest[key] = piece
     for body in drawing.bodies if len(drawing.bodies) == 1 else ():
         left, bottom, right, top = _grown(body.box, _BEYOND / factor)
         x, y = mirror_levels(body, slack)

@@ -1,9 +1,8 @@
-"""Completes the dimensions of a part, so that it can be made from them alone.
+"""Completes the dimensions of a part, so that it can be made from them alone, and nothing is said twice.
 
-Along each axis an outline has levels: those of its edges, of its corners, of the centres of what is round. A
-dimension ties two levels to each other. A level that nothing ties to the left (or lower) end of the part
-cannot be found by who makes it, so a dimension from there is added; one that ties what is tied already is
-left out, unless the program asks for it.
+Dimensions are taken in their order as long as they tell something new (see `sketch`); then what is still
+missing is added: sizes of what is round, then the levels of edges and centres from the left and lower end of
+the part, or from the centre of what is round there, or across the axis of a symmetric part, then corners.
 """
 
 from __future__ import annotations
@@ -11,14 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise, product
+
+import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, length_between, meeting
+from aidl_lang.geometry.dimensions import sketch as sk
+from aidl_lang.geometry.dimensions.features import length_between
 from aidl_lang.geometry.dimensions.fields import round_dimension
+from aidl_lang.geometry.dimensions.sketch import Level, Places, Reading, Sketch, Span, flipped
+from aidl_lang.geometry.dimensions.telling import ALONG, less, told
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import bounds, derivative
+from aidl_lang.geometry.evaluate import bounds, nearest, point
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import Dimension, Length, Roundness
 
@@ -28,30 +32,40 @@ DERIVED = "derived"
 """The origin of a dimension that the program does not state."""
 MOST_HOLES = 8
 """More round holes than this that stand in no row or circle are told in a table."""
-MOST_LEVELS = 150
+MOST_LEVELS = 100
 """A part with more levels than this is made from a file, not from dimensions."""
 
 _SLACK = 1e-6
+_NEEDED = 1e-6
+"""What is left of a number without a dimension, from which on it is not told without it."""
+_AUXILIARY = ("hand", "overall")
+"""Origins of dimensions that stand in brackets if others tell as much; further ones are left out."""
 _EVEN = 1e-4
 """Degrees by which equal steps on a circle may differ."""
-_ALONG = (X_AXIS, Y_AXIS)
-_NEEDED = ("size", "pattern", DERIVED)
-"""Origins of dimensions that are left out where others tell as much."""
 
 
 @record()
 class Completed:
     """Dimensions that tell a drawing. `free`: outlines that no dimension tells, of the bodies at these
-    paths; `holes`: round ones that are to be told in a table, by their places.
+    paths; `holes`: round ones that are to be told in a table, by their places from `datum`.
     """
 
     groups: tuple[Group, ...]
     free: tuple[str, ...] = ()
     holes: tuple[Circle, ...] = ()
+    datum: Vec = (0.0, 0.0)
 
 
-def completed(drawing: Drawing, stated: Sequence[Group]) -> Completed:
-    """Returns the stated dimensions that are needed, and those that are missing."""
+Labels = Sequence[tuple[Circle, str, str]]
+"""Circles with what stands in place of their diameter, and behind it."""
+
+
+def completed(
+    drawing: Drawing, stated: Sequence[Group], filed: Iterable[Piece] = (), labels: Labels = ()
+) -> Completed:
+    """Returns the stated dimensions that are needed, and those that are missing. `filed`: curves of letters
+    and of imported drawings, which no dimensions tell; `labels`: of circles, with what is said of them.
+    """
     slack = _SLACK * drawing.size
     pieces = [piece for body in drawing.bodies for piece in body.region.pieces]
     stated = [
@@ -61,16 +75,29 @@ def completed(drawing: Drawing, stated: Sequence[Group]) -> Completed:
         or _is_told_by(group[0].curve, _centers_on(group[0].curve, pieces, slack))
     ]
     holes = _scattered(drawing, stated, slack)
-    groups = [group for group in _together(stated) if not any(_is_about(d, holes, slack) for d in group)]
-    free = []
+    said = Places[tuple[str, str]](slack)
+    for circle, label, remark in labels:
+        said.add((*circle.center, circle.radius), (label, remark))
+    groups = [
+        group
+        for group in _together(_labelled(stated, said))
+        if not any(_is_about(d, holes, slack) for d in group)
+    ]
+    drawn = [stroke.pieces for stroke in drawing.strokes]
+    told_apart = Places[Piece](slack)
+    for piece in filed:
+        told_apart.add(_middle(piece), piece)
+    free, datum = [], (0.0, 0.0)
     for body in drawing.bodies:
-        part = _Part(body, slack, holes)
-        if part.is_free:
+        part = _Part(body, drawn, slack, holes, told_apart)
+        if part.loose:
             free.append(body.path)
-            continue
-        groups = part.needed(groups)
-        groups += part.missing()
-    return Completed(tuple(groups), tuple(free), holes)
+        tips = [group for group in groups if part.is_of_tip(group)]
+        groups = part.needed(group for group in groups if group not in tips)
+        groups += [group for each in part.missing() for group in _labelled([each], said)]
+        groups = part.pruned([*groups, *part.needed(tips)])
+        datum = part.datums[0].value, part.datums[1].value
+    return Completed(tuple(groups), tuple(free), holes, datum)
 
 
 def _centers_on(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> list[Vec]:
@@ -131,307 +158,302 @@ def _is_about(of: Dimension, holes: Sequence[Circle], slack: float) -> bool:
     return False
 
 
-def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]:
-    """Returns the x of the upright axis that a body is symmetric about, and the y of the level one."""
-    return _mirror(body, 0, slack), _mirror(body, 1, slack)
+def _labelled(groups: Iterable[Group], said: Places[tuple[str, str]]) -> Iterator[Group]:
+    """Yields the groups with what is said of their circles; apart where that differs."""
+    for group in groups:
+        apart: dict[tuple[str, str], list[Dimension]] = {}
+        for of in group:
+            words = "", ""
+            if isinstance(of, Roundness) and isinstance(of.curve, Circle) and of.origin != "pattern":
+                words = said.find((*of.curve.center, of.curve.radius)) or words
+            apart.setdefault(words, []).append(replace(of, label=words[0], remark=words[1]))
+        yield from map(tuple, apart.values())
 
 
-def _mirror(body: Body, axis: int, slack: float) -> float | None:
-    twice = body.box[axis] + body.box[axis + 2]
-
-    def key(low: float, high: float, box: tuple[float, ...], piece: Piece) -> tuple[object, ...]:
-        numbers = (low, high, box[1 - axis], box[3 - axis])
-        return type(piece).__name__, *(round(n / (10 * slack)) for n in numbers)
-
-    here, there = [], []
-    for piece in body.region.pieces:
-        box = bounds(piece)
-        here.append(key(box[axis], box[axis + 2], box, piece))
-        there.append(key(twice - box[axis + 2], twice - box[axis], box, piece))
-    return twice / 2 if sorted(map(str, here)) == sorted(map(str, there)) else None
-
-
-def _together(groups: Sequence[Group]) -> Iterator[Group]:
+def _together(groups: Iterable[Group]) -> Iterator[Group]:
     """Yields the groups, those of equal whole circles as one, wherever they are written."""
     alike: dict[object, list[Dimension]] = {}
     for number, group in enumerate(groups):
         first = group[0]
         is_circle = isinstance(first, Roundness) and isinstance(first.curve, Circle)
         is_plain = is_circle and first.origin != "pattern" and first.limits is None and not first.fit
-        key = ("circle", round(first.value, 9)) if is_plain else number
+        key = ("circle", round(first.value, 9), first.label, first.remark) if is_plain else number
         alike.setdefault(key, []).extend(group)
     return map(tuple, alike.values())
 
 
-class _Axis:
-    """The levels of a part along an axis, and which of them are tied."""
-
-    def __init__(self, axis: int, slack: float) -> None:
-        self.axis, self.slack = axis, slack
-        self.values: list[float] = []
-        self.spots: list[list[Vec]] = []
-        self.wanted: set[int] = set()
-        self.triples: list[tuple[int, int, int]] = []
-        self.pairs: list[tuple[int, int]] = []
-        self._root: list[int] = []
-
-    def level(self, value: float, *points: Vec, wanted: bool = False) -> int:
-        """Returns the number of a level, which is new if there is none there."""
-        near = (n for n, known in enumerate(self.values) if abs(known - value) <= self.slack)
-        number = next(near, len(self.values))
-        if number == len(self.values):
-            self.values.append(value)
-            self.spots.append([])
-            self._root.append(number)
-        self.spots[number] += [p for p in points if p not in self.spots[number]]
-        if wanted:
-            self.wanted.add(number)
-        return number
-
-    def root(self, number: int) -> int:
-        while self._root[number] != number:
-            number = self._root[number]
-        return number
-
-    def tied(self, a: int, b: int) -> bool:
-        return self.root(a) == self.root(b)
-
-    def tie(self, a: int, b: int) -> None:
-        self._root[self.root(a)] = self.root(b)
-
-    def follow(self) -> None:
-        """Ties what follows: of a level amid two others, with any two of them the third."""
-        changed = True
-        while changed:
-            changed = False
-            for triple in self.triples:
-                roots = {self.root(n) for n in triple}
-                if len(roots) == 2:
-                    self.tie(triple[0], triple[1])
-                    self.tie(triple[1], triple[2])
-                    changed = True
-
-
 class _Part:
-    def __init__(self, body: Body, slack: float, holes: Sequence[Circle] = ()) -> None:
+    """A body with the circles that are drawn on it. `loose`: pieces of outlines that no dimensions tell."""
+
+    def __init__(
+        self,
+        body: Body,
+        drawn: Sequence[Sequence[Piece]],
+        slack: float,
+        holes: Sequence[Circle],
+        filed: Places[Piece],
+    ) -> None:
         self.body, self.slack = body, slack
-        self.axes = _Axis(0, slack), _Axis(1, slack)
-        self.rounds: list[Circle | Arc] = []
-        self.told: set[int] = set()
-        pieces = body.region.pieces
-        self.is_free = any(not isinstance(p, Line | Arc | Circle) for p in pieces)
-        if self.is_free:
-            return
-        for loop in body.region.loops:
-            if loop.pieces[0] not in holes:
-                self._read(loop)
-        self.seen = tuple(frozenset(range(len(axis.values))) for axis in self.axes)
-        self.is_free = any(len(axis.wanted) > MOST_LEVELS for axis in self.axes)
-        for axis, middle in zip(self.axes, mirror_levels(body, slack), strict=True):
-            if middle is None:
-                continue
-            at = axis.level(middle)
-            for number in range(len(axis.values)):
-                other = axis.level(2 * middle - axis.values[number])
-                if number < other:
-                    axis.triples.append((number, at, other))
-                    axis.pairs.append((number, other))
+        loops = [loop for loop in body.region.loops if loop.pieces[0] not in holes]
+        clear = [
+            loop
+            for loop in loops
+            if all(isinstance(p, Line | Arc | Circle) and filed.find(_middle(p)) is None for p in loop.pieces)
+        ]
+        circles = [Loop((p[0],)) for p in drawn if len(p) == 1 and isinstance(p[0], Circle)]
+        self.sketch = Sketch([*clear, *circles], body.box, slack)
+        seen = [level for level in self.sketch.levels() if level.rank < sk.HIDDEN]
+        if len(seen) > MOST_LEVELS:
+            clear, self.sketch = [], Sketch([], body.box, slack)
+        self.loose = [piece for loop in loops if loop not in clear for piece in loop.pieces]
+        self.drawn = [piece for pieces in drawn for piece in pieces]
+        self.datums = [self._datum(axis) for axis in (0, 1)]
+        known = [*(datum.reading for datum in self.datums), *self._filed()]
+        self.middles = mirror_levels(body, slack)
+        for axis, middle in enumerate(self.middles):
+            if middle is not None:
+                axle = self.sketch.mirror(axis, middle)
+                known += [] if self.datums[axis].reading.needs else [axle]
+        self.seen, self.span = (Span(self.sketch.count) for _ in range(2))
+        self.rows = [self.sketch.row(reading) for reading in (*self.sketch.equations, *known)]
+        for span in (self.seen, self.span):
+            span.add_all(self.rows)
 
-    # --- Levels ------------------------------------------------------------------------------------
+    def _datum(self, axis: int) -> Level:
+        """Returns what levels are measured from: the left or lower end, the centre of what is round there."""
+        low = self.body.box[axis]
+        levels = [level for level in self.sketch.levels() if level.axis == axis]
+        at_end = next((n for n in levels if n.rank < sk.HIDDEN and abs(n.value - low) <= self.slack), None)
+        if at_end is not None:
+            return at_end
+        rounds = [
+            r for r in self.sketch.rounds if abs(r.curve.center[axis] - r.curve.radius - low) <= self.slack
+        ]
+        for own in sorted(rounds, key=lambda r: -r.curve.radius):
+            return next(n for n in levels if n.reading.needs == own.center.along(axis).needs)
+        self.sketch.fixed[axis] = low
+        return Level(axis, low, Reading((), lambda _: low), tuple(self._ends_at(axis, low)), sk.EDGE)
 
-    def _read(self, loop: Loop) -> None:
-        """Notes the levels of an outline, and what of them follows from the rest."""
-        pieces = loop.pieces
-        for k, piece in enumerate(pieces):
-            if isinstance(piece, Line):
-                self._line(pieces, k, piece)
-            elif isinstance(piece, Circle | Arc) and not self._is_fillet(pieces, k):
-                self.rounds.append(piece)
-                for axis in self.axes:
-                    axis.level(piece.center[axis.axis], piece.center, wanted=True)
-            elif isinstance(piece, Arc):
-                self.rounds.append(piece)
-        boxes = [bounds(p) for p in pieces]
-        for axis in self.axes:
-            low = min(b[axis.axis] for b in boxes)
-            high = max(b[axis.axis + 2] for b in boxes)
-            axis.triples.append((axis.level(low), axis.level((low + high) / 2), axis.level(high)))
-
-    def _line(self, pieces: Sequence[Piece], k: int, line: Line) -> None:
-        (x0, y0), (x1, y1) = line.start, line.end
-        if abs(x1 - x0) <= self.slack:
-            self.axes[0].level(x0, line.start, line.end, wanted=True)
-        elif abs(y1 - y0) <= self.slack:
-            self.axes[1].level(y0, line.start, line.end, wanted=True)
-        else:
-            for step, end in ((-1, line.start), (1, line.end)):
-                if (corner := self._corner(pieces, k, step, end)) is not None:
-                    for axis in self.axes:
-                        axis.level(corner[axis.axis], corner, wanted=True)
-
-    def _corner(self, pieces: Sequence[Piece], k: int, step: int, end: Vec) -> Vec | None:
-        """Returns the corner at an end of a slanted line, as if it were not rounded; None if the line touches
-        something round there, which tells where it ends.
-        """
-        beside = (k + step) % len(pieces)
-        if not isinstance(pieces[beside], Arc) or not self._is_smooth(pieces, k if step > 0 else beside):
-            return end
-        beyond, line = pieces[(beside + step) % len(pieces)], pieces[k]
-        if self._is_fillet(pieces, beside) and isinstance(beyond, Line) and isinstance(line, Line):
-            return meeting(line, beyond)
-        return None
-
-    def _is_smooth(self, pieces: Sequence[Piece], k: int) -> bool:
-        """Tells whether a piece goes over into the next one without a corner."""
-        (u0, v0), (u1, v1) = derivative(pieces[k], 1.0), derivative(pieces[(k + 1) % len(pieces)], 0.0)
-        size = math.hypot(u0, v0) * math.hypot(u1, v1)
-        return abs(u0 * v1 - v0 * u1) <= 1e-6 * size and u0 * u1 + v0 * v1 > 0
-
-    def _is_fillet(self, pieces: Sequence[Piece], k: int) -> bool:
-        """Tells whether an arc rounds the corner between two lines."""
-        piece, before, after = pieces[k], pieces[k - 1], pieces[(k + 1) % len(pieces)]
-        if not (isinstance(piece, Arc) and isinstance(before, Line) and isinstance(after, Line)):
-            return False
-        is_smooth = self._is_smooth(pieces, (k - 1) % len(pieces)) and self._is_smooth(pieces, k)
-        return is_smooth and meeting(before, after) is not None
+    def _filed(self) -> Iterator[Reading]:
+        """Yields the levels of the ends of the part that an outline without dimensions reaches."""
+        boxes = [bounds(piece) for piece in self.loose]
+        for side, end in enumerate(self.body.box):
+            number = self.sketch.level(side % 2, end)
+            if number is not None and any(abs(box[side] - end) <= self.slack for box in boxes):
+                yield sk.plain(number)
 
     # --- What is told ------------------------------------------------------------------------------
 
     def needed(self, groups: Iterable[Group]) -> list[Group]:
-        """Returns the groups without those that tell nothing more than the ones before them."""
-        kept = []
+        """Returns the groups without those that tell nothing more than the ones before them; what is asked
+        for by hand stays as an auxiliary dimension.
+        """
+        kept: list[Group] = []
         for group in groups:
-            lengths = [d for d in group if isinstance(d, Length) and d.along in _ALONG]
-            may_go = len(lengths) == len(group) and group[0].origin in _NEEDED
-            if may_go and all(self._is_known(d) or not self._is_seen(d) for d in lengths):
-                continue
-            for dimension in group:
-                self._learn(dimension)
-            for axis in self.axes:
-                axis.follow()
-            kept.append(group)
+            members, is_new, is_judged = [], False, True
+            for of in map(self._shifted, group):
+                readings = told(self.sketch, of)
+                if self.loose and of.origin == "overall":
+                    is_judged = False
+                elif readings:
+                    is_new |= self._learn(readings)
+                elif of.origin == "hand" or self._is_on_loose(of):
+                    is_judged = False
+                else:
+                    continue
+                members.append(of)
+            if is_new or (members and not is_judged):
+                kept.append(tuple(members))
+            elif members and members[0].origin in _AUXILIARY:
+                kept.append(_bracketed(members))
         return kept
 
-    def _is_seen(self, of: Length) -> bool:
-        """Tells whether both ends are levels of the outline: edges may be hidden in what is united."""
-        axis = self.axes[int(of.along == Y_AXIS)]
-        known = [axis.values[n] for n in self.seen[axis.axis]]
-        ends = [p[0][axis.axis] for p in (of.start, of.end)]
-        return all(any(abs(end - value) <= self.slack for value in known) for end in ends)
+    def is_of_tip(self, group: Group) -> bool:
+        """Tells whether the size of the whole ends at a rounded corner, so that others tell it better."""
+        if group[0].origin != "overall":
+            return False
+        readings = told(self.sketch, group[0]) or ()
+        return any(self.sketch.fillets.intersection(reading.needs) for reading in readings)
 
-    def _is_known(self, of: Length) -> bool:
-        axis = self.axes[int(of.along == Y_AXIS)]
-        low, high = (axis.level(p[0][axis.axis]) for p in (of.start, of.end))
-        axis.follow()
-        return axis.tied(low, high)
+    def pruned(self, groups: Sequence[Group]) -> list[Group]:
+        """Returns the groups without those that others tell after all: several numbers of one group may have
+        made an earlier one needless.
+        """
+        own = [self._rows_of(group) for group in groups]
+        rows = [row / np.linalg.norm(row) for row in chain(self.rows, *own) if row.any()]
+        gram = np.array(rows).T @ np.array(rows) if rows else np.zeros((0, 0))
+        inverse, kept = None, list(groups)
+        for k in reversed(range(len(groups))):
+            told_here = [row / np.linalg.norm(row) for row in own[k] if row.any()]
+            if not told_here or max(map(len, own)) == 1:
+                continue
+            if inverse is None:
+                inverse = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
+            taken = np.array(told_here)
+            # The rest spans as much if no part of the group weighs as much as all that there is of it.
+            if np.linalg.eigvalsh(taken @ inverse @ taken.T)[-1] < 1 - _NEEDED:
+                gram, inverse = gram - taken.T @ taken, None
+                kept[k] = _bracketed(groups[k]) if groups[k][0].origin in _AUXILIARY else ()
+        return [group for group in kept if group]
 
-    def _learn(self, of: Dimension) -> None:
+    def _rows_of(self, group: Group) -> list[sk.Row]:
+        if group[0].is_auxiliary or (self.loose and group[0].origin == "overall"):
+            return []
+        return [self.sketch.row(reading) for of in group for reading in told(self.sketch, of) or ()]
+
+    def _learn(self, readings: Iterable[Reading]) -> bool:
+        """Tells whether any of some numbers says something new."""
+        return self.span.add_all(map(self.sketch.row, readings))
+
+    def _shifted(self, of: Dimension) -> Dimension:
+        """Returns a length along an axis between points that are seen, if it has others but there are some as
+        far from each other.
+        """
+        if not isinstance(of, Length) or of.along not in ALONG or of.origin == "hand":
+            return of
+        if told(self.sketch, of) and self._is_there(of.start) and self._is_there(of.end):
+            return of
+        axis = ALONG.index(of.along)
+        seen = [n for n in self.sketch.levels() if n.axis == axis and n.rank < sk.HIDDEN]
+        found = [
+            (abs(a.value - of.start[0][axis]), k, replace(of, start=a.points, end=b.points))
+            for k, (a, b) in enumerate(product(seen, seen))
+            if abs(b.value - a.value - of.value) <= self.slack
+        ]
+        away, _, best = min(found, default=(math.inf, 0, of))
+        return best if away <= of.value else of
+
+    def _is_there(self, points: Sequence[Vec]) -> bool:
+        """Tells whether any of some points is seen: on an outline, or as a centre with its lines."""
+        centers = [own.curve.center for own in self.sketch.rounds if own.is_seen]
+        return self._is_on(self.body.region.pieces, points) or any(
+            math.dist(p, center) <= self.slack for p in points for center in centers
+        )
+
+    def _is_on(self, pieces: Iterable[Piece], points: Sequence[Vec]) -> bool:
+        return any(
+            math.dist(point(piece, nearest(piece, p)), p) <= self.slack for piece in pieces for p in points
+        )
+
+    def _is_on_loose(self, of: Dimension) -> bool:
+        """Tells whether a dimension measures what is told by no dimensions: free outlines, drawings."""
         match of:
-            case Length() if of.along in _ALONG:
-                axis = self.axes[int(of.along == Y_AXIS)]
-                axis.tie(*(axis.level(p[0][axis.axis]) for p in (of.start, of.end)))
-            case Roundness(origin="pattern", curve=Circle() as ring):
-                self._learn_ring(ring)
+            case Length(start=start, end=end):
+                loose = (*self.loose, *self.drawn)
+                return self._is_on(loose, start) or self._is_on(loose, end)
             case Roundness(curve=curve):
-                for number, own in enumerate(self.rounds):
-                    if _is_same(own, curve, self.slack):
-                        self._learn_round(number)
-
-    def _learn_round(self, number: int) -> None:
-        self.told.add(number)
-        curve = self.rounds[number]
-        for axis in self.axes:
-            middle = axis.level(curve.center[axis.axis])
-            for side in (-1, 1):
-                axis.tie(middle, axis.level(curve.center[axis.axis] + side * curve.radius))
-
-    def _learn_ring(self, ring: Circle) -> None:
-        """Learns that the centres on a circle stand at equal steps, if it is seen where these begin."""
-        on = _centers_on(ring, self.body.region.pieces, self.slack)
-        if not _is_told_by(ring, on):
-            return
-        for axis in self.axes:
-            middle = axis.level(ring.center[axis.axis], ring.center)
-            for center in on:
-                axis.tie(middle, axis.level(center[axis.axis]))
+                return any(_is_same(p, curve, self.slack) for p in (*self.loose, *self.drawn))
+            case _:
+                return False
 
     # --- What is missing ---------------------------------------------------------------------------
 
     def missing(self) -> list[Group]:
-        found = list(self._rounds())
-        for axis in self.axes:
-            found += self._levels(axis)
-        return found
+        return [*self._rounds(), *self._levels()]
 
     def _rounds(self) -> Iterator[Group]:
         """Yields the sizes of what is round and has none, equal ones together."""
-        open_ones: dict[tuple[str, int], list[int]] = {}
-        for number, curve in enumerate(self.rounds):
-            if number in self.told:
-                continue
-            if self._is_spanned(curve):
-                self._learn_round(number)
-                continue
-            key = type(curve).__name__, round(curve.radius / self.slack)
-            open_ones.setdefault(key, []).append(number)
-        for numbers in open_ones.values():
-            for number in numbers:
-                self._learn_round(number)
-            yield tuple(
-                _derived(round_dimension(self.rounds[n]), ("round", self.body.path, *numbers))
-                for n in numbers
-            )
-        for axis in self.axes:
-            axis.follow()
+        lacking: dict[tuple[str, int], list[sk.Round]] = {}
+        for own in self.sketch.rounds:
+            if self.span.lacks(self.sketch.row(sk.plain(own.radius))):
+                key = type(own.curve).__name__, round(own.curve.radius / self.slack)
+                lacking.setdefault(key, []).append(own)
+        for rounds in lacking.values():
+            first = self.sketch.row(sk.plain(rounds[0].radius))
+            group = "round", self.body.path, *rounds[0].curve.center
+            told_here = [
+                _derived(round_dimension(own.curve), group)
+                for own in rounds
+                if self._learn([sk.plain(own.radius)])
+                or not self.seen.lacks(self.sketch.row(sk.plain(own.radius)) - first)
+            ]
+            if told_here:
+                yield tuple(told_here)
 
-    def _is_spanned(self, curve: Circle | Arc) -> bool:
-        """Tells whether a length across a half-round end tells its radius."""
-        if isinstance(curve, Circle) or abs(curve.sweep) < math.pi - 1e-6:
-            return False
-        for axis in self.axes:
-            c, r = curve.center[axis.axis], curve.radius
-            low, high = axis.level(c - r), axis.level(c + r)
-            if axis.tied(low, high):
-                return True
-        return False
-
-    def _levels(self, axis: _Axis) -> Iterator[Group]:
+    def _levels(self) -> Iterator[Group]:
         """Yields lengths that tie the levels that are tied to nothing."""
-        datum = axis.level(self.body.box[axis.axis])
-        axis.follow()
-        partners = dict(axis.pairs) | {b: a for a, b in axis.pairs}
-        for number in sorted(axis.wanted, key=lambda n: abs(axis.values[n] - axis.values[datum])):
-            if axis.tied(number, datum):
+        levels = self.sketch.levels()
+        known = (Places[Level](self.slack), Places[Level](self.slack))
+        for level in levels:
+            if level.rank < sk.HIDDEN and level.points:
+                known[level.axis].add((level.value,), level)
+
+        def turn(level: Level) -> tuple[int, int, float]:
+            return level.rank, level.axis, abs(level.value - self.datums[level.axis].value)
+
+        for level in sorted(levels, key=turn):
+            datum, middle = self.datums[level.axis], self.middles[level.axis]
+            if not self.span.lacks(self.sketch.row(less(level.reading, datum.reading))):
                 continue
-            other = partners.get(number)
-            is_pair = other is not None and axis.spots[other] and other != number
-            start, end = (number, other) if is_pair and other is not None else (datum, number)
-            found = self._between(axis, start, end)
-            axis.tie(start, end)
-            axis.follow()
-            if found.value > self.slack:
-                yield (_derived(found, ("level", self.body.path, axis.axis, number)),)
+            other = datum
+            if middle is not None and level.rank < sk.HIDDEN:
+                other = known[level.axis].find((2 * middle - level.value,)) or datum
+                other = datum if other is level else other
+            number = less(level.reading, other.reading)
+            self._learn([number])
+            if abs(level.value - other.value) <= self.slack:
+                self.rows.append(self.sketch.row(number))  # seen to be on one level
+            else:
+                found = length_between(other.points, level.points, ALONG[level.axis])
+                yield (_derived(found, ("level", self.body.path, level.axis, *level.points[0])),)
 
-    def _between(self, axis: _Axis, a: int, b: int) -> Length:
-        starts, finishes = (axis.spots[n] or self._ends_at(axis, axis.values[n]) for n in (a, b))
-        return length_between(starts, finishes, _ALONG[axis.axis])
-
-    def _ends_at(self, axis: _Axis, value: float) -> list[Vec]:
+    def _ends_at(self, axis: int, value: float) -> list[Vec]:
         """Returns the points of the outline at a level."""
         found = []
         for piece in self.body.region.pieces:
             box = bounds(piece)
-            for side in (axis.axis, axis.axis + 2):
+            for side in (axis, axis + 2):
                 if abs(box[side] - value) <= self.slack:
-                    middle = (box[1 - axis.axis] + box[3 - axis.axis]) / 2
-                    found.append((value, middle) if axis.axis == 0 else (middle, value))
-        return found or [(value, self.body.box[1]) if axis.axis == 0 else (self.body.box[0], value)]
+                    middle = (box[1 - axis] + box[3 - axis]) / 2
+                    found.append((value, middle) if axis == 0 else (middle, value))
+        return found
+
+
+def _bracketed(group: Iterable[Dimension]) -> Group:
+    return tuple(replace(of, is_auxiliary=True) for of in group)
 
 
 def _derived(of: Dimension, group: object) -> Dimension:
     return replace(of, origin=DERIVED, group=group)
 
 
-def _is_same(a: Circle | Arc, b: Circle | Arc, slack: float) -> bool:
+def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]:
+    """Returns the x of the upright axis that a body is symmetric about, and the y of the level one."""
+    places = Places[Piece](slack)
+    for piece in body.region.pieces:
+        places.add(_middle(piece), piece)
+
+    def is_mirrored(piece: Piece, axis: int, middle: float) -> bool:
+        there = places.all(flipped(_middle(piece), axis, middle))
+        return any(_is_mirror(piece, other, axis, middle, 4 * slack) for other in there)
+
+    found = []
+    for axis in (0, 1):
+        middle = (body.box[axis] + body.box[axis + 2]) / 2
+        is_even = all(is_mirrored(piece, axis, middle) for piece in body.region.pieces)
+        found.append(middle if is_even else None)
+    return found[0], found[1]
+
+
+def _middle(piece: Piece) -> Vec:
+    return piece.center if isinstance(piece, Circle) else point(piece, 0.5)
+
+
+def _is_mirror(a: Piece, b: Piece, axis: int, middle: float, slack: float) -> bool:
+    if isinstance(a, Circle) or isinstance(b, Circle):
+        return isinstance(a, Circle) and isinstance(b, Circle) and abs(a.radius - b.radius) <= slack
+    ways = ((0.0, 0.25, 1.0), (0.0, 0.25, 1.0)), ((0.0, 0.25, 1.0), (1.0, 0.75, 0.0))
+    return type(a) is type(b) and any(
+        all(
+            math.dist(flipped(point(a, t), axis, middle), point(b, u)) <= slack
+            for t, u in zip(*way, strict=True)
+        )
+        for way in ways
+    )
+
+
+def _is_same(a: Piece, b: Circle | Arc, slack: float) -> bool:
     """Tells whether two curves are of one circle."""
+    if not isinstance(a, Circle | Arc):
+        return False
     return abs(a.radius - b.radius) <= slack and math.dist(a.center, b.center) <= slack

@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     start = time.perf_counter()
     source = files.read(arguments.file)
-    targets = [Target(name, _suffix(name)) for name in arguments.output or [_default(arguments.file)]]
+    targets = [Target(name, sheet_suffix(name)) for name in arguments.output or [_default(arguments.file)]]
     for target in targets:
         files.require_directory(target.name)
     compiled = pipeline.compile(source, files.world(arguments.file), params=dict(arguments.params))
@@ -77,7 +77,8 @@ def _default(program: str) -> str:
     return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT))
 
 
-def _suffix(name: str) -> str:
+def sheet_suffix(name: str) -> str:
+    """Returns the format of a sheet; raises UseError for one that has none."""
     from aidl_lang.export import PICTURES
 
     suffix = _DEFAULT if name == files.STANDARD else Path(name).suffix.lower()

@@ -22,6 +22,7 @@ from aidl_lang.tools.cli.options import (
 from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
+    from aidl_lang.tools.sweeping.outputs import Outputs
     from aidl_lang.tools.sweeping.plan import Plan, Rows
     from aidl_lang.tools.sweeping.rows import Row
     from aidl_lang.tools.sweeping.session import Job, Session
@@ -58,6 +59,11 @@ def register(parser: argparse.ArgumentParser) -> None:
         parser,
         "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
         "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
+    )
+    parser.add_argument(
+        "--drawing-sheet",
+        action="store_true",
+        help="make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
     )
     add_drawing_options(parser)
     add_variant(parser)
@@ -157,6 +163,19 @@ def _axis(text: str) -> tuple[str, str]:
     return name.strip(), values
 
 
+def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
+    """Raises UseError for outputs and options that drawing sheets do not have."""
+    from aidl_lang.tools.cli.sheet import sheet_suffix
+
+    if not wanted.patterns:
+        raise UseError("E0973", "`--drawing-sheet` has no sheets to make", "name them: `-o '{n}.pdf'`")
+    for each in wanted.patterns:
+        sheet_suffix(each.text)
+    for word in words:
+        if word.startswith("--") and word != "--pixels":
+            raise UseError("E0973", f"a drawing sheet has no `{word}`", f"leave out `{word}`")
+
+
 def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang import pipeline
     from aidl_lang.tools.cli.build import options
@@ -170,13 +189,22 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
     bundle, world, knobs = opened(source, files.world(arguments.file), settings)
     plan = _plan(arguments, knobs)
     words = said(arguments)
+    wanted = outputs(arguments.output, plan, world.reads, arguments.format)
+    if arguments.drawing_sheet:
+        _require_sheets(wanted, words)
     return Job(
         plan,
         bundle,
         world,
-        Making(options=options(arguments), best_effort=arguments.best_effort),
-        outputs(arguments.output, plan, world.reads, arguments.format),
-        lambda variant, name: reproducing(arguments.file, plan, variant, name, words),
+        Making(
+            options=options(arguments),
+            best_effort=arguments.best_effort,
+            drafted=arguments.drawing_sheet,
+        ),
+        wanted,
+        lambda variant, name: reproducing(
+            arguments.file, plan, variant, name, words, verb="sheet" if arguments.drawing_sheet else "compile"
+        ),
         arguments.cache or "",
         arguments.cache_size * 1_000_000 if arguments.cache_size else Job.cache_size,
         arguments.resume,

@@ -168,6 +168,7 @@ def key(bundle: Bundle, params: Mapping[str, Value], making: Making) -> str:
         repr(bundle.settings),
         sorted((path, type(value).__name__, value) for path, value in params.items()),
         [list(making.suffixes), sorted(options.items()), making.best_effort, making.picture],
+        making.drafted,
     ]
     return hashlib.sha256(json.dumps(told, default=repr).encode()).hexdigest()
 

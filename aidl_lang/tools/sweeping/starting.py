@@ -67,9 +67,17 @@ def engine(
     return Cluster(name, _WORKING)
 
 
-def reproducing(program: str, plan: Plan, variant: Variant, name: str, options: Sequence[str] = ()) -> str:
+def reproducing(
+    program: str,
+    plan: Plan,
+    variant: Variant,
+    name: str,
+    options: Sequence[str] = (),
+    *,
+    verb: str = "compile",
+) -> str:
     """Returns the command that makes one variant alone, for a POSIX shell."""
-    words = ["aidl", "compile", f"./{program}" if program.startswith("-") else program]
+    words = ["aidl", verb, f"./{program}" if program.startswith("-") else program]
     for path, given in variant.values.items():
         words += ["-D", f"{path}={_written(spelled(plan.knobs.get(path), given))}"]
     words += options

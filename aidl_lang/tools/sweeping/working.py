@@ -5,7 +5,7 @@ checked, and the places that the last variant had.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from aidl_lang import pipeline
@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
 from aidl_lang.common.numbers import significant
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.export import Options
+from aidl_lang.export import Exported, Options
 from aidl_lang.geometry.survey import NothingThereError, Part
 from aidl_lang.pipeline import Front
 from aidl_lang.solver.memory import Memory
@@ -34,12 +34,14 @@ class Making:
     suffixes     the formats of the files to write
     best_effort  whether they are written also where it does not solve
     picture      the larger side of a small picture in pixels; 0 for none
+    drafted      whether they are drawing sheets
     """
 
     suffixes: tuple[str, ...] = ()
     options: Options = Options()
     best_effort: bool = False
     picture: int = 0
+    drafted: bool = False
 
 
 @record(frozen=False)
@@ -143,7 +145,7 @@ def _measured(whole: Part) -> Measures:
 
 def _files(compiled: Compiled, making: Making) -> tuple[dict[str, tuple[bytes, ...]], list[Diagnostic]]:
     """Returns the files in all formats; none of them if one could not be made."""
-    write = compiled.exporting(making.options)
+    write = _drafting(compiled, making) if making.drafted else compiled.exporting(making.options)
     files: dict[str, tuple[bytes, ...]] = {}
     said: list[Diagnostic] = []
     for suffix in making.suffixes:
@@ -154,6 +156,12 @@ def _files(compiled: Compiled, making: Making) -> tuple[dict[str, tuple[bytes, .
         files[suffix] = (made.data, *made.further)
         said += [note for note in made.notes if note not in said]
     return files, said
+
+
+def _drafting(compiled: Compiled, making: Making) -> Callable[[str], Exported]:
+    from aidl_lang.export.drafting import Draft
+
+    return lambda suffix: compiled.drafted([suffix], Draft(), making.options)[0]
 
 
 def _picture(compiled: Compiled, making: Making) -> bytes:

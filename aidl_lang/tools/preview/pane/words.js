@@ -2,7 +2,7 @@
 
 export const words = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "thread", "tolerance", "finish", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1067,6 +1067,9 @@ export const snippets = [
   {"prefix": "@author", "title": "who drew it, for its sheet", "body": "@author(\"${1:A. Maker}\")$0", "place": "attribute"},
   {"prefix": "@number", "title": "the number of a drawing sheet", "body": "@number(\"${1:C-001}\")$0", "place": "attribute"},
   {"prefix": "@revision", "title": "the revision of a drawing sheet", "body": "@revision(\"${1:A}\")$0", "place": "attribute"},
+  {"prefix": "@thread", "title": "the thread of a hole", "body": "@thread(\"${1:M10x1}\")$0", "place": "attribute"},
+  {"prefix": "@tolerance", "title": "the general tolerances", "body": "@tolerance(\"${1:ISO 2768-m}\")$0", "place": "attribute"},
+  {"prefix": "@finish", "title": "the surface of a part", "body": "@finish(\"${1:Ra 3.2}\")$0", "place": "attribute"},
   {"prefix": "@detached", "title": "a part that touches no other", "body": "@detached$0", "place": "attribute"},
   {"prefix": "gap", "title": "one part above another", "body": "${1:a}.above(${2:b}, gap: ${3:2})$0", "place": "constraints"},
   {"prefix": "centered", "title": "one part in the middle of another", "body": "${1:a}.centered_in(${2:b})$0", "place": "constraints"},

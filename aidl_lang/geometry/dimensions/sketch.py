@@ -1,0 +1,448 @@
+"""What of an outline is told: by what is seen of it, and by dimensions.
+
+The unknowns are the levels of its edges, corners and centres along both axes, and its radii. What is seen
+without a number gives equations: arcs end on their edges, joints are smooth, corners are right, halves mirror
+each other about a drawn axis; what stands on one level is one unknown. Each equation is a row of a matrix,
+and so is each dimension. A dimension is needed if its row lies outside the span of those before it, and a
+number is missing as long as its own does. Rows are taken at the outline as it is drawn, by derivatives along
+imaginary steps (Squire and Trapp, "Using complex variables to estimate derivatives of real functions", SIAM
+Review 40, 1998).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from itertools import chain, product
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.dimensions.features import meeting
+from aidl_lang.geometry.evaluate import Bounds, derivative, ends
+from aidl_lang.geometry.region import Loop
+
+Unknowns = Sequence[complex]
+Row = NDArray[np.float64]
+T = TypeVar("T")
+
+EDGE, CORNER, HIDDEN, JOINT = range(4)
+"""How a level is seen: as an edge or a centre with its lines, as a corner, as the centre of a short arc, as
+the place where two curves touch. The ones before are rather measured.
+"""
+_STEP = 1e-30
+_NEW = 1e-6
+"""The part of a row of length 1 that lies outside the span, from which on it tells something."""
+
+
+@record()
+class Reading:
+    """A number of an outline as it follows from the unknowns `needs`."""
+
+    needs: tuple[int, ...]
+    of: Callable[[Unknowns], complex]
+
+
+@record()
+class Spot:
+    """A point of an outline."""
+
+    at: Vec
+    x: Reading
+    y: Reading
+
+    def along(self, axis: int) -> Reading:
+        return (self.x, self.y)[axis]
+
+    @property
+    def needs(self) -> tuple[int, ...]:
+        return self.x.needs + self.y.needs
+
+    def of(self, z: Unknowns) -> tuple[complex, complex]:
+        return self.x.of(z), self.y.of(z)
+
+
+@record()
+class Round:
+    """A circle, or all arcs of one. `is_seen`: half of it or more is there, so that its centre has lines."""
+
+    curve: Circle | Arc
+    center: Spot
+    radius: int
+    is_seen: bool
+
+
+@record()
+class Level:
+    """A number along an axis that an outline has, the points at it, and how it is seen."""
+
+    axis: int
+    value: float
+    reading: Reading
+    points: tuple[Vec, ...]
+    rank: int
+
+
+class Places(Generic[T]):
+    """Things by where they are; numbers that differ by less than the slack are one."""
+
+    def __init__(self, slack: float) -> None:
+        self._slack = slack
+        self._cells: dict[tuple[int, ...], list[tuple[tuple[float, ...], T]]] = {}
+
+    def add(self, at: tuple[float, ...], thing: T) -> T:
+        self._cells.setdefault(self._cell(at), []).append((at, thing))
+        return thing
+
+    def find(self, at: tuple[float, ...]) -> T | None:
+        return next(self.all(at), None)
+
+    def things(self) -> Iterator[T]:
+        return (thing for cell in self._cells.values() for _, thing in cell)
+
+    def all(self, at: tuple[float, ...]) -> Iterator[T]:
+        for cell in product(*((n, n - 1, n + 1) for n in self._cell(at))):
+            for known, thing in self._cells.get(cell, ()):
+                if all(abs(a - b) <= self._slack for a, b in zip(known, at, strict=True)):
+                    yield thing
+
+    def _cell(self, at: tuple[float, ...]) -> tuple[int, ...]:
+        return tuple(math.floor(number / (2 * self._slack)) for number in at)
+
+
+class Sketch:
+    """An outline as its unknowns. `box`: of all that is drawn of the part."""
+
+    def __init__(self, loops: Iterable[Loop], box: Bounds, slack: float) -> None:
+        self.slack, self.box = slack, box
+        self.rounds: list[Round] = []
+        self.fixed: list[float | None] = [None, None]
+        """ends of the part that an outline without dimensions has, by axis"""
+        self._values: list[float] = []
+        self._levels: tuple[Places[int], Places[int]] = (Places(slack), Places(slack))
+        self._seen: dict[int, tuple[int, list[Vec], int]] = {}
+        """Levels: their axis, the points at them, how they are seen."""
+        self._corners: list[Spot] = []
+        self.fillets: set[int] = set()
+        """radii of rounded corners"""
+        self.lines: list[tuple[Spot, Spot]] = []
+        self.equations: list[Reading] = []
+        self._spots: Places[Spot] = Places(slack)
+        self._rounds: Places[Round] = Places(slack)
+        outlines = [_merged(loop.pieces) for loop in loops]
+        self._find_rounds([p for pieces in outlines for p in pieces if isinstance(p, Circle | Arc)])
+        for pieces in outlines:
+            checkpoint()
+            if not isinstance(pieces[0], Circle):
+                self._read(pieces)
+
+    # --- Unknowns ----------------------------------------------------------------------------------
+
+    def _unknown(self, value: float) -> int:
+        self._values.append(value)
+        return len(self._values) - 1
+
+    def _level(self, axis: int, p: Vec, rank: int) -> int:
+        """Returns the unknown of the level of a point: one that is there already, unless none sees it."""
+        places = self._levels[axis]
+        number = places.find((p[axis],)) if rank < HIDDEN else None
+        if number is None:
+            number = self._unknown(p[axis])
+            if rank < HIDDEN:
+                places.add((p[axis],), number)
+        _, points, before = self._seen.get(number, (axis, [], rank))
+        self._seen[number] = axis, [*points, p], min(rank, before)
+        return number
+
+    def _spot(self, at: Vec, x: int, y: int) -> Spot:
+        return self._spots.add(at, Spot(at, plain(x), plain(y)))
+
+    def _find_rounds(self, curves: Iterable[Circle | Arc]) -> None:
+        same: Places[list[Circle | Arc]] = Places(self.slack)
+        every = []
+        for curve in curves:
+            key = (*curve.center, curve.radius)
+            known = same.find(key)
+            if known is None:
+                known = same.add(key, [])
+                every.append(known)
+            known.append(curve)
+        for known in every:
+            first = known[0]
+            is_seen = any(is_half_round(c) for c in known)
+            x, y = (self._level(k, first.center, EDGE if is_seen else HIDDEN) for k in (0, 1))
+            spot = self._spot(first.center, x, y)
+            found = Round(first, spot, self._unknown(first.radius), is_seen)
+            self.rounds.append(self._rounds.add((*first.center, first.radius), found))
+
+    def round_of(self, curve: Circle | Arc) -> Round | None:
+        return self._rounds.find((*curve.center, curve.radius))
+
+    # --- What is seen ------------------------------------------------------------------------------
+
+    def _read(self, pieces: Sequence[Piece]) -> None:
+        """Notes the corners of an outline and the equations that are seen of it."""
+        count = len(pieces)
+        spots = [self._vertex(pieces[k - 1], pieces[k]) for k in range(count)]
+        for k, piece in enumerate(pieces):
+            before, after = pieces[k - 1], pieces[(k + 1) % count]
+            a, b, c, d = (spots[(k + n) % count] for n in (-1, 0, 1, 2))
+            self._joint(a, b, c, before, piece)
+            if isinstance(piece, Line):
+                self.lines.append((b, c))
+                if _is_right(piece, after):
+                    self._turn(b, c, c, d, is_right=True)
+            elif is_smooth(before, piece) and is_smooth(piece, after):
+                self._between(a, b, c, d, before, after)
+                is_corner = isinstance(before, Line) and isinstance(after, Line)
+                if is_corner and isinstance(piece, Arc) and not is_half_round(piece):
+                    self.fillets.add(self._round(piece).radius)
+
+    def _joint(self, a: Spot, b: Spot, c: Spot, before: Piece, after: Piece) -> None:
+        """Notes what is seen where a piece from `a` to `b` meets one from `b` to `c`."""
+        arcs = [self._round(p) for p in (before, after) if isinstance(p, Arc)]
+        for arc in arcs:
+            self._equate(partial(_off, b, arc.center, arc.radius), b, arc.center, arc.radius)
+        if not is_smooth(before, after):
+            return
+        if len(arcs) == 2:
+            m, n = (arc.center for arc in arcs)
+            self._equate(partial(_turned, cross, b, m, b, n), b, m, n)
+        elif not any(self.is_across(p, axis) for p in (before, after) for axis in (0, 1)):
+            m, far = arcs[0].center, a if isinstance(before, Line) else c
+            self._equate(partial(_turned, dot, b, m, b, far), b, m, far)
+
+    def _between(self, a: Spot, b: Spot, c: Spot, d: Spot, before: Piece, after: Piece) -> None:
+        """Notes what is seen of a rounded corner or a round end: what its edges are to each other."""
+        if not (isinstance(before, Line) and isinstance(after, Line)):
+            return
+        at = meeting(before, after)
+        if at is None or _is_right(before, after):
+            self._turn(a, b, c, d, is_right=at is not None)
+        if at is None:
+            return
+        needs = a.needs + b.needs + c.needs + d.needs
+        x, y = (Reading(needs, partial(_crossing, a, b, c, d, axis)) for axis in (0, 1))
+        for line, own in ((before, a), (after, d)):
+            if self.is_across(line, 0):
+                x = own.x
+            elif self.is_across(line, 1):
+                y = own.y
+        self._corners.append(self._spots.add(at, Spot(at, x, y)))
+
+    def _turn(self, a: Spot, b: Spot, c: Spot, d: Spot, is_right: bool = False) -> None:
+        """Notes that two slanted edges are seen to be parallel, or at a right angle."""
+        self._equate(partial(_turned, dot if is_right else cross, a, b, c, d), a, b, c, d)
+
+    def _vertex(self, before: Piece, after: Piece) -> Spot:
+        """Returns the spot where a piece begins; where an edge along an axis touches an arc, it lies straight
+        beside the centre.
+        """
+        at = ends(after)[0]
+        is_joint = is_smooth(before, after)
+        ranks = [JOINT if is_joint else CORNER] * 2
+        beside: list[int | None] = [None, None]
+        for line, other in ((before, after), (after, before)):
+            for axis in (0, 1):
+                if self.is_across(line, axis):
+                    ranks[axis] = EDGE
+                    if is_joint and isinstance(other, Arc):
+                        beside[1 - axis] = self._round(other).center.along(1 - axis).needs[0]
+        x, y = (self._level(k, at, ranks[k]) if (n := beside[k]) is None else n for k in (0, 1))
+        return self._spot(at, x, y)
+
+    def is_across(self, piece: Piece, axis: int) -> bool:
+        """Tells whether a piece is a line at one level of an axis."""
+        return isinstance(piece, Line) and abs(piece.start[axis] - piece.end[axis]) <= self.slack
+
+    def _round(self, curve: Circle | Arc) -> Round:
+        found = self.round_of(curve)
+        assert found is not None
+        return found
+
+    def _equate(self, of: Callable[[Unknowns], complex], *things: Spot | Reading | int) -> None:
+        """Notes a number of some things that is seen to be nought."""
+        needs = [(t,) if isinstance(t, int) else t.needs for t in things]
+        self.equations.append(Reading(tuple(chain(*needs)), of))
+
+    def mirror(self, axis: int, middle: float) -> Reading:
+        """Notes that both sides of a drawn axis are alike; returns its level."""
+        at = (middle, self.box[1]) if axis == 0 else (self.box[0], middle)
+        axle = self._level(axis, at, EDGE)
+        spots = list(self._spots.things())
+        for spot in spots:
+            other = self._spots.find(flipped(spot.at, axis, middle))
+            if other is None:
+                continue
+            a, b = spot.along(axis), other.along(axis)
+            self._equate(partial(_off_middle, a, b, plain(axle)), a, b, axle)
+            a, b = spot.along(1 - axis), other.along(1 - axis)
+            self._equate(partial(_differing, a, b), a, b)
+        for own in self.rounds:
+            twin = self._rounds.find((*flipped(own.curve.center, axis, middle), own.curve.radius))
+            if twin is not None:
+                self._equate(
+                    partial(_differing, plain(own.radius), plain(twin.radius)), own.radius, twin.radius
+                )
+        return plain(axle)
+
+    def levels(self) -> list[Level]:
+        """Returns all that may be measured along the axes."""
+        found = [
+            Level(axis, self._values[n], plain(n), tuple(dict.fromkeys(points)), rank)
+            for n, (axis, points, rank) in self._seen.items()
+        ]
+        for spot in self._corners:
+            found += [Level(k, spot.at[k], spot.along(k), (spot.at,), CORNER) for k in (0, 1)]
+        return found
+
+    # --- Rows --------------------------------------------------------------------------------------
+
+    @property
+    def count(self) -> int:
+        return len(self._values)
+
+    def row(self, reading: Reading) -> Row:
+        """Returns how a number changes with each of the unknowns."""
+        found, z = np.zeros(self.count), [complex(value) for value in self._values]
+        for number in set(reading.needs):
+            known, z[number] = z[number], z[number] + _STEP * 1j
+            found[number] = reading.of(z).imag / _STEP
+            z[number] = known
+        return found
+
+    def spot(self, at: Vec) -> Spot | None:
+        """Returns what is best seen of an outline at a point."""
+        here = self._spots.all(at)
+        return min(here, key=lambda spot: max(self._seen[n][2] for n in spot.needs), default=None)
+
+    def level(self, axis: int, value: float) -> int | None:
+        """Returns the unknown of a level that is seen."""
+        return self._levels[axis].find((value,))
+
+
+class Span:
+    """What rows tell together: an orthonormal basis of them."""
+
+    def __init__(self, count: int) -> None:
+        self._basis, self._size = np.zeros((count, count)), 0
+
+    def add_all(self, rows: Iterable[Row]) -> bool:
+        """Adds rows; tells whether any of them told something new."""
+        before = self._size
+        for row in rows:
+            if (rest := self._rest(row)) is not None:
+                self._basis[self._size] = rest / np.linalg.norm(rest)
+                self._size += 1
+        return self._size > before
+
+    def lacks(self, row: Row) -> bool:
+        return self._rest(row) is not None
+
+    def _rest(self, row: Row) -> Row | None:
+        """Returns the part of a row outside the span; None if there is none."""
+        size = float(np.linalg.norm(row))
+        if not size > 0 or self._size == len(self._basis):
+            return None
+        known, rest = self._basis[: self._size], row / size
+        for _ in range(2):  # once more, for what rounding left
+            rest = rest - known.T @ (known @ rest)
+        return rest if np.linalg.norm(rest) > _NEW else None
+
+
+def is_half_round(curve: Piece) -> bool:
+    """Tells whether enough of a circle is there for its centre to be drawn."""
+    return isinstance(curve, Circle) or (isinstance(curve, Arc) and abs(curve.sweep) >= math.pi - 1e-6)
+
+
+def is_smooth(before: Piece, after: Piece) -> bool:
+    """Tells whether a piece goes over into the next one without a corner."""
+    u, v = derivative(before, 1.0), derivative(after, 0.0)
+    size = math.hypot(*u) * math.hypot(*v)
+    return abs(u[0] * v[1] - u[1] * v[0]) <= 1e-6 * size and u[0] * v[0] + u[1] * v[1] > 0
+
+
+def _is_right(a: Piece, b: Piece) -> bool:
+    """Tells whether a line begins at a right angle to another."""
+    if not (isinstance(a, Line) and isinstance(b, Line)):
+        return False
+    u, v = derivative(a, 1.0), derivative(b, 0.0)
+    return abs(u[0] * v[0] + u[1] * v[1]) <= 1e-6 * math.hypot(*u) * math.hypot(*v)
+
+
+def _merged(pieces: Sequence[Piece]) -> list[Piece]:
+    """Returns the pieces of an outline, those that go on in the same line or circle as one."""
+    found: list[Piece] = []
+    for piece in pieces:
+        joined = _joined(found[-1], piece) if found else None
+        found[-1 if joined else len(found) :] = [joined or piece]
+    while len(found) > 1 and (joined := _joined(found[-1], found[0])) is not None:
+        found = [joined, *found[1:-1]]
+    return found
+
+
+def _joined(a: Piece, b: Piece) -> Piece | None:
+    """Returns two pieces as one, if they are of one line or one circle."""
+    if not is_smooth(a, b):
+        return None
+    if isinstance(a, Line) and isinstance(b, Line):
+        return Line(a.start, b.end)
+    if isinstance(a, Arc) and isinstance(b, Arc) and a.sweep * b.sweep > 0:
+        near = 1e-9 * a.radius
+        if abs(a.radius - b.radius) <= near and math.dist(a.center, b.center) <= near:
+            sweep = a.sweep + b.sweep
+            is_whole = abs(sweep) >= 2 * math.pi - 1e-9
+            return Circle(a.center, a.radius) if is_whole else Arc(a.center, a.radius, a.start, b.end, sweep)
+    return None
+
+
+def flipped(at: Vec, axis: int, middle: float) -> Vec:
+    return (2 * middle - at[0], at[1]) if axis == 0 else (at[0], 2 * middle - at[1])
+
+
+def plain(number: int) -> Reading:
+    return Reading((number,), lambda z: z[number])
+
+
+def way(a: Spot, b: Spot, z: Unknowns) -> tuple[complex, complex]:
+    (x0, y0), (x1, y1) = a.of(z), b.of(z)
+    return x1 - x0, y1 - y0
+
+
+def dot(u: tuple[complex, complex], v: tuple[complex, complex]) -> complex:
+    return u[0] * v[0] + u[1] * v[1]
+
+
+def cross(u: tuple[complex, complex], v: tuple[complex, complex]) -> complex:
+    return u[0] * v[1] - u[1] * v[0]
+
+
+Product = Callable[[tuple[complex, complex], tuple[complex, complex]], complex]
+
+
+def _turned(product_of: Product, a: Spot, b: Spot, c: Spot, d: Spot, z: Unknowns) -> complex:
+    return product_of(way(a, b, z), way(c, d, z))
+
+
+def _off(a: Spot, center: Spot, radius: int, z: Unknowns) -> complex:
+    u = way(a, center, z)
+    return dot(u, u) - z[radius] ** 2
+
+
+def _off_middle(a: Reading, b: Reading, middle: Reading, z: Unknowns) -> complex:
+    return a.of(z) + b.of(z) - 2 * middle.of(z)
+
+
+def _differing(a: Reading, b: Reading, z: Unknowns) -> complex:
+    return a.of(z) - b.of(z)
+
+
+def _crossing(a: Spot, b: Spot, c: Spot, d: Spot, axis: int, z: Unknowns) -> complex:
+    """Returns where the lines through `a` and `b` and through `c` and `d` meet."""
+    u, v = way(a, b, z), way(c, d, z)
+    return a.along(axis).of(z) + cross(way(a, c, z), v) / cross(u, v) * u[axis]
