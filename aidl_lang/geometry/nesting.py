@@ -104,7 +104,7 @@ def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
 
 @contextmanager
 def _keeping_interrupts() -> Iterator[None]:
-    """Raises at the end what the handler of Ctrl-C raised meanwhile: the packer stops for it and swallows it."""
+    """Raises at the end what the handler of Ctrl-C raised: the packer stops for it, and swallows it."""
     handler = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):
         yield

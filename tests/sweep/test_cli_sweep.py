@@ -157,7 +157,7 @@ def orders(count: int) -> list[str]:
 
 def told_of(folder: Path, names: list[str]) -> None:
     """Asserts that each order is right, or told, and that nothing lies where it should not."""
-    with open(folder / "table.csv", newline="", encoding="utf-8") as file:
+    with open(folder / "table.csv", newline="", encoding="utf-8-sig") as file:
         found = list(csv.DictReader(file))
     assert [row["name"] for row in found] == names
     for row in found:

@@ -19,13 +19,15 @@ ARROW_EXTRA = "parquet"
 
 
 def to_csv(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as CSV: lists are joined by semicolons, nothing stands where nothing is known."""
+    """Returns a table as CSV, with a byte order mark: lists are joined by semicolons, nothing stands where
+    nothing is known.
+    """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(columns.names)
     for row in rows:
         writer.writerow([_csv(cell) for cell in columns.cells(row)])
-    return out.getvalue().encode("utf-8", "backslashreplace")
+    return out.getvalue().encode("utf-8-sig", "backslashreplace")
 
 
 def _csv(cell: Cell) -> str:
