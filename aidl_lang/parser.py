@@ -23,7 +23,7 @@ from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
 from aidl_lang.syntax.trouble import LONGEST, Trouble
-from aidl_lang.syntax.warnings import lines_joined_by_minus
+from aidl_lang.syntax.warnings import lines_joined_by_sign
 
 
 @record()
@@ -51,7 +51,7 @@ def parse(source: SourceFile, limits: TextLimits = DEFAULT_LIMITS) -> Parsed:
     out.
     """
     parsed, tokens = _read(source, limits)
-    joined = lines_joined_by_minus(parsed.module, tokens, lambda part: _read(part, limits)[0])
+    joined = lines_joined_by_sign(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
