@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, line_end, replaced
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
     QUOTES,
@@ -105,6 +105,8 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
     char = t.token.text
     if char in QUOTES:
         return _curly_quote(t)
+    if t.source.text.startswith("```", t.token.start) and t.on_new_line:
+        return _fence(t)
     if char == "|" and (found := _bars(t)) is not None:
         return found
     sign, words = SIGNS.get(char, (None, ""))
@@ -123,6 +125,18 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
     if not stand_in and t.complete and t.following.kind != END:
         repair = None  # the rest makes no sense without the character
     return SyntaxProblem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
+
+
+def _fence(t: Trouble) -> SyntaxProblem:
+    """Recognises a line of Markdown around a program: "```aidl"."""
+    end = line_end(t.source.text, t.token.start)
+    stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
+    line = Span(t.source, t.token.start, end)
+    message = "the fence of a Markdown block is no part of the program"
+    return SyntaxProblem(
+        Diagnostic("E0108", message, line, fix=replaced("remove it", line, "")),
+        TokenRepair(t.position, stop),
+    )
 
 
 def _bars(t: Trouble) -> SyntaxProblem | None:
