@@ -16,6 +16,8 @@ from aidl_lang.syntax.trouble import (
 )
 from aidl_lang.syntax.words import VALUE_STARTS
 
+CLOSE_BLOCK = "close the block"
+"""The title of the fix for a block that is not closed."""
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 _BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
 _ITEMS = {"CALL": "arguments", "{": "arguments", "[": "items", "(": "coordinates"}
@@ -183,7 +185,7 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
             t.span(opener),
             "opened here and not closed",
             (Label(place, "`}` is missing"),),
-            fix=replaced("close the block", place, closer),
+            fix=replaced(CLOSE_BLOCK, place, closer),
         ),
         TokenRepair(t.position, t.position, (t.token_here("}"),)),
     )

@@ -41,7 +41,7 @@ def lines_joined_by_sign(
         above, below = text[leaf.span.start : place], text[place : leaf.span.end].lstrip("+")
         inside = isinstance(leaf, ast.ExpressionStatement | ast.Equation)
         if _whole(f"constrain {{ {above}\n}}" if inside else above, read) and _says_something(below, read):
-            found.append(_warning(source, place, "" if inside else "constrain "))
+            found.append(_warning(source, place, "" if inside and text[place] == "+" else "constrain "))
     return found
 
 
