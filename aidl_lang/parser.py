@@ -16,14 +16,14 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
-from aidl_lang.syntax.brackets import lists_as_statements
+from aidl_lang.syntax.brackets import CLOSE_BLOCK, lists_as_statements
 from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
 from aidl_lang.syntax.trouble import LONGEST, Trouble
-from aidl_lang.syntax.warnings import lines_joined_by_minus
+from aidl_lang.syntax.warnings import lines_joined_by_sign
 
 
 @record()
@@ -36,6 +36,10 @@ class TextLimits:
 
 
 DEFAULT_LIMITS = TextLimits()
+
+
+_MOST_CLOSED = 5
+"""Braces that are put in to read a text."""
 
 
 @record()
@@ -51,7 +55,7 @@ def parse(source: SourceFile, limits: TextLimits = DEFAULT_LIMITS) -> Parsed:
     out.
     """
     parsed, tokens = _read(source, limits)
-    joined = lines_joined_by_minus(parsed.module, tokens, lambda part: _read(part, limits)[0])
+    joined = lines_joined_by_sign(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
@@ -65,16 +69,25 @@ def standing_before(source: SourceFile, offset: int, limits: TextLimits = DEFAUL
     return reader.automaton
 
 
-def _read(source: SourceFile, limits: TextLimits) -> tuple[Parsed, list[Token]]:
-    """Returns what `parse` does, without warnings, and the tokens it came from."""
+def _read(source: SourceFile, limits: TextLimits, closed: tuple[int, ...] = ()) -> tuple[Parsed, list[Token]]:
+    """Returns what `parse` does, without warnings, and the tokens it came from. `closed`: the places of
+    braces that are missing. A text where one is found to be missing is read once more with it.
+    """
     everything = Span(source, 0, len(source.text))
     if len(source.text) > limits.max_characters:
         return Parsed(ast.Module(source, (), (), span=everything), [_too_long(source, limits)]), []
     tokens = tokenize(source)
+    for place in closed:
+        before = bisect_left(tokens.tokens, place, key=lambda token: token.start)
+        tokens.tokens.insert(before, Token("}", "}", place, place))
     builder = Builder(source, tokens.docs)
     reader = _Reader(source, builder, tokens, limits)
     statements = reader.run()
     diagnostics = builder.diagnostics + reader.diagnostics
+    for found in diagnostics if len(closed) < _MOST_CLOSED else ():
+        if found.fix is not None and found.fix.title == CLOSE_BLOCK:
+            parsed, read = _read(source, limits, (*closed, found.fix.edits[0].span.start))
+            return Parsed(parsed.module, ordered([found, *parsed.diagnostics])), read
     if reader.may_be_deep:
         deep = [s for s in statements if _depth(s) > limits.max_nesting]
         diagnostics += [_too_deep(s.span, limits) for s in deep]

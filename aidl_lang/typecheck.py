@@ -39,7 +39,7 @@ from aidl_lang.checking.validity import check_validity
 from aidl_lang.checking.variants import Variant
 from aidl_lang.checking.violations import Violation
 from aidl_lang.checking.wording import a, shown
-from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -171,7 +171,8 @@ class Checker:
                 if not check_operation(infer, value):
                     check_condition(infer, value)
             case ast.Equation(left, right):
-                compare(infer, "==", left, right, node)
+                if not self._joined(node):
+                    compare(infer, "==", left, right, node)
             case ast.Prefer(value, weight):
                 check_condition(infer, value)
                 if weight is not None:
@@ -180,6 +181,23 @@ class Checker:
                 self._assert(test, message)
             case _:
                 pass
+
+    def _joined(self, node: ast.Equation) -> bool:
+        """Reports `a = b and c == d`, which compares `a` with all of the rest. Returns whether it is that."""
+        first, infer = node.right, self.infer
+        while isinstance(first, ast.Binary) and first.operator in ("and", "or"):
+            first = first.left
+        if first is node.right or isinstance(infer.fact(first).type, TruthType | AnyType):
+            return False
+        source, start = node.span.source, node.left.span.end
+        at = source.text.index("=", start)
+        infer.report(
+            "E0110",
+            "`=` takes all of the line for its right side; conditions are joined where each has `==`",
+            node,
+            fix=Fix("write `==`", (Edit(Span(source, at, at + 1), "=="),), is_sure=True),
+        )
+        return True
 
     # --- Structures and definitions --------------------------------------------------------------
 

@@ -71,7 +71,7 @@ constraint vertical_distance(a, b, at_most: length) { vertical_distance(a, b) <=
 fn gap(a: box, b: box) =
     hypot(max(0, a.left - b.right, b.left - a.right), max(0, a.bottom - b.top, b.bottom - a.top))
 
-/// The angle between two lines, at the middle of three points, or of one line to the x axis.
+/// The angle between two lines, at the middle of three points, or of one line, or whatever has an `angle`, to the x axis.
 ///
 /// As a constraint it takes the reading nearest to the first guesses: either way round, and for lines either
 /// end. `ccw: true` states it counter-clockwise from a to b; `at_most` and `at_least`, or `<=` and `>=`, bound it.
@@ -106,6 +106,7 @@ constraint angle(a: line, b: line, at_least: angle) {
 constraint angle(l: line, value: angle) {
     l.angle == nearest(l.angle, [value, value - 180deg])
 }
+constraint angle(of, value: angle) { of.angle == value }
 constraint angle(a: point, corner: point, b: point, value: angle) {
     corner_angle(a, corner, b) == nearest(corner_angle(a, corner, b), [value, -value])
 }
@@ -166,3 +167,8 @@ alias distance_x = horizontal_distance
 alias y_distance = vertical_distance
 alias distance_y = vertical_distance
 alias angle_between = angle
+alias set_angle = angle
+alias rotation = angle
+alias set_rotation = angle
+alias tilt = angle
+alias tilted = angle

@@ -392,6 +392,17 @@ alias halfway_between = centered_between
 alias adjacent = touching
 alias adjacent_to = touching
 alias touch = touching
+
+// Round things and lines touch by their curves, all else by its sides.
+constraint touches(a: box, b: box) { touching(a, b) }
+constraint touches(a: line, b: circle) { tangent(a, b) }
+constraint touches(a: circle, b: line) { tangent(a, b) }
+constraint touches(a: circle, b: circle) { tangent(a, b) }
+constraint touches(a: line, b: arc) { tangent(a, b) }
+constraint touches(a: arc, b: line) { tangent(a, b) }
+constraint touches(a: arc, b: circle) { tangent(a, b) }
+constraint touches(a: circle, b: arc) { tangent(a, b) }
+constraint touches(a: arc, b: arc) { tangent(a, b) }
 alias abuts = touching
 alias not_overlapping = no_overlap
 alias non_overlapping = no_overlap

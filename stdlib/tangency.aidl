@@ -23,7 +23,7 @@ constraint tangent(things: list) {
         if len(joint) > 0 {
             continues(along(things[i], joint[0]), along(things[-1], joint[0]))
         } else {
-            touches(things[i], things[-1])
+            touch_smoothly(things[i], things[-1])
         }
     }
 }
@@ -50,31 +50,31 @@ fn shared_end(a: list, b: list) =
     [p for p in a if len(b) > 0 and min([norm(written(p - q)) for q in b]) < 0.000001]
 
 // Two curves that share no end touch somewhere.
-constraint touches(l: line, c: circle) { beside_line(l, c.center, c.radius) }
-constraint touches(l: line, a: arc) { beside_line(l, a.center, a.radius) }
-constraint touches(l: line, e: ellipse) {
+constraint touch_smoothly(l: line, c: circle) { beside_line(l, c.center, c.radius) }
+constraint touch_smoothly(l: line, a: arc) { beside_line(l, a.center, a.radius) }
+constraint touch_smoothly(l: line, e: ellipse) {
     beside_line(l, e.center, hypot(e.rx * sin(l.angle - e.angle), e.ry * cos(l.angle - e.angle)))
 }
-constraint touches(c: circle, l: line) { beside_line(l, c.center, c.radius) }
-constraint touches(a: arc, l: line) { beside_line(l, a.center, a.radius) }
-constraint touches(e: ellipse, l: line) { touches(l, e) }
-constraint touches(a: circle, b: circle) { circles_touch(a, b) }
-constraint touches(a: circle, b: arc) { circles_touch(a, b) }
-constraint touches(a: arc, b: circle) { circles_touch(a, b) }
-constraint touches(a: arc, b: arc) { circles_touch(a, b) }
-constraint touches(p: point, other) {
+constraint touch_smoothly(c: circle, l: line) { beside_line(l, c.center, c.radius) }
+constraint touch_smoothly(a: arc, l: line) { beside_line(l, a.center, a.radius) }
+constraint touch_smoothly(e: ellipse, l: line) { touch_smoothly(l, e) }
+constraint touch_smoothly(a: circle, b: circle) { circles_touch(a, b) }
+constraint touch_smoothly(a: circle, b: arc) { circles_touch(a, b) }
+constraint touch_smoothly(a: arc, b: circle) { circles_touch(a, b) }
+constraint touch_smoothly(a: arc, b: arc) { circles_touch(a, b) }
+constraint touch_smoothly(p: point, other) {
     refuse("a point has no direction; `coincident` puts it on a curve")
 }
-constraint touches(other, p: point) {
+constraint touch_smoothly(other, p: point) {
     refuse("a point has no direction; `coincident` puts it on a curve")
 }
-constraint touches(a: line, b: line) {
+constraint touch_smoothly(a: line, b: line) {
     refuse("two lines touch where they share an end only; `parallel` and `collinear` say the rest")
 }
-constraint touches(b: bezier, other) {
+constraint touch_smoothly(b: bezier, other) {
     refuse("a bezier is tangent at an end it shares, as in `bezier(l.end, …)`")
 }
-constraint touches(other, b: bezier) {
+constraint touch_smoothly(other, b: bezier) {
     refuse("a bezier is tangent at an end it shares, as in `bezier(l.end, …)`")
 }
 

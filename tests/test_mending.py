@@ -22,6 +22,19 @@ def mended(text: str) -> str:
         ("solid s { c = circle(radius: 3)", "solid s { c = circle(radius: 3)\n}"),
         ("drawing d { let x == 3; c = circle(radius: x) }", "drawing d { let x = 3; c = circle(radius: x) }"),
         ("drawing d { c = circle(d: 5 mm) }", "drawing d { c = circle(d: 5mm) }"),
+        ("```aidl\ndrawing d { c = circle(radius: 5) }\n```\n", "\ndrawing d { c = circle(radius: 5) }\n\n"),
+        (
+            "drawing d { l = polygon([(0, 0); (9, 0); (9, 9)]); constrain |l.left| == 3 }",
+            "drawing d { l = polygon([(0, 0), (9, 0), (9, 9)]); constrain abs(l.left) == 3 }",
+        ),
+        (
+            "assembly c { assembly d { solid f { r = circle(radius: 5) } } constrain c.f.r.left == 3 }",
+            "assembly c { assembly d { solid f { r = circle(radius: 5) } } constrain c.d.f.r.left == 3 }",
+        ),
+        (
+            "drawing d { r = rectangle(width: 5, height: 4); constrain Rotate(r, 30) }",
+            "drawing d { r = rectangle(width: 5, height: 4); constrain r.angle == 30deg }",
+        ),
     ],
 )
 def test_what_can_mean_nothing_else_is_mended(before: str, after: str) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import EDITS, FINISHES
+from aidl_lang.checking.calls import arguments
+from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolving.declare import made_by
 from aidl_lang.checking.resolving.symbols import SymbolKind
-from aidl_lang.checking.types import AnyType, TruthType
+from aidl_lang.checking.types import AnyType, GeometryType, StructureType, TruthType
 from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
@@ -49,18 +51,41 @@ def check_empty(infer: Inference, node: ast.Constrain) -> None:
 def check_item(infer: Inference, node: ast.Expression) -> None:
     """Reports an operation among constraints, where nothing is made and nothing edited."""
     if (name := operation(infer, node)) is not None:
-        text = shown(node)
+        text, fix = shown(node), None
         hints = [f"`{text}` is a statement of its own, outside `constrain`"]
-        if name in EDITS:
+        if name == "rotate" and (said := _turned(infer, node)) is not None:
+            fix = Fix(f"write `{said}`", (Edit(node.span, said),), is_sure=True)
+            hints = ["how a thing is turned is an equation too"]
+        elif name in EDITS:
             hints = [
                 "where a thing has to be says a relation: `a.left == b.right`, `a.above(b)`, "
                 "`coincident(a.end, b.start)`",
                 f"outside `constrain`, `{text}` changes what was written, and `name = {text}` makes a copy; "
                 "a structure is placed by `at`",
             ]
-        infer.report("E0352", f"`{name}` constrains nothing: it changes what is drawn", node, hints=hints)
+        message = f"`{name}` constrains nothing: it changes what is drawn"
+        infer.report("E0352", message, node, hints=hints, fix=fix)
         return
     check_condition(infer, node, may_make=False)
+
+
+def _turned(infer: Inference, node: ast.Expression) -> str | None:
+    """Returns the equation that `rotate(r, 30)` among constraints is meant to be; None for what has no
+    angle.
+    """
+    given = arguments(infer, node) if isinstance(node, ast.Call) else []
+    if len(given) != 2:
+        return None
+    thing, angle = given
+    fact, field = infer.fact(thing), "angle"
+    if isinstance(fact.type, StructureType):
+        field = "rotation"
+    elif not isinstance(fact.type, GeometryType) or not (
+        infer.resolution.scope_of(fact.of).values if fact.of else PRIMITIVE.get(fact.type.kind, {})
+    ).get(field):
+        return None
+    unit = "deg" if isinstance(angle, ast.Number) and not angle.unit else ""
+    return f"{shown(thing)}.{field} == {shown(angle)}{unit}"
 
 
 def check_condition(infer: Inference, node: ast.Expression, may_make: bool = True) -> None:

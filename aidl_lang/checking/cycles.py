@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.resolving.complaints import meant_outside
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.syntax import ast
 
@@ -27,7 +28,7 @@ def find_cycles(infer: Inference) -> None:
                 del places[symbol]
                 trail.pop()
             elif target in places:
-                _report(infer, [*(s.name for s, _ in trail[places[target] :]), target.name], name)
+                _report(infer, [s for s, _ in trail[places[target] :]], name)
             elif target in graph and target not in done:
                 places[target] = len(trail)
                 trail.append((target, iter(graph[target])))
@@ -50,11 +51,11 @@ def _names(node: ast.Node) -> Iterator[ast.Name]:
         yield from (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
 
 
-def _report(infer: Inference, circle: list[str], name: ast.Name) -> None:
-    way = f": {' → '.join(circle)}" if len(circle) > 2 else ""
-    infer.report(
-        "E0207",
-        f"`{circle[-1]}` is defined by way of itself{way}",
-        name,
-        hints=["one of them needs a value that does not depend on the others"],
+def _report(infer: Inference, circle: list[Symbol], name: ast.Name) -> None:
+    first = circle[0]
+    way = f": {' → '.join(s.name for s in [*circle, first])}" if len(circle) > 1 else ""
+    hint, fix = (meant_outside(first, name) if not way else None) or (
+        "one of them needs a value that does not depend on the others",
+        None,
     )
+    infer.report("E0207", f"`{first.name}` is defined by way of itself{way}", name, hints=[hint], fix=fix)

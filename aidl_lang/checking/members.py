@@ -10,9 +10,9 @@ from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.complaints import respell
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.standard import body_of, part
-from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.synonyms import FIELDS, MEMBERS
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -98,6 +98,14 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     scope = check.resolution.scope_of(base.of)
     key = find(node.name.text, scope.values)
     if key is None:
+        if len(within := _holding(check, scope, node.name.text)) == 1:
+            path, at = f"{within[0]}.{node.name.text}", node.name.span
+            return check.report(
+                "E0202",
+                f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`",
+                node.name,
+                fix=Fix(f"write `{path}`", (Edit(at, path),), is_sure=True),
+            )
         return _field(check, base, node, fields.STRUCTURE, list(scope.values))
     symbol = scope.values[key]
     _means(check, node, symbol)
@@ -109,6 +117,18 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     place = fact.place and _seen(check, fact.place, base.of, base.place, symbol)
     reads = frozenset(_seen(check, p, base.of, base.place, symbol) for p in fact.reads)
     return replace(fact, place=place, reads=reads)
+
+
+def _holding(check: Inference, scope: SymbolScope, name: str) -> list[str]:
+    """Returns the structures in a scope that have a structure or geometry of a name that all things lack."""
+    if any(find(name, table) for table in (fields.STRUCTURE, fields.BOX, fields.FINISH)):
+        return []
+    if fields.is_box_name(name) or fold(name) in FIELDS:
+        return []
+    inner = (
+        (key, symbol.node) for key, symbol in scope.values.items() if isinstance(symbol.node, ast.Structure)
+    )
+    return [key for key, node in inner if name in check.resolution.scope_of(node).values]
 
 
 def _seen(check: Inference, place: ReadPlace, of: ast.Node, base: ReadPlace, symbol: Symbol) -> ReadPlace:

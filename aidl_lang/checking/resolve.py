@@ -25,14 +25,14 @@ from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.cuts import hole_calls, meant, with_placed_cuts
 from aidl_lang.checking.resolving.declare import Declarer, is_definition, made_by
-from aidl_lang.checking.resolving.foreign import without_idle
+from aidl_lang.checking.resolving.foreign import ATTRIBUTES_MEANT, without_idle
 from aidl_lang.checking.resolving.imports import ImportedModules, load_imports, with_inner_imports
 from aidl_lang.checking.resolving.resolution import Resolution, library_scope
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label, ordered
 from aidl_lang.common.drawings import WHOLE
-from aidl_lang.common.names import nearest
+from aidl_lang.common.names import fold, nearest
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -270,12 +270,14 @@ class Resolver:
         for attribute in attributes:
             name = attribute.name.text
             if word_meant(name, ATTRIBUTES) is None:
-                like = nearest(name, [a for a in ATTRIBUTES if a != "colour"], 2)
+                other, hint = ATTRIBUTES_MEANT.get(fold(name), ("", ""))
+                like = [other] if other else nearest(name, [a for a in ATTRIBUTES if a != "colour"], 2)
+                hint = hint or complaints.list_of("attributes are ", ATTRIBUTES, "@")
                 self.report(
                     "E0204",
                     f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@"),
                     attribute.name,
-                    hints=() if like else (complaints.list_of("attributes are ", ATTRIBUTES, "@"),),
+                    hints=() if like else (hint,),
                     fix=complaints.respell(attribute.name, like),
                 )
             for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():

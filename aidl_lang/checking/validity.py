@@ -23,6 +23,7 @@ from aidl_lang.checking.relocate import StatementSite, member_path
 from aidl_lang.checking.resolving.complaints import used_early
 from aidl_lang.checking.resolving.symbols import UNKNOWNS
 from aidl_lang.checking.types import (
+    ANY,
     Binding,
     GeometryType,
     GivenArgument,
@@ -30,6 +31,7 @@ from aidl_lang.checking.types import (
     NumberType,
     PointType,
     StructureType,
+    Type,
 )
 from aidl_lang.checking.violations import FarReference, Violation
 from aidl_lang.syntax import ast
@@ -127,7 +129,7 @@ class _Walker:
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
-            follows = name in FOLLOWED and self._parameter(call, index) == FOLLOWED[name]
+            follows = name in FOLLOWED and self._parameter(call, index)[0] == FOLLOWED[name]
             if (derives or follows or (reach and is_thing)) and _may_derive(
                 self.infer.fact(node), site.homes
             ):
@@ -165,9 +167,10 @@ class _Walker:
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
     ) -> list[FarReference]:
         """Returns the expressions in an argument that a guess may replace, with the paths that reach them."""
-        name = self._parameter(call, index)
+        name, wanted = self._parameter(call, index)
+        is_position = self._is_point(node) or (self.infer.fact(node).is_any and is_point(wanted))
         if path is None or name is None or not self._is_field(call, name):
-            return [FarReference(node, None, is_point=self._is_point(node), is_size=True)]
+            return [FarReference(node, None, is_position, is_size=True)]
         if isinstance(node, ast.Point):
             return self._coordinates(node, (*path, name))
         if isinstance(node, ast.List) and node.items and self._is_point(node.items[0]):
@@ -180,7 +183,6 @@ class _Walker:
                     else [FarReference(item, place, True)]
                 )
             return items
-        is_position = self._is_point(node)
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
@@ -191,15 +193,20 @@ class _Walker:
             return [FarReference(node, path, is_point=True)]
         return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]
 
-    def _parameter(self, call: ast.Call, index: int) -> str | None:
-        """Returns the parameter that the argument of that number goes to, if there is no doubt."""
+    def _parameter(self, call: ast.Call, index: int) -> tuple[str | None, Type]:
+        """Returns the name and type of the parameter that the argument of that number goes to; None and ANY
+        if there is doubt.
+        """
         nodes = arguments(self.infer, call)
         names = [None] * (len(nodes) - len(call.arguments)) + [
             a.name.text if a.name else None for a in call.arguments
         ]
         given = [GivenArgument(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
-        return chosen.parameter_of(index) if isinstance(chosen, Binding) else None
+        if not isinstance(chosen, Binding):
+            return None, ANY
+        meant = chosen.parameter_of(index)
+        return meant, next((kind for name, kind, _ in chosen.taken if name == meant), ANY)
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
         """Tells whether a parameter of a call is also a field of its result."""

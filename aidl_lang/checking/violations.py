@@ -219,10 +219,11 @@ class Violation:
                 (Edit(self._emptied().span.with_separator, ""), Edit(where, text)),
                 is_sure=True,
             )
+        is_known = self.target.node in written or not self.infer.fact(self.target.node).is_any
         return Fix(
             f"make it a first guess and state the relation in {_name(ancestor)}",
             (Edit(self.target.node.span, self._guess(written)), Edit(where, text)),
-            is_sure=True,
+            is_sure=is_known,  # otherwise it follows from something wrong, which is mended first
         )
 
     def _emptied(self) -> ast.Node:

@@ -1,4 +1,4 @@
-"""Densities of materials by the names that makers write (`materials.toml`)."""
+"""Densities and least walls of materials by the names that makers write (`materials.toml`)."""
 
 from __future__ import annotations
 
@@ -14,14 +14,21 @@ _TABLE = "aidl_lang/common/materials.toml"
 
 
 @cache
-def densities() -> Mapping[str, float]:
-    """Returns kg/m³ by name, other names included, all in lower case."""
+def _known(what: str) -> Mapping[str, float]:
+    """Returns a property by name, other names included, all in lower case; of what has none, its group's."""
     table = tomllib.loads(resource(_TABLE).read_text("utf-8"))
     found: dict[str, float] = {}
     for group in table.values():
         for name, entry in group.items():
-            found |= dict.fromkeys((name, *entry.get("also", ())), float(entry["density"]))
+            if isinstance(entry, dict):
+                names = (name, *entry.get("also", ()))
+                found |= dict.fromkeys(names, float(entry[what] if what in entry else group[what]))
     return found
+
+
+def densities() -> Mapping[str, float]:
+    """Returns kg/m³ by name."""
+    return _known("density")
 
 
 def density(material: str, own: Mapping[str, float] | None = None) -> float | None:
@@ -29,12 +36,20 @@ def density(material: str, own: Mapping[str, float] | None = None) -> float | No
 
     None if the text has no known name: `6 mm birch plywood` has one, `unobtainium` has none.
     """
+    own = {_plain(name): value for name, value in (own or {}).items()}
+    found = _of_longest(own, material)
+    return _of_longest(densities(), material) if found is None else found
+
+
+def least_wall(material: str) -> float | None:
+    """Returns the width in mm below which a wall of the longest known name in a text does not last."""
+    return _of_longest(_known("wall"), material)
+
+
+def _of_longest(table: Mapping[str, float], material: str) -> float | None:
     text = _plain(material)
-    for table in ({_plain(name): value for name, value in (own or {}).items()}, densities()):
-        known = [name for name in table if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
-        if known:
-            return table[max(known, key=lambda name: (len(name), name))]
-    return None
+    known = [name for name in table if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
+    return table[max(known, key=lambda name: (len(name), name))] if known else None
 
 
 def similar(material: str) -> list[str]:

@@ -13,6 +13,7 @@ from aidl_lang.common.lexicon import NEAR_WORDS, WORDS
 T = TypeVar("T")
 
 _NUMBER = re.compile(r"\d+")
+_HUMP = re.compile(r"(?<=[a-z\d])(?=[A-Z])")
 _FEWEST_LETTERS = 3
 """Letters that a name must have before a near one is taken for it without asking."""
 _WIDER = 6
@@ -64,7 +65,9 @@ before | after
 most | least
 same equal | different unequal
 convex | concave
-concentric | eccentric
+concentric | eccentric excentric exzentrisch
+contains containing | contained
+encloses | enclosed
 clockwise cw | counterclockwise anticlockwise ccw
 internal | external
 union add | difference subtract
@@ -82,12 +85,20 @@ _PART_OF_A_NAME = 4
 """Letters that a word must have to be recognised inside a longer one: `alignleft`."""
 
 
+_DENYING = (
+    *("a", "an", "anti", "counter", "de", "des", "dis", "ex", "il", "im", "in", "ir", "mis", "no", "non"),
+    *("not", "off", "out", "un"),
+)
+"""Syllables that reverse a word when they stand before it."""
+
+
 def are_opposite(a: str, b: str) -> bool:
     """Tells whether two names differ by a word and its reverse, as `align_left` and `align_right` do, or one
-    denies or reverses the other: `no_overlap`, `contained_by`.
+    denies or reverses the other: `no_overlap`, `contained_by`, `asymmetric`.
     """
+    words, others = {fold(a), *_words(a)}, {fold(b), *_words(b)}
     if any(_says(a, word) != _says(b, word) for word in _TURNING) or any(
-        _denies(*p) for p in _differing(a, b)
+        _denies(x, y) or _denies(y, x) for x in words - others for y in others - words
     ):
         return True
     return any(
@@ -99,12 +110,18 @@ def are_opposite(a: str, b: str) -> bool:
 
 
 def _denies(a: str, b: str) -> bool:
-    """Tells whether one of two words is the other behind a syllable that reverses it, as `un`."""
-    return any(a == before + b or b == before + a for before in ("anti", "counter", "dis", "non", "un"))
+    """Tells whether a word is another, or a form of it, behind a syllable that reverses it, as `un`."""
+    rests = (a[len(before) :] for before in _DENYING if a.startswith(before) and not b.startswith(before))
+    return any(rest == b or (len(rest) > _PART_OF_A_NAME and rest[:3] == b[:3]) for rest in rests)
+
+
+def _words(name: str) -> list[str]:
+    """Returns the words of a name, between underscores or with capitals."""
+    return _HUMP.sub("_", name).casefold().split("_")
 
 
 def _says(name: str, word: str) -> bool:
-    return word in fold(name) if len(word) >= _PART_OF_A_NAME else word in name.casefold().split("_")
+    return word in fold(name) if len(word) >= _PART_OF_A_NAME else word in _words(name)
 
 
 def means_otherwise(name: str, other: str) -> bool:
@@ -116,7 +133,7 @@ def means_otherwise(name: str, other: str) -> bool:
 
 def _differing(name: str, other: str) -> list[tuple[str, str]]:
     """Returns the pairs of unlike words of two names, place by place; empty if the names differ in length."""
-    words, others = name.casefold().split("_"), other.casefold().split("_")
+    words, others = _words(name), _words(other)
     return [(a, b) for a, b in zip(words, others, strict=True) if a != b] if len(words) == len(others) else []
 
 
@@ -166,6 +183,9 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
     matches = [match for match in found if _may_be_meant(name, folded[match])]
     matches.sort(key=lambda match: _distance(wanted, match))
+    if not matches and len(wanted) >= _PART_OF_A_NAME:  # an abbreviation: `perp`
+        longer = (key for key in folded if key.startswith(wanted) and not are_opposite(name, folded[key]))
+        matches = sorted(longer, key=len)
     return [folded[match] for match in matches[:count]]
 
 
@@ -176,8 +196,12 @@ def _may_be_meant(name: str, other: str) -> bool:
     if are_opposite(name, other) or means_otherwise(name, other):
         return False
     wanted, match = fold(name), fold(other)
-    if wanted in match or match in wanted:
+    if wanted in match or wanted.startswith(match):
         return True
+    if match in wanted:
+        return len(wanted) <= len(match) + 2
+    if len(wanted) < _SHORT and wanted[0] != match[0]:
+        return False
     pairs = [(wanted, match), *_differing(name, other)]
     return all(_distance(a, b) <= max(1, len(a) // 3) for a, b in pairs)
 
@@ -207,7 +231,7 @@ def is_like(name: str, meant: str) -> bool:
         return True
     if _NUMBER.findall(name) != _NUMBER.findall(meant) or sum(map(str.isalpha, name)) < _FEWEST_LETTERS:
         return False
-    words, others = name.casefold().split("_"), meant.casefold().split("_")
+    words, others = _words(name), _words(meant)
     if len(words) != len(others) or _distance(fold(name), fold(meant)) > _most_slips(fold(name)):
         return False
     return all(_distance(x, y) <= _most_slips(x) for x, y in zip(words, others, strict=True))

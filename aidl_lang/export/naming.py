@@ -13,7 +13,7 @@ from aidl_lang.common.prose import did_you_mean, listed, ticked
 from aidl_lang.export import Exported, ExportError, file_names
 from aidl_lang.export.cut_list import Item
 
-WORDS = ("part", "number", "material")
+WORDS = ("part", "number", "material", "quantity")
 _TELLING = ("part", "number")
 """Of these, what is another for each item."""
 _WORD = re.compile(r"\{([A-Za-z_]+)\}")
@@ -72,7 +72,13 @@ def contents(
         datas = (made.data, *made.further)
         return list(zip(file_names(name, len(datas)), datas, strict=True)), made.notes
     parts = writing.parts(suffix)
-    names, notes = names_of_parts(name, [item for item, _ in parts])
+    items = [item for item, _ in parts]
+    names, notes = names_of_parts(name, items)
+    several = [
+        f"`{PurePath(n).stem}` ×{i.quantity}" for n, i in zip(names, items, strict=True) if i.quantity > 1
+    ]
+    if several and "quantity" not in _WORD.findall(name):
+        notes.append(_several_note(several))
     files = []
     for own, (_, made) in zip(names, parts, strict=True):
         datas = (made.data, *made.further)
@@ -104,6 +110,7 @@ def _filled(pattern: str, item: Item) -> str:
         "part": _safe(item.name.replace(", ", "+")),
         "number": str(item.number),
         "material": _safe(item.material) if item.material else "no-material",
+        "quantity": str(item.quantity),
     }
     return _WORD.sub(lambda found: values[found[1]], pattern)
 
@@ -120,4 +127,12 @@ def _changed_note(pattern: str, changed: Sequence[str]) -> Diagnostic:
         f"`{pattern}` gives several parts one name: {listed(ticked(changed), 4)} "
         f"{'is' if len(changed) == 1 else 'are'} numbered",
         hints=("`{number}` tells them apart: `{number}-{part}`",),
+    )
+
+
+def _several_note(several: Sequence[str]) -> Diagnostic:
+    return Diagnostic(
+        "N0759",
+        f"a file has one piece, and several are to be cut: {listed(several, 8)}",
+        hints=("`{quantity}` in the name of an output says how many: `{number}-{part}-x{quantity}`",),
     )

@@ -186,6 +186,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
     notes += overhanging_notes(model.root, bodies, strokes)
+    if any(body.style.material for body in bodies):
+        from aidl_lang.geometry.thin import thin_wall_notes
+
+        notes += thin_wall_notes(model.root, [(b.path, b.region, b.style.material) for b in bodies])
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
     notes += idle_orders(model.root, [b.path for b in bodies])
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}

@@ -8,8 +8,12 @@ until its time is over, so that how well it does depends on the machine.
 from __future__ import annotations
 
 import math
+import signal
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.cancelling import checkpoint
@@ -86,7 +90,8 @@ def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
 
     config = StripPackingConfig(total_computation_time=seconds, num_workers=1, seed=SEED)
     try:
-        solution = StripPackingInstance("", height, items).solve(config)
+        with _keeping_interrupts():
+            solution = StripPackingInstance("", height, items).solve(config)
     except BaseException as reason:  # a panic in Rust is no Exception, and its class cannot be imported
         if type(reason).__name__ != "PanicException":
             raise
@@ -95,6 +100,31 @@ def _strip(items: Sequence[Item], height: float, seconds: int) -> list[Nested]:
         Nested(int(placed.id), round(placed.rotation / 90) % 4, *placed.translation)
         for placed in solution.placed_items
     ]
+
+
+@contextmanager
+def _keeping_interrupts() -> Iterator[None]:
+    """Raises at the end what the handler of Ctrl-C raised: the packer stops for it, and swallows it."""
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    raised: list[BaseException] = []
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        try:
+            handler(number, frame)
+        except BaseException as reason:
+            raised.append(reason)
+            raise
+
+    signal.signal(signal.SIGINT, handle)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    for reason in raised:
+        raise reason
 
 
 def _box(outline: Polygon) -> Bounds:

@@ -90,6 +90,20 @@ def widths(region: Region) -> Widths:
     return Widths(wall.best or wall.tip, gap.best or gap.tip)
 
 
+def thin_wall(region: Region, least: float) -> Chord | None:
+    """Returns the thinnest wall of a region as `widths` has it, if it is shorter than `least`."""
+    outline = Skeleton(region)
+    size = math.dist(outline.boxes[:, :2].min(axis=0), outline.boxes[:, 2:].max(axis=0))
+    if (touch := _touch(outline, RELATIVE_TOLERANCE * size)) is not None:
+        return Chord(0.0, touch, touch)
+    search = _ChordSearch(outline, WALL, [c for kind, c in _tapers(outline) if kind == WALL])
+    reach = least + 2 * outline.error
+    for found in chords(outline, reach, RELATIVE_TOLERANCE * size):
+        search.run(found, reach)
+    wall = search.best or search.tip
+    return wall if wall is not None and wall.length < least else None
+
+
 class _ChordSearch:
     """A search for the shortest chord of a kind. `tip` is the least end of a taper, where nothing is
     shorter.

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import LONGEST, SyntaxProblem, TokenRepair, Trouble, closing, replaced
+from aidl_lang.syntax.trouble import (
+    LONGEST,
+    SyntaxProblem,
+    TokenRepair,
+    Trouble,
+    closing,
+    line_end,
+    replaced,
+)
 from aidl_lang.syntax.words import VALUE_STARTS
 
+CLOSE_BLOCK = "close the block"
+"""The title of the fix for a block that is not closed."""
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 _BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
 _ITEMS = {"CALL": "arguments", "{": "arguments", "[": "items", "(": "coordinates"}
@@ -106,6 +116,31 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     )
 
 
+def semicolons(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `[60; 80]` and `rectangle(a; b)`: a bracket that is closed on its line, with semicolons."""
+    if t.token.kind != ";" or not t.open or not t.accepts(","):
+        return None
+    end, depth, stop = line_end(t.source.text, t.token.start), 0, t.position
+    while depth >= 0 and stop - t.position < LONGEST:
+        stop += 1
+        token = t.tokens[stop]
+        if token.kind in (END, "}") or token.start >= end:
+            return None
+        depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
+    meant = tuple(k._replace(kind=",", text=",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
+    edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
+    return SyntaxProblem(
+        Diagnostic(
+            "E0112",
+            f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement",
+            t.span(),
+            f"within {_BRACKET[t.open[-1].kind]}",
+            fix=Fix("write `,`", edits, is_sure=True),
+        ),
+        TokenRepair(t.position, stop, meant),
+    )
+
+
 def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
     """Recognises a bracket left open at the end of its statement, or where another begins."""
     if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
@@ -150,7 +185,7 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
             t.span(opener),
             "opened here and not closed",
             (Label(place, "`}` is missing"),),
-            fix=replaced("close the block", place, closer),
+            fix=replaced(CLOSE_BLOCK, place, closer),
         ),
         TokenRepair(t.position, t.position, (t.token_here("}"),)),
     )

@@ -45,6 +45,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     missing.equation_for_definition,
     missing.definition_for_equation,
     missing.colon_for_equals,
+    brackets.semicolons,
     brackets.unclosed_bracket,
     brackets.three_coordinates,
     brackets.missing_comma,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, line_end, replaced
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
     QUOTES,
@@ -105,6 +105,10 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
     char = t.token.text
     if char in QUOTES:
         return _curly_quote(t)
+    if t.source.text.startswith("```", t.token.start) and t.on_new_line:
+        return _fence(t)
+    if char == "|" and (found := _bars(t)) is not None:
+        return found
     sign, words = SIGNS.get(char, (None, ""))
     point = "" if char.isprintable() else f" (U+{ord(char):04X})"
     shown = char if char.isprintable() else "?"
@@ -121,6 +125,47 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
     if not stand_in and t.complete and t.following.kind != END:
         repair = None  # the rest makes no sense without the character
     return SyntaxProblem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
+
+
+def _fence(t: Trouble) -> SyntaxProblem:
+    """Recognises a line of Markdown around a program: "```aidl"."""
+    end = line_end(t.source.text, t.token.start)
+    stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
+    line = Span(t.source, t.token.start, end)
+    message = "the fence of a Markdown block is no part of the program"
+    return SyntaxProblem(
+        Diagnostic("E0108", message, line, fix=replaced("remove it", line, "")),
+        TokenRepair(t.position, stop),
+    )
+
+
+def _bars(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `|a.x|` where a value is due: an absolute value between bars."""
+    is_behind_value = t.before is not None and t.before.kind in ("NAME", "NUMBER", ")", "]")
+    stop = next((k for k in range(t.position + 1, len(t.tokens)) if t.tokens[k].text == "|"), t.position)
+    close = t.tokens[stop]
+    inner = t.source.text[t.token.end : close.start].strip()
+    is_whole = not set(";\n{}") & set(inner) and inner.count("(") == inner.count(")")
+    if not inner or not is_whole or (is_behind_value and not t.on_new_line):
+        return None
+    edits = (Edit(t.span(), "abs("), Edit(Span(t.source, close.start, close.end), ")"))
+    return SyntaxProblem(
+        Diagnostic(
+            "E0108",
+            f"an absolute value is written `abs({inner})`",
+            Span(t.source, t.token.start, close.end),
+            fix=Fix(f"write `abs({inner})`", edits, is_sure=True),
+        ),
+        TokenRepair(
+            t.position,
+            stop + 1,
+            (
+                t.token._replace(kind="CALL", text="abs("),
+                *t.tokens[t.position + 1 : stop],
+                close._replace(kind=")", text=")"),
+            ),
+        ),
+    )
 
 
 def _curly_quote(t: Trouble) -> SyntaxProblem:

@@ -20,13 +20,15 @@ class _Parsed(Protocol):
     def diagnostics(self) -> list[Diagnostic]: ...
 
 
-def lines_joined_by_minus(
+def lines_joined_by_sign(
     module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
 ) -> list[Diagnostic]:
-    """Returns W0101 for each line that begins with `-` if it and the lines above read as whole statements."""
+    """Returns W0101 for each line that begins with a sign if it and the lines above read as whole
+    statements.
+    """
     source, text = module.source, module.source.text
     places = [
-        t.start for t in tokens if t.kind == "-" and begins_line(text, t.start) and text[: t.start].strip()
+        t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start) and text[: t.start].strip()
     ]
     if not places:
         return []
@@ -36,10 +38,10 @@ def lines_joined_by_minus(
         leaf = next((s for s in leaves if s.span.start < place < s.span.end), None)
         if leaf is None or leaf.span.end - leaf.span.start > _LONGEST:
             continue
-        above, below = text[leaf.span.start : place], text[place : leaf.span.end]
+        above, below = text[leaf.span.start : place], text[place : leaf.span.end].lstrip("+")
         inside = isinstance(leaf, ast.ExpressionStatement | ast.Equation)
         if _whole(f"constrain {{ {above}\n}}" if inside else above, read) and _says_something(below, read):
-            found.append(_warning(source, place))
+            found.append(_warning(source, place, "" if inside and text[place] == "+" else "constrain "))
     return found
 
 
@@ -76,17 +78,18 @@ def _says_something(text: str, read: Callable[[SourceFile], _Parsed]) -> bool:
     )
 
 
-def _warning(source: SourceFile, place: int) -> Diagnostic:
-    minus = Span(source, place, place + 1)
+def _warning(source: SourceFile, place: int, begun: str) -> Diagnostic:
+    sign = Span(source, place, place + 1)
+    begun += sign.text.strip("+")
     before = len(source.text[:place].rstrip())
     return Diagnostic(
         "W0101",
-        "a line that begins with `-` continues the line above",
-        minus,
-        "this subtracts from the expression above",
+        f"a line that begins with `{sign.text}` continues the line above",
+        sign,
+        f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above",
         hints=("if it was meant as a statement of its own, end the line above with `;`",),
         fix=Fix(
             "end the line above with `;`",
-            (Edit(Span(source, before, before), ";"), Edit(Span(source, place, place), "constrain ")),
+            (Edit(Span(source, before, before), ";"), Edit(sign, begun)),
         ),
     )

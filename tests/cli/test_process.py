@@ -141,6 +141,21 @@ def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path
     assert rest == ""
 
 
+def test_an_interrupt_while_parts_are_nested_writes_nothing(folder: Path) -> None:
+    pytest.importorskip("spyrrow")
+    parts = "".join(f"solid p{k} {{ c = rectangle(width: {20 + k}, height: 30) }}\n" for k in range(20))
+    (folder / "many.aidl").write_text(parts)
+    command = [*COMMAND, "compile", "many.aidl", "-o", "many.svg", "--sheet", "200x150", "--nest", "50"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+        assert process.stderr is not None
+        time.sleep(5.0)
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+    assert "many.svg" not in rest
+    assert process.returncode == 130
+    assert not (folder / "many.svg").exists()
+
+
 def _hear_interrupts() -> None:
     """In a shell's background job interrupts are ignored, and processes inherit that."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

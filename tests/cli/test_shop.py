@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import re
+from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
 
@@ -102,7 +103,9 @@ def test_keywords_of_python_have_profiles_too(folder: Path) -> None:
 
 
 def rows(file: Path) -> list[list[str]]:
-    text = file.read_bytes().decode("utf-8-sig")
+    data = file.read_bytes()
+    assert data.startswith(BOM_UTF8)
+    text = data.decode("utf-8-sig")
     return list(csv.reader(io.StringIO(text)))
 
 
@@ -291,7 +294,11 @@ def test_one_file_for_each_part_in_every_format(aidl: Aidl, box: Path) -> None:
     outputs = [word for pattern in patterns for word in ("-o", pattern)]
     result = aidl("compile", "box.aidl", *outputs, "-o", "made/{material}/{number}.dxf")
     assert result.code == 0
-    assert result.err.startswith("parts/lid.dxf, parts/s.dxf, parts/strip.dxf, parts/lid.svg, ")
+    assert result.err.splitlines()[:2] == [
+        "note[N0759]: a file has one piece, and several are to be cut: `lid` ×3 and `s` ×4",
+        "  = hint: `{quantity}` in the name of an output says how many: `{number}-{part}-x{quantity}`",
+    ]
+    assert "\nparts/lid.dxf, parts/s.dxf, parts/strip.dxf, parts/lid.svg, " in result.err
     assert " and 16 more: solved" in result.err
     assert sorted(path.name for path in (box / "parts").iterdir()) == sorted(
         f"{part}.{pattern.rpartition('.')[2]}" for pattern in patterns for part in ("lid", "s", "strip")
@@ -309,6 +316,12 @@ def test_one_file_for_each_part_in_every_format(aidl: Aidl, box: Path) -> None:
             assert mesh.bounds[0] == pytest.approx([0, 0, 0], abs=0.01)
     (outline,) = ezdxf.readfile(box / "parts" / "s.dxf").modelspace().query("LWPOLYLINE")
     assert Polygon(outline.get_points("xy")).bounds == pytest.approx((0, 0, 100, 50))
+
+
+def test_the_name_of_a_part_says_how_many(aidl: Aidl, box: Path) -> None:
+    result = aidl("compile", "box.aidl", "-o", "{number}-{part}-x{quantity}.dxf")
+    assert "N0759" not in result.err
+    assert sorted(p.name for p in box.glob("*.dxf")) == ["1-lid-x3.dxf", "2-s-x4.dxf", "3-strip-x1.dxf"]
 
 
 def test_parts_beside_their_sheets(aidl: Aidl, box: Path) -> None:
@@ -362,7 +375,7 @@ def test_patterns_that_are_none(aidl: Aidl, box: Path) -> None:
         "  = hint: did you mean `{part}`?",
     ]
     assert refused(aidl("compile", "box.aidl", "-o", "{x}{part}.dxf"))[1] == (
-        "  = hint: there are `{part}`, `{number}` and `{material}`"
+        "  = hint: there are `{part}`, `{number}`, `{material}` and `{quantity}`"
     )
     assert refused(aidl("compile", "box.aidl", "-o", "{material}.dxf")) == [
         "error[E0926]: `{material}.dxf` is one name for several parts",

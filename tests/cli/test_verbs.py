@@ -186,8 +186,34 @@ def test_doc_finds_names_by_what_they_speak_of(aidl: Aidl) -> None:
     assert found.out.startswith("`finger joint` is no name. These speak of it:\n\n  finger_panel  A panel")
     assert aidl("doc", "finger joint").out == found.out
     assert "  living_hinge  " in aidl("doc", "kerf").out  # the name of an argument
-    assert json.loads(aidl("doc", "kerf", "--json").out)[0]["name"] == "living_hinge"
+    as_json = json.loads(aidl("doc", "kerf", "--json").out)
+    assert (as_json[0]["name"], as_json[-1]["name"]) == ("living_hinge", "aidl compile --kerf")
     assert "E0912" in aidl("doc", "kerf", "--picture", "-").err
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        ("export", "aidl compile --output"),
+        ("inch", "in"),
+        ("dxf", "aidl compile --dxf"),
+        ("kerf", "aidl compile --kerf"),
+        ("nest", "aidl compile --nest"),
+        ("sheet", "aidl sheet"),
+        ("text size", "text"),
+        ("distance from the edges", "inside"),
+        ("countersunk", "countersink"),
+        ("cutout", "hole"),
+        ("extrude", "@thickness"),
+        ("label", "text"),
+    ],
+)
+def test_doc_answers_plain_questions_at_once(aidl: Aidl, question: str, answer: str) -> None:
+    """What is sought is among the first two."""
+    found = aidl("doc", question)
+    assert (found.code, found.err) == (0, "")
+    lines = [line for line in found.out.splitlines()[1:] if line]
+    assert answer in [re.split(r"\s{2,}", line.strip())[0] for line in lines[:2]]
 
 
 def test_doc_lists_all_names_by_topic(aidl: Aidl) -> None:

@@ -258,7 +258,11 @@ def test_the_command_prints_the_tables_and_writes_them_if_asked(evaluation: Eval
     again = evaluation.called("eval", "--solver", file.name, "--out", str(evaluation.out))
     assert again.code == 0
     assert (evaluation.out / "solver.md").read_text() == again.out
-    assert (evaluation.out / "solver.csv").read_text().startswith("prompt,variant,against,figure,value,")
+    assert (
+        (evaluation.out / "solver.csv")
+        .read_text("utf-8-sig")
+        .startswith("prompt,variant,against,figure,value,")
+    )
     assert evaluation.called("eval", "--solver", "no.aidl").code == 2
 
 

@@ -18,7 +18,7 @@ from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Vec
 from aidl_lang.geometry.evaluate import nearest, point
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
-from aidl_lang.geometry.walls import Widths, widths
+from aidl_lang.geometry.walls import Widths, thin_wall, widths
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, polygon, primitive, rectangle, structure
 from tests.geometry.test_regions import region_of, shapely_of
@@ -120,9 +120,20 @@ PLATE = rectangle("r", 0, 0, 80, 50)
 def test_by_hand(members: list[SolvedGeometry | SolvedStructure], wall: float, gap: float | None):
     region = region_of(*members)
     found = widths(region)
+    check_thin(region, found)
     assert same(lengths(found)[0], wall), found
     assert same(lengths(found)[1], gap), found
     check_places(region, found)
+
+
+def check_thin(region: Region, found: Widths) -> None:
+    """The wall is told where it is below what is asked for, and only there."""
+    wall = found.wall
+    if wall is not None:
+        thin = thin_wall(region, 1.01 * wall.length)
+        assert thin is not None
+        assert thin.length == pytest.approx(wall.length)
+    assert thin_wall(region, 0.99 * wall.length if wall is not None else 1.0) is None
 
 
 def test_the_place_is_shown_in_the_middle_of_where_sides_face_each_other():
@@ -252,6 +263,7 @@ def test_walls_of_plates_are_the_distances_between_their_rings(
     rings = [whole.exterior, *whole.interiors]
     near = min(a.distance(b) for a, b in itertools.combinations(rings, 2))
     assert found.wall is not None
+    check_thin(region, found)
     assert found.wall.length == pytest.approx(near, abs=2e-4)
     across = min(_least_width(Polygon(ring)) for ring in whole.interiors)
     assert found.gap is not None
@@ -318,6 +330,7 @@ def test_polygons_by_trying_all_chords(corners: list[Vec], as_hole: bool):
         region = region_of(frame, hole("h", polygon("p", *corners)))
     found = widths(region)
     check_places(region, found)
+    check_thin(region, found)
     by_hand = all_chords(corners)
     walls, gaps = (min((length for k, length in by_hand if k == kind), default=None) for kind in (1, -1))
     wall, gap = lengths(found)

@@ -342,6 +342,19 @@ def test_shift_lets_a_point_go_anywhere(pane: Pane) -> None:
     assert to != [22, 5]
 
 
+def test_a_point_is_dragged_at_once_after_another_was_chosen(pane: Pane) -> None:
+    pane.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
+    grab(pane, 20, 5)
+    pane.page.mouse.up()
+    pane.move(-20, 5)
+    pane.page.mouse.down()
+    pane.move(-25, 8, steps=3)
+    pane.page.mouse.up()
+    pane.host.wait(lambda: any(final for _, final in drags(pane)))
+    assert drags(pane)[-1] == ([-25, 8], True)
+    assert pane.host.of("aidl/drag")[-1]["id"] == "h1"
+
+
 def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
     grab(pane, 20, 5)
     pane.move(30, 5, steps=2)

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.preview.conftest import Pane
-from tests.preview.messages import EXPORTS, URI, picture, problem
+from tests.preview.messages import EXPORTS, URI, picture, problem, words
 
 CODE = """
 window.sent = [];
@@ -199,7 +199,8 @@ def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
         "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
     )
     assert size == [width, 800]
-    for part in ("#stage", "#knobs", "#problems", ".statusbar"):
+    for part in ("#stage", "#problems", "#knobs", ".statusbar"):
+        pane.find(part).scroll_into_view_if_needed()
         box = pane.find(part).bounding_box()
         assert box is not None
         assert box["x"] >= 0
@@ -208,6 +209,24 @@ def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
     stage = pane.find("#stage").bounding_box()
     assert stage is not None
     assert stage["height"] > 150
+
+
+@pytest.mark.parametrize("height", [480, 640, 800])
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane, height: int) -> None:
+    pane = open_pane(viewport={"width": 420, "height": height})
+    pane.host.hears("aidl/preview")
+    pane.host.tell("aidl/text", words())
+    pane.shows(problems=[problem(message="a `long` " * 30)])
+    pane.find("#source-toggle").click()
+    expect(pane.find(".cm-line").first).to_be_visible()
+    for part in ("#source", "#knobs"):
+        pane.find(part).scroll_into_view_if_needed()
+        drawing, bar = (pane.find(one).bounding_box() for one in (".drawing", ".statusbar"))
+        assert drawing is not None
+        assert bar is not None
+        assert drawing["width"] > 150
+        assert drawing["y"] >= 0
+        assert drawing["y"] + drawing["height"] <= bar["y"]
 
 
 # Without a mouse

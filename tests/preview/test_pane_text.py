@@ -166,6 +166,27 @@ def test_keys_of_the_pane_are_letters_in_the_text(pane: Pane) -> None:
     expect(pane.find(".cm-content")).not_to_be_focused()
 
 
+@pytest.mark.parametrize("line", ["    param depth = 20", "    param depth = 20m", "    r = rect"])
+def test_enter_is_a_new_line_whatever_is_offered(pane: Pane, line: str) -> None:
+    type_at_end(pane, 1, f"\n{line.strip()}")
+    pane.page.wait_for_timeout(500)  # for a list to open, where one does
+    is_offered = pane.find(".cm-tooltip-autocomplete").is_visible()
+    assert is_offered == (not line.endswith("0"))
+    pane.page.keyboard.press("Enter")
+    pane.page.keyboard.type("x")
+    expect(pane.find(".cm-line").nth(2)).to_have_text(line)
+    expect(pane.find(".cm-line").nth(3)).to_have_text("    x")
+
+
+def test_enter_takes_what_was_moved_to(pane: Pane) -> None:
+    type_at_end(pane, 1, "\nr = rectang")
+    expect(pane.find(".cm-tooltip-autocomplete")).to_be_visible()
+    pane.page.wait_for_timeout(200)  # a list that has just opened takes no keys
+    pane.page.keyboard.press("ArrowDown")
+    pane.page.keyboard.press("Enter")
+    expect(pane.find(".cm-line").nth(2)).to_contain_text("rectangle(")
+
+
 @pytest.mark.parametrize("how", ["f", "button"])
 def test_the_drawing_is_fitted_again(pane: Pane, how: str) -> None:
     fitted = pane.at(0, 0), pane.scale

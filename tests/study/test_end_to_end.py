@@ -203,7 +203,7 @@ def check_pairs(found: dict[str, Any]) -> None:
 
 
 def check_csv(folder: Path, found: dict[str, Any]) -> None:
-    with open(folder / "evaluation.csv", encoding="utf-8", newline="") as file:
+    with open(folder / "evaluation.csv", encoding="utf-8-sig", newline="") as file:
         table = list(csv.DictReader(file))
     for line in [*found["study"], *found["pairs"], *found["variants"]]:
         (row,) = [

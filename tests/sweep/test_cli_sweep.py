@@ -158,7 +158,7 @@ def orders(count: int) -> list[str]:
 
 def told_of(folder: Path, names: list[str]) -> None:
     """Asserts that each order is right, or told, and that nothing lies where it should not."""
-    with open(folder / "table.csv", newline="", encoding="utf-8") as file:
+    with open(folder / "table.csv", newline="", encoding="utf-8-sig") as file:
         found = list(csv.DictReader(file))
     assert [row["name"] for row in found] == [f"'{n}" if n[:1] in "=+-@" and n else n for n in names]
     for row in found:
@@ -323,7 +323,7 @@ def test_no_cell_of_a_table_is_a_formula(folder: Path, aidl: Command) -> None:
         csv.writer(file).writerows([["name", "=note"], *([name, name] for name in names)])
     (folder / "sign.aidl").write_text(SIGN.replace("width - 6mm", "width + 600mm"))
     assert aidl("sweep", "sign.aidl", "--table", "orders.csv", "-o", "a.csv", "--no-timings").code == 0
-    with open(folder / "a.csv", newline="", encoding="utf-8") as file:
+    with open(folder / "a.csv", newline="", encoding="utf-8-sig") as file:
         head, *rows = csv.reader(file)
     assert "'=note" in head
     told = [f"'{name}" for name in names[:4]] + names[4:]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import shlex
+from codecs import BOM_UTF8
 from itertools import islice
 from math import pi
 from pathlib import Path
@@ -20,7 +21,8 @@ from tests.sweep.here import PLATE, Here, sweep
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    with open(path, newline="", encoding="utf-8") as file:
+    assert path.read_bytes().startswith(BOM_UTF8)
+    with open(path, newline="", encoding="utf-8-sig") as file:
         return list(csv.DictReader(file))
 
 

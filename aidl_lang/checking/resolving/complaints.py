@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -221,10 +222,35 @@ def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Symbo
     """
     if is_below(node, symbol, scope):
         hint = "write a first guess here, and the relation in `constrain`, which is read after the rest"
-        used_early(resolver.report, node, symbol, hint)
+        used_early(resolver.report, node, symbol, *(meant_outside(symbol, node) or (hint,)))
 
 
-def used_early(report: Callable[..., object], node: ast.Node, symbol: Symbol, hint: str) -> None:
+def meant_outside(symbol: Symbol, use: ast.Node) -> tuple[str, Fix | None] | None:
+    """Returns the hint and, where it reaches all uses, the fix for a name that hides another one in its own
+    definition, `name = text(name)`; None if there is no other, or the use is elsewhere.
+    """
+    made, scope = symbol.node, symbol.scope and symbol.scope.parent
+    outer = scope.value(symbol.name) if scope else None
+    if outer is None or not outer.declarations or not isinstance(made, ast.Assign | ast.Let | ast.Param):
+        return None
+    if not made.span.start <= use.span.start < made.span.end:
+        return None
+    value, source = made.value, made.span.source
+    name = f"{symbol.name}_{value.callee.text}" if isinstance(value, ast.Call) else f"own_{symbol.name}"
+    hint = (
+        f"here `{symbol.name}` is what this line makes; call that `{name}`, and `{symbol.name}` is the "
+        f"{outer.kind} again"
+    )
+    if outer.name != symbol.name or re.search(rf"\.\s*{symbol.name}\b|\b{name}\b", source.text):
+        return hint, None
+    uses = (n for n in ast.walk(symbol.owner or made) if isinstance(n, ast.Name) and n.text == symbol.name)
+    places = [made.name, *(n for n in uses if not made.span.start <= n.span.start < made.span.end)]
+    return hint, Fix(f"name it `{name}`", tuple(Edit(n.span, name) for n in places), is_sure=True)
+
+
+def used_early(
+    report: Callable[..., object], node: ast.Node, symbol: Symbol, hint: str, fix: Fix | None = None
+) -> None:
     """Reports a use above the line that makes the thing."""
     assert symbol.node is not None
     inside = node.span.start >= symbol.node.span.start
@@ -237,6 +263,7 @@ def used_early(report: Callable[..., object], node: ast.Node, symbol: Symbol, hi
         label="not there yet",
         secondary=() if inside else (Label(symbol.declarations[0].span, "made here"),),
         hints=(hint,),
+        fix=fix,
     )
 
 

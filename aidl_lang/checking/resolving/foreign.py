@@ -94,6 +94,16 @@ _VALUES: Mapping[str, str] = {
 }
 
 
+_ROUND = "round corners are geometry: `rounded_rectangle(radius: 5, …)`, or `fillet(outline, 5)`"
+ATTRIBUTES_MEANT: Mapping[str, tuple[str, str]] = {
+    **dict.fromkeys(("fill", "fillcolor", "background", "paint"), ("color", "")),
+    **dict.fromkeys(("strokewidth", "linewidth"), ("stroke", "")),
+    **dict.fromkeys(("cornerradius", "radius", "rounded", "borderradius", "fillet"), ("", _ROUND)),
+    **dict.fromkeys(("extrude", "depth"), ("thickness", "")),
+}
+"""Attributes of other languages, folded: the attribute that is meant, or a hint if it is none."""
+
+
 def value_hint(name: str) -> str | None:
     """Returns the hint for a name that is a value in other languages."""
     return _VALUES.get(fold(name))

@@ -204,7 +204,8 @@ class Reach:
                 if fits and (left & placed)[own].any():
                     found.append((thing.start, thing.path, whole))
                     left[own] = False
-        found += [(o, self.scene.number[o], True) for o in np.flatnonzero(left).tolist()]
+        rest = {self.scene.number[o]: o for o in reversed(np.flatnonzero(left).tolist())}
+        found += [(o, path, path not in self.scene.known) for path, o in rest.items()]
         partly = tuple(f"{path}." for _, path, whole in found if not whole)
         return [(path, whole) for _, path, whole in sorted(found) if not path.startswith(partly)]
 

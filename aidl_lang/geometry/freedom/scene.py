@@ -40,7 +40,7 @@ class Scene:
     anchor  (o,) the group from whose frame it is seen
     turning (o,) degrees that a direction turns in units of a turn by an angle of one radian
     axis    (o,) X, Y or NUMBER
-    number  (o,) the path of the place or number whose first observable it is
+    number  (o,) the path of the place or number that it belongs to; for a corner of a plan, of its structure
     of      (o,) the things that it belongs to
     known   the things by their paths
     bending the bends of the observables along a motion
@@ -88,7 +88,7 @@ class Scene:
                 self.axis[at : at + 2] = X, Y
                 if isinstance(geometry, Geometry) and not geometry.is_compound:
                     self._add(path, at, at + 2, POINT)
-            self.number[at] = path
+            self.number[at : at + len(numbers)] = [path] * len(numbers)
             if isinstance(geometry, Geometry):
                 self.turning[at] = (path.rpartition(".")[2] in DIRECTIONS) / DEGREE
                 ranges.setdefault(geometry, [at, at])[1] = at + len(numbers)

@@ -27,7 +27,7 @@ BROKEN_PIPE = 141
 _BETWEEN_SEARCHES = 100_000
 """Objects made before cycles among them are sought."""
 
-_VERBS = {
+VERBS = {
     "compile": "draw a program",
     "check": "find mistakes, write nothing",
     "sheet": "put a technical drawing on paper",
@@ -132,8 +132,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"aidl {__version__}")
     verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    for verb in words[:1] if words and words[0] in _VERBS else _VERBS:
-        own = verbs.add_parser(verb, help=_VERBS[verb])
+    for verb in words[:1] if words and words[0] in VERBS else VERBS:
+        own = verbs.add_parser(verb, help=VERBS[verb])
         if verb in words:
             module = import_module(f"aidl_lang.tools.cli.{verb.replace('-', '_')}")
             own.description = module.__doc__

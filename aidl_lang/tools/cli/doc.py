@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import did_you_mean, listed, ticked
@@ -44,16 +45,25 @@ def run(arguments: argparse.Namespace) -> int:
     if not words and arguments.picture:
         raise UseError("E0912", "`--picture` draws the example of one name", "`aidl doc` lists all names")
     style = TerminalStyle(wants_colour(sys.stdout, os.environ))
-    found = _found(known, words) if words else list(known.entries.values())
+    commands: list[tuple[str, str]] = []
+    found: Entry | list[Entry] = list(known.entries.values())
+    if words:
+        found, commands = _found(known, words)
     if isinstance(found, list):
         if arguments.picture:
-            names = ticked(entry.name for entry in found[:_FEW])
+            names = ticked([e.name for e in found[:_FEW]] or [usage for usage, _ in commands])
             raise UseError("E0912", f"`{words}` is no name; `--picture` draws one of these: {listed(names)}")
         if arguments.json:
-            _print_json([to_dict(entry) for entry in found])
+            of_command = [{"name": usage, "sort": "command", "line": line} for usage, line in commands]
+            _print_json([*(to_dict(entry) for entry in found), *of_command])
         elif words:
-            print(f"`{words}` is no name. These speak of it:\n")
-            _list(found, style)
+            print(f"`{words}` is no name. These speak of it:")
+            entries = [(e.name, e.doc.line) for e in found]
+            is_named = any(words.casefold() == usage.split()[-1].lstrip("-") for usage, _ in commands)
+            for lines in (commands, entries) if is_named else (entries, commands):
+                if lines:
+                    print()
+                    _list(lines, style)
         else:
             _list_all(known, style)
     elif arguments.picture:
@@ -65,18 +75,23 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _found(known: Reference, words: str) -> Entry | list[Entry]:
-    """Returns the entry of a name, else all that speak of the words, else, with a note, the one misspelt."""
+def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tuple[str, str]]]:
+    """Returns the entry of a name, else all that speak of the words, and verbs and options with their lines
+    that do, else, with a note, the one misspelt.
+    """
     if (entry := known.find(words)) is not None:
-        return entry
+        return entry, []
     from aidl_lang.common.render import escape
+    from aidl_lang.tools.cli import VERBS
+    from aidl_lang.tools.cli.doc_commands import commands_about
     from aidl_lang.tools.reference.searching import speaking_of
 
-    if found := speaking_of(words):
-        return found
+    found, commands = speaking_of(words), commands_about(words, VERBS)
+    if found or commands:
+        return found, commands
     if (entry := known.misspelt(words)) is not None:
         say(f"there is no `{escape(words)}`; this is `{entry.name}`")
-        return entry
+        return entry, []
     hints = did_you_mean(known.near(words))
     raise UseError("E0912", f"there is no `{words}` to tell about", *hints, "`aidl doc` lists all names")
 
@@ -84,13 +99,13 @@ def _found(known: Reference, words: str) -> Entry | list[Entry]:
 def _list_all(known: Reference, style: TerminalStyle) -> None:
     for number, topic in enumerate(known.topics):
         print(("\n" if number else "") + style.strong(topic.title))
-        _list(known.of_topic(topic.name), style)
+        _list([(entry.name, entry.doc.line) for entry in known.of_topic(topic.name)], style)
 
 
-def _list(entries: list[Entry], style: TerminalStyle) -> None:
-    width = max(len(entry.name) for entry in entries)
-    for entry in entries:
-        print(f"  {style.gutter(entry.name)}{' ' * (width - len(entry.name))}  {entry.doc.line}")
+def _list(lines: Sequence[tuple[str, str]], style: TerminalStyle) -> None:
+    width = max(len(name) for name, _ in lines)
+    for name, line in lines:
+        print(f"  {style.gutter(name)}{' ' * (width - len(name))}  {line}")
 
 
 def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> None:

@@ -173,7 +173,7 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     if out is not None:
         store = Store(Path(out))
         store.write("solver.md", text.encode())
-        store.write("solver.csv", ablation_table.to_csv(solves).encode())
+        store.write("solver.csv", ablation_table.to_csv(solves).encode("utf-8-sig"))
     print(text, end="")
     return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 

@@ -51,7 +51,7 @@ def _export(store: Store, name: str) -> int:
 
     answers = Answers(store.folder)
     given = answers.all()
-    files.write(name, exported(given, sheets(store.records())).encode())
+    files.write(name, exported(given, sheets(store.records())).encode("utf-8-sig"))
     say(f"{name}: {counted(len(given), 'answer')} of {answers.path}")
     return 0
 

@@ -30,5 +30,6 @@ def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
         "index.html": gallery.page(store.folder, records, variants, scores),
     }
     for name, content in outputs.items():
-        store.write(name, content.encode("utf-8", "backslashreplace"))
+        encoding = "utf-8-sig" if name.endswith(".csv") else "utf-8"
+        store.write(name, content.encode(encoding, "backslashreplace"))
     return text

@@ -30,6 +30,22 @@ _STOP = frozenset(
     )
 )
 
+_PLAIN = {
+    "text": "size of the letters, label, caption, lettering, write, word, engrave",
+    "hole": "cutout, cut out, opening, window, drill, remove, subtract",
+    "countersink": "countersunk head, screw head, sunk",
+    "@thickness": "extrude, extrusion, thick, 3d, height of a body",
+    "inside": "distance from the edge, distance from the edges, border, inset",
+    "distance": "distance from the edge",
+    "fillet": "round a corner, rounded edge, radius of a corner",
+    "mirror": "flip, reflect",
+    "in": "inch, inches, unit, imperial",
+    "param": "variable, knob, parameter, setting",
+    "import": "include, load, use another file, svg, dxf",
+    "@material": "wood, plywood, stock",
+}
+"""Words by which somebody new asks for a name, where its documentation has others."""
+
 
 @record()
 class _Document:
@@ -55,7 +71,7 @@ def _scored(query: str) -> list[tuple[Entry | str, float]]:
     """Returns what fits a query, best first, each with its share of the words; equal ones in the order of the
     reference.
     """
-    words = list(dict.fromkeys(_stems(query)))
+    words = list(dict.fromkeys(stems(query)))
     documents = _documents()
     wanted = "".join(_WORD.findall(query)).casefold()
     scored = []
@@ -84,8 +100,9 @@ def _rarity(word: str) -> float:
 
 def _of_entry(entry: Entry) -> _Document:
     weights = _weighed(
-        *((_NAME / len(list(_stems(name)) or "1"), name) for name in (entry.name, *entry.synonyms)),
+        *((_NAME / len(list(stems(name)) or "1"), name) for name in (entry.name, *entry.synonyms)),
         (_SUMMARY, f"{entry.doc.line} {entry.topic}"),
+        (_NAME, _PLAIN.get(entry.name, "")),
         (_TEXT, " ".join([entry.doc.text, *(f"{o.form} {o.doc.line}" for o in entry.overloads)])),
     )
     names = {"".join(_WORD.findall(name)).casefold() for name in (entry.name, *entry.synonyms)}
@@ -104,12 +121,12 @@ def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
     """
     weights: dict[str, float] = {}
     for weight, text in parts:
-        for word, times in Counter(_stems(text)).items():
+        for word, times in Counter(stems(text)).items():
             weights[word] = max(weights.get(word, 0.0), weight * (1.0 + 0.1 * math.log(times)))
     return weights
 
 
-def _stems(text: str) -> Iterator[str]:
+def stems(text: str) -> Iterator[str]:
     """Yields the words of a text, folded, without their endings."""
     for word in _WORD.findall(text.casefold()):
         if word in _STOP:

@@ -16,6 +16,7 @@ from aidl_lang.tools.sweeping.plan import Rows
 
 _MOST_BYTES = 500_000_000
 _LONGEST_CELL = 1_000_000
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 
 
 def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
@@ -25,6 +26,11 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
         _, head = next(rows)
     except StopIteration:
         raise _wrong(f"`{path}` is empty", "its first line names the params") from None
+    if len(head) == 1 and (others := [name for mark, name in _SEPARATORS.items() if mark in head[0]]):
+        raise _wrong(
+            f"the cells of `{path}` are separated by {others[0]}, not by commas",
+            "save it with commas as separators, and numbers with points: `12.5`",
+        )
     columns = _columns(path, head, knobs)
     params = [(k, knob) for k, knob in enumerate(columns) if knob is not None]
     labels = [(k, name.strip()) for k, name in enumerate(head) if columns[k] is None]

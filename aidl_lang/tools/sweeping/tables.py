@@ -19,9 +19,11 @@ ARROW_EXTRA = "parquet"
 
 
 def to_csv(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as CSV: lists are joined by semicolons, nothing stands where nothing is known."""
+    """Returns a table as CSV, with a byte order mark: lists are joined by semicolons, nothing stands where
+    nothing is known.
+    """
     cells = ([_csv(cell) for cell in columns.cells(row)] for row in rows)
-    return csv_text([columns.names, *cells]).encode("utf-8", "backslashreplace")
+    return csv_text([columns.names, *cells]).encode("utf-8-sig", "backslashreplace")
 
 
 def _csv(cell: Cell) -> str:

@@ -98,7 +98,7 @@ export class Editor {
       EditorView.cspNonce.of(nonce),
       lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(), drawSelection(), bracketMatching(),
       closeBrackets(), indentOnInput(), indentUnit.of("    "), search({ top: true }), highlightSelectionMatches(),
-      autocompletion({ activateOnTypingDelay: 200 }), syntaxHighlighting(COLOURS), aidl(), marked("marked"), marked("selected"),
+      autocompletion({ activateOnTypingDelay: 200, selectOnOpen: false }), syntaxHighlighting(COLOURS), aidl(), marked("marked"), marked("selected"),
       keymap.of([
         ...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...lintKeymap, ...keys, ...defaultKeymap, indentWithTab,
       ]),

@@ -75,7 +75,7 @@ export function completeAidl(context: CompletionContext): CompletionResult | nul
   if (attribute) return { from: from - attribute[0].length, options: ATTRIBUTES };
   if (/(^|[^.])\.\s*$/.test(rest)) return null;
   const number = /(?:^|[^\p{L}\p{N}_])\d+(?:\.\d+)?(?<unit>\p{L}*)$/u.exec(before);
-  if (number) {
+  if (number && (word || context.explicit)) {
     const options = listed(words.units!, "unit");
     return { from: context.pos - number.groups!.unit!.length, options };
   }

@@ -84,6 +84,7 @@ test("an attribute, a unit, a type", () => {
   assert.deepEqual(new Set(offered("@|").labels), new Set(words.attributes.filter((n) => n !== "colour").map((n) => `@${n}`)));
   assert.equal(offered("@co|").from, 0);
   assert.deepEqual(offered("param w = 5|", true).labels, words.units);
+  assert.equal(offered("param w = 5|"), null);
   assert.equal(offered("param w = 5m|").from, 11);
   const { labels } = offered("shape s(a: l|) { }");
   assert.ok(labels.includes("length") && labels.includes("ring") && !labels.includes("param"));

@@ -137,7 +137,10 @@ export class Handles {
     dot.addEventListener("pointerenter", () => this.#tell(id));
     dot.addEventListener("pointerleave", () => this.#drag ?? this.listener.hush());
     dot.addEventListener("focus", () => this.#tell(id));
-    dot.addEventListener("blur", () => (this.#drag ? this.#drop() : this.listener.hush()));
+    dot.addEventListener("blur", () => {
+      if (!this.#drag) this.listener.hush();
+      else if (this.#drag.handle.id === id) this.#drop(); // else the focus goes to the one that is pulled at
+    });
     dot.addEventListener("keydown", (event) => this.#key(event, id));
     dot.addEventListener("keyup", (event) => event.key in ARROWS && this.#drag?.byKey && this.#drop());
     for (const type of ["click", "dblclick"]) dot.addEventListener(type, (event) => event.stopPropagation());

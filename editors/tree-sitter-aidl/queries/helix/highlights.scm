@@ -124,8 +124,8 @@
     "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between" "arccos"
     "arcsin" "arctan" "arctan2" "at_share" "close_mirrored" "dist" "distance_x" "distance_y" "fix"
     "ground" "grounded" "horizontal_axis" "lock" "outline_distance" "place_in" "places_in"
-    "point_between" "point_in" "stroke" "translate" "vec" "vec2" "vec2d" "vector2" "vector2d"
-    "vertical_axis" "x_distance" "y_distance"))
+    "point_between" "point_in" "rotation" "set_angle" "set_rotation" "stroke" "tilt" "tilted" "translate"
+    "vec" "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
