@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building import primitives
@@ -122,20 +122,19 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
     """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for. One named as
-    a side of its shape that does not lie as its name says (slanted, or a level `left`) stands for that side
-    of the shape's box.
+    a side of its shape that does not lie as its name says where it was drawn (slanted, or a level `left`)
+    stands for that side of the shape's box.
     """
     core = look(it, edge, node, env)
-    (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
-    dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
-    tolerance = 1e-9 * max(dx, dy, 1e-300)
-    is_upright, is_level = dx <= tolerance < dy, dy <= tolerance < dx
+    x, y = primitives.xy(core["start"])
+    axis = _axis(core)
     if isinstance(node, ast.Member) and node.name.text in SIDES and isinstance(edge.container, Geometry):
         side = node.name.text
-        if not (is_upright if side in ("left", "right") else is_level):
+        as_drawn = _axis(primitives.view(edge, edge.owner))
+        if not axis or as_drawn != ("x" if side in ("left", "right") else "y"):
             return length(Box((edge.container,), env.here).side(side))
-    if is_upright or is_level:
-        return length(x0 if is_upright else y0)
+    if axis:
+        return length(x if axis == "x" else y)
     it.report(
         "E0303",
         f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",
@@ -145,6 +144,14 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
         hints=["name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"],
     )
     return None
+
+
+def _axis(core: Mapping[str, Value]) -> str:
+    """Returns the coordinate that is one along a whole edge, `x` or `y`; empty if it is slanted."""
+    (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
+    dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
+    tolerance = 1e-9 * max(dx, dy, 1e-300)
+    return "x" if dx <= tolerance < dy else "y" if dy <= tolerance < dx else ""
 
 
 def _side_of_box(node: ast.Node) -> Fix | None:

@@ -108,10 +108,11 @@ def positions(
     """Returns points given as positions to one constructor; literal ones move as one.
 
     From one literal point to the next the way is kept as a length and a direction, so that what turns an edge
-    does not shorten it; for points that are no corners (`edges` is false), as differences from the first. A
-    start and an end, which may span what lies between other things, are literal with a param in them, too.
+    does not shorten it; for points that are no corners (`edges` is false), as differences from the first. The
+    start and the end of a shape that spans, as a strip does, are literal with a param in them, too.
     """
-    literal = _is_first_guess if list(names) == ["start", "end"] else _is_literal
+    spans = list(names) == ["start", "end"] and isinstance(holder, Geometry) and holder.type != "line"
+    literal = _is_first_guess if spans else _is_literal
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression, str]] = {}
     before: tuple[PointVal, PointVal, str] | None = None

@@ -36,7 +36,7 @@ import numpy as np
 from aidl_lang.solver.branches import Task, attempt, violation_of
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.loosening import givers, thin
+from aidl_lang.solver.loosening import givers, spare_sizes, thin
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
@@ -326,6 +326,7 @@ class Group:
         if before is not None:
             before = hierarchy.since(before, scope.free)
             thin(hierarchy, scope, before, self.tiers.tier)
+            spare_sizes(hierarchy, scope, before)
             moved = frozenset(
                 u for u in scope.free if self.tiers.is_dear(u) and hierarchy.moved(u, before[u])
             )

@@ -348,6 +348,8 @@ FURTHER = 2.4
 """Factor of the way to the nearest point that something in curved rows may go so that other things can
 stay.
 """
+SPARING = 8
+"""The most changed sizes of which it is tried whether they need change."""
 MOST = 400
 """The most moved unknowns that are thinned; above, the nearest point is kept."""
 
@@ -373,6 +375,31 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     furthest = np.inf if spared else FURTHER * max(map(abs, moved.values()))
     if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), furthest, expected):
         hierarchy.values.assign(reached.items())
+
+
+def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> None:
+    """Holds kept sizes of `scope` that changed and need not have, tried one by one: an inequality that a
+    change made tight asks for no other change.
+    """
+
+    def change(size: int) -> tuple[float, str]:
+        off = abs(hierarchy.values.unknowns[size] - before[size])
+        return -off / abs(before[size]) if before[size] else -np.inf, hierarchy.name(size)
+
+    known = filter(hierarchy.is_kept, scope.free)
+    sizes = [u for u in known if not hierarchy.is_spanned(u) and hierarchy.moved(u, before[u])]
+    if not 2 <= len({int(hierarchy.problem.thing[size]) for size in sizes}) <= len(sizes) <= SPARING:
+        return
+    for size in sorted(sizes, key=change):
+        reached = hierarchy.save(scope.free)
+        if not hierarchy.moved(size, before[size]):
+            continue
+        hierarchy.values.assign(before.items())
+        narrow = replace(scope, free=scope.free - {size})
+        if hierarchy.attempt(narrow, 1).satisfied:
+            scope = narrow
+        else:
+            hierarchy.values.assign(reached.items())
 
 
 def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:

@@ -59,7 +59,7 @@ def test_a_text_longer_than_its_arc(told: Callable[[str], str], aidl: Aidl, fold
         "warning[W0761]: this text is 130.4 mm long, and the way along which it is written 73.3 mm" in found
     )
     assert "= hint: letters of 3.37 mm fit: `height: 3.37`" in found
-    assert '+         words = text("Forest run of the year, height: 5", along: way, height: 3.37)' in found
+    assert 'text("Forest run of the year, height: 5", along: way, height: 3.37)' in found
     assert told(MEDAL.replace("height: 6)", "height: 3.37)")) == "p.aidl: no mistakes found\n"
     # Around a whole circle it may go all around, and no further.
     ring = MEDAL.replace("arc(", "circle(").replace(", start_angle: 200deg, end_angle: 340deg", "")

@@ -33,6 +33,7 @@ _STOP = frozenset(
 _PLAIN = {
     "text": "size of the letters, label, caption, lettering, write, word, engrave",
     "hole": "cutout, cut out, opening, window, drill, remove, subtract",
+    "screw_hole": "hole for a screw",
     "countersink": "countersunk head, screw head, sunk",
     "@thickness": "extrude, extrusion, thick, 3d, height of a body",
     "inside": "distance from the edge, distance from the edges, border, inset",
