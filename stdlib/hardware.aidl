@@ -124,12 +124,12 @@ hole clearance_hole(size, fit: text = "medium") {
     rim = clearance_hole(size, center: fixed((0, 0)), fit: fit)
 }
 
-/// The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle.
+/// The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle without the thread.
 ///
 /// ```aidl
 /// solid block {
 ///     body = rectangle(width: 30, height: 12)
-///     hole thread { rim = tap_hole("m6", center: (5, 0)) }
+///     thread = tap_hole("m6") at (5, 0)
 /// }
 /// ```
 fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: screw(size).tap)
@@ -137,8 +137,8 @@ fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: scr
     rim = tap_hole(size, center: fixed((0, 0)))
 }
 
-/// A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`. In a `hole` or a
-/// `drawing` it is the rim of that bore.
+/// A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`. In a `drawing`
+/// it is the rim of that bore; in a `hole`, too, which cuts it through.
 ///
 /// The bore is as deep as the head is high, and 0.4 mm, above M6 0.6 mm, more: a `@depth`, so that cutters engrave its rim.
 ///
@@ -160,7 +160,7 @@ hole counterbore(size, fit: text = "medium") {
 }
 
 /// A through hole with a cone of 90° in which a flat head lies flush, placed with `at`. In a `drawing` it is the rim of that
-/// cone, as wide as at its top.
+/// cone, as wide as at its top; in a `hole`, too, which cuts it through.
 ///
 /// The cone has a `@depth`: it is cut in STEP, STL and 3MF, and cutters engrave its rim.
 ///

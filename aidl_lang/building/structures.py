@@ -15,6 +15,7 @@ from aidl_lang.building.construct import solvable
 from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Frame, Geometry, Structure
+from aidl_lang.building.plain_cuts import tell_plain_cuts
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.stacking import settle_order
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -54,6 +55,8 @@ def build_structure(
     structure.scope = body
     own_names(body, structure)
     run_block(it, node.body.statements, body, structure)
+    if node.kind == "hole":
+        tell_plain_cuts(it, node, body, "" if parent is None else parent.kind)
     # what is said of the root may name its params, as nothing is around it
     read_attributes(it, structure, node.attributes, body if parent is None else scope)
     finish(it, structure)
@@ -100,6 +103,8 @@ def instantiate(
         if framed is not None:
             structure.frame = framed(structure.frame)
         run_block(it, definition.body.statements, body, structure)
+        if definition.kind == "hole":
+            tell_plain_cuts(it, definition, body, here.kind)
         finish(it, structure)
     finally:
         it.leave()

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 DXF = ("arcs", "r12", "splines")
 """Outlines of lines and arcs, the same in the words of R12, or exact curves, as one entity each."""
+UNITS: Mapping[str, float] = {"mm": 1.0, "in": 25.4}
+"""Units that a file can be in, mm."""
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 """What explains a drawing on top of it."""
 ON_SHEETS = ("names", "numbers", "list")
@@ -50,6 +52,7 @@ class Options:
     tile       width and height in mm of the pages that a picture is printed over, 1:1
     overlap    of neighbouring pages, mm
     theme      the look of a picture as a whole, one of `themes.THEMES`
+    units      of an SVG or a DXF, one of `UNITS`
     dxf        the kind of a DXF, one of `DXF`
     tolerance  how far the arcs may be from the curves that they stand for where only arcs are understood, mm
     profile    what colours, layers and widths tell a cutter, and in which order; `plain` unless said
@@ -68,6 +71,7 @@ class Options:
     tile: tuple[float, float] | None = None
     overlap: float = 10.0
     theme: str = "colour"
+    units: str = "mm"
     dxf: str = "arcs"
     tolerance: float = TOLERANCE
     profile: Profile | None = None
@@ -130,7 +134,8 @@ class Format:
     """A writer. `extra` names the optional extra of the package that installs the module it needs.
 
     `label` describes the file in menus; a format without one is asked for by its suffix alone.
-    `cuts` tells whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
+    `cuts` tells whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages,
+    `inches` whether it may be in other units than mm.
     Several sheets go to as many files, unless `write_all` puts them into one.
     """
 
@@ -140,6 +145,7 @@ class Format:
     extra: str | None = None
     cuts: bool = False
     tiles: bool = False
+    inches: bool = False
     write_all: Callable[[Sequence[Job]], Exported] | None = None
 
 
@@ -244,6 +250,7 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
             "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
         )
     require_sheets(options)
+    _refuse(suffix, f"--units {options.units}", options.units != "mm" and not wanted.inches)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
     _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
     if options.theme not in ("colour", "cutter") and options.for_cutter:
@@ -299,7 +306,11 @@ def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
-        able = sorted(s for s, f in FORMATS.items() if (f.cuts if option in _OF_CUTTERS else f.tiles))
+        able = sorted(
+            s
+            for s, f in FORMATS.items()
+            if (f.cuts if option in _OF_CUTTERS else f.inches if "units" in option else f.tiles)
+        )
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
         )
@@ -338,7 +349,7 @@ def _svg(job: Job) -> Exported:
     from aidl_lang.export.picture import pages
     from aidl_lang.export.svg import to_svg
 
-    return _files([Exported(to_svg(page).encode()) for page in pages(job)])
+    return _files([Exported(to_svg(page, units=job.options.units).encode()) for page in pages(job)])
 
 
 def _png(job: Job) -> Exported:
@@ -406,10 +417,10 @@ def _3mf(job: Job) -> Exported:
 
 
 FORMATS: dict[str, Format] = {
-    ".svg": Format(_svg, "SVG drawing", cuts=True, tiles=True),
+    ".svg": Format(_svg, "SVG drawing", cuts=True, tiles=True, inches=True),
     ".pdf": Format(_pdf, "PDF, true to scale", cuts=True, tiles=True, write_all=_pdf_of_all),
     ".png": Format(_png, "PNG picture", cuts=True, tiles=True),
-    ".dxf": Format(_dxf, "DXF for cutters", cuts=True),
+    ".dxf": Format(_dxf, "DXF for cutters", cuts=True, inches=True),
     ".csv": Format(_csv, cuts=True, write_all=_csv_of_all),
     ".step": Format(_step, "STEP solid", "OCP", "step"),
     ".stp": Format(_step, needs="OCP", extra="step"),
@@ -444,7 +455,7 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
 def _svg_picture(picture: Picture, options: Options) -> bytes:
     from aidl_lang.export.svg import to_svg
 
-    return to_svg(picture).encode()
+    return to_svg(picture, units=options.units).encode()
 
 
 def _png_picture(picture: Picture, options: Options) -> bytes:

@@ -1,4 +1,4 @@
-"""DXF for laser cutters, routers and other CAD systems: 1:1 in mm, y upwards.
+"""DXF for laser cutters, routers and other CAD systems: 1:1 in mm or inches, y upwards.
 
 Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
 other kinds are fitted by arcs (`geometry.arcs`). Outer outlines run counter-clockwise, inner ones clockwise.
@@ -22,7 +22,7 @@ from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings.dxf import ENGRAVED
-from aidl_lang.export import Exported, Job
+from aidl_lang.export import UNITS, Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers, color_attributes
 from aidl_lang.export.dxf_lines import Lines
@@ -35,7 +35,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import TAU, ends, point, reverse, round_range
 
 BODY, HOLE = "AIDL", "AIDL_HOLE"
-MILLIMETRES, METRIC = 4, 1
+INSUNITS, MEASUREMENT = {"mm": 4, "in": 1}, {"mm": 1, "in": 0}
+"""Numbers by which a header says the units, and the kind of units."""
 LONGEST = 1.75 * math.pi
 """Largest sweep of an arc in a polyline. The nearer its ends, the less they tell of its radius."""
 THINNEST = 1e-6
@@ -64,7 +65,7 @@ def to_dxf(job: Job) -> Exported:
     try:
         is_old = job.options.dxf == "r12"
         # R12 has no place for the unit; `new` would set one, and complain on standard error.
-        document = Document.new("R12") if is_old else library.new("R2010", units=MILLIMETRES)
+        document = Document.new("R12") if is_old else library.new("R2010", units=INSUNITS[job.options.units])
         return _written(document, job, is_old)
     finally:
         library.options.write_fixed_meta_data_for_testing = before
@@ -78,10 +79,13 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
     for application in (BODY, HOLE, ENGRAVED):
         document.appids.new(application)
     if not is_old:
-        document.header["$MEASUREMENT"] = METRIC
+        document.header["$MEASUREMENT"] = MEASUREMENT[job.options.units]
     tolerance = None if job.options.dxf == "splines" else job.options.tolerance
     entities = _Entities(document.modelspace(), job.drawing, tolerance, is_old)
-    layers, lines = Layers(document, job.model, is_old), Lines(document, job.drawing.size, is_old)
+    layers, lines = (
+        Layers(document, job.model, is_old),
+        Lines(document, job.drawing.size, is_old, job.options.units),
+    )
     for outline in found:
         checkpoint()
         if profile is not None:
@@ -100,13 +104,24 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
     _add_labels(document, labels(job), layers)
+    factor = _scaled(document, job.options.units)
     if found:
-        _set_view(document, job.drawing)
+        _set_view(document, job.drawing, factor)
     _order_classes(document)
     text = io.StringIO()
     document.write(text)
     data = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
     return Exported(data, notes=tuple(layers.notes))
+
+
+def _scaled(document: Any, units: str) -> float:
+    """Multiplies what was drawn in mm so that it is in `units`, and returns the factor."""
+    from ezdxf import transform
+
+    factor = 1 / UNITS[units]
+    if factor != 1:
+        transform.scale_uniform(document.modelspace(), factor)
+    return factor
 
 
 def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, Any]:
@@ -138,16 +153,16 @@ def _order_classes(document: Any) -> None:
         classes.move_to_end(key)
 
 
-def _set_view(document: Any, drawing: Drawing) -> None:
-    """Sets extents, limits and a first view that show the drawing."""
-    left, bottom, right, top = drawing.box
+def _set_view(document: Any, drawing: Drawing, factor: float) -> None:
+    """Sets extents, limits and a first view that show the drawing with its lengths multiplied."""
+    left, bottom, right, top = (factor * side for side in drawing.box)
     space = document.modelspace()
     space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
     for name, p in (("EXTMIN", (left, bottom, 0.0)), ("EXTMAX", (right, top, 0.0))):
         document.header[f"${name}"] = p
     document.header["$LIMMIN"], document.header["$LIMMAX"] = (left, bottom), (right, top)
-    document.set_modelspace_vport(1.1 * drawing.size, ((left + right) / 2, (bottom + top) / 2))
+    document.set_modelspace_vport(1.1 * factor * drawing.size, ((left + right) / 2, (bottom + top) / 2))
 
 
 def _split(path: str) -> list[str]:

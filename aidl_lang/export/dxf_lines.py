@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from aidl_lang.common.numbers import fixed
+from aidl_lang.export import UNITS
 from aidl_lang.geometry.styles import Style
 
 WEIGHTS = (
@@ -21,10 +22,11 @@ def weight(width: float) -> int:
 
 class Lines:
     """The linetypes in use, each made on first use. `size` is that of the drawing, mm; `is_old`: R12 knows no
-    weights, and no points in names.
+    weights, and no points in names. Patterns are in `units`.
     """
 
-    def __init__(self, document: Any, size: float, is_old: bool = False) -> None:
+    def __init__(self, document: Any, size: float, is_old: bool = False, units: str = "mm") -> None:
+        self._units = units
         self._is_old = is_old
         self._document = document
         self._size = size
@@ -44,6 +46,8 @@ class Lines:
         if self._is_old:
             name = name.replace(".", "_")
         if name not in self._document.linetypes:
-            pattern = [-part if k % 2 else part for k, part in enumerate(dashes)]
-            self._document.linetypes.add(name, [sum(dashes), *pattern], description="dashes and gaps in mm")
+            parts = [part / UNITS[self._units] for part in dashes]
+            pattern = [-part if k % 2 else part for k, part in enumerate(parts)]
+            said = f"dashes and gaps in {self._units}"
+            self._document.linetypes.add(name, [sum(parts), *pattern], description=said)
         return name

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Piece, Vec, image
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face, Loop
@@ -37,8 +37,13 @@ class Placing:
     def mark(self, mark: Mark) -> Mark:
         k = self.factor
         match mark:
-            case Area(face=face, ink=ink):
-                return replace(mark, face=self.face(face), ink=None if ink is None else self.ink(ink))
+            case Area(face=face, ink=ink, gradient=gradient):
+                return replace(
+                    mark,
+                    face=self.face(face),
+                    ink=None if ink is None else self.ink(ink),
+                    gradient=None if gradient is None else self.gradient(gradient),
+                )
             case Curves(pieces=pieces, ink=ink):
                 return replace(mark, pieces=tuple(map(self.piece, pieces)), ink=self.ink(ink))
             case Text(at=at, size=size):
@@ -47,6 +52,11 @@ class Placing:
                 return replace(mark, at=self.point(at), radius=k * radius)
             case Frame(box=box, width=width, dash=dash):
                 return replace(mark, box=self.box(box), width=k * width, dash=k * dash)
+
+    def gradient(self, gradient: Gradient) -> Gradient:
+        radius = None if gradient.radius is None else self.factor * gradient.radius
+        start, end = self.point(gradient.start), self.point(gradient.end)
+        return replace(gradient, start=start, end=end, radius=radius)
 
     def ink(self, ink: Ink) -> Ink:
         dash = None if ink.dash is None else tuple(self.factor * part for part in ink.dash)

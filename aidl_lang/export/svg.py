@@ -1,4 +1,4 @@
-"""SVG: millimetres, y upwards, one group per structure, holes really cut, curves as curves."""
+"""SVG: millimetres or inches, y upwards, one group per structure, holes really cut, curves as curves."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.numbers import fixed
+from aidl_lang.export import UNITS
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.paths import face_path, open_path
+from aidl_lang.export.scaling import scaled
 from aidl_lang.export.svg_package import svgwrite
 from aidl_lang.geometry.evaluate import Bounds
 
@@ -21,13 +23,17 @@ FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
-def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
-    """Returns the picture as an SVG document in its true size, or so many pixels wide and high."""
+def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str = "mm") -> str:
+    """Returns the picture as an SVG document in its true size, or so many pixels wide and high. Its
+    coordinates are in `units`.
+    """
     svg = svgwrite()
+    if units != "mm":
+        picture = scaled(picture, 1 / UNITS[units])
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
     document = svg.Drawing(
-        size=pixels or (f"{width}mm", f"{height}mm"),
+        size=pixels or (f"{width}{units}", f"{height}{units}"),
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
     )

@@ -117,3 +117,43 @@ def test_a_hole_of_an_assembly_is_sunk_into_all_its_parts(aidl: Aidl, folder: Pa
     assert aidl("compile", "p.aidl", "-o", "p.step").code == 0
     parts = step_reading.read((folder / "p.step").read_bytes(), folder).parts
     assert [part.volume for part in parts] == pytest.approx([20 * 20 * 6 - 10 * 5 * 2] * 2)
+
+
+IN_HOLES = """\
+@thickness(6mm)
+solid plate {
+    body = rectangle(center: origin, width: 80, height: 30)
+    hole flat { rim = countersink("m4") at (-25, 0) }
+    hole bore { rim = counterbore("m3", center: (0, 0)) }
+    @depth(2mm) hole pocket { rim = square(center: (25, 0), size: 10) }
+}
+"""
+
+
+def test_what_is_sunk_in_a_hole_is_told_and_mended(aidl: Aidl, folder: Path) -> None:
+    (folder / "p.aidl").write_text(IN_HOLES)
+    assert aidl("check", "p.aidl").err.count("W0504]: in a `hole`, `counter") == 2
+    assert aidl("check", "--fix", "p.aidl").code == 0
+    assert (folder / "p.aidl").read_text() == PLATE.format(thick=6, more="").replace("6mm) ", "6mm)").replace(
+        'counterbore("m3") at (0, 0)', 'counterbore("m3", center: (0, 0))'
+    )
+    assert aidl("compile", "p.aidl", "-o", "p.step").code == 0
+    (part,) = step_reading.read((folder / "p.step").read_bytes(), folder).parts
+    assert part.volume == pytest.approx(80 * 30 * 6 - taken(6), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        *("constrain flat.rim.center == (-20, 0)", "assert flat.rim.diameter > 8"),
+        "drawing d { hole inner { rim = countersink(m4) } }",
+    ],
+)
+def test_a_hole_is_not_replaced_where_something_would_be_lost(aidl: Aidl, folder: Path, more: str) -> None:
+    lost = "" if "flat" in more else "// kept"
+    text = f"solid plate {{ b = square(size: 40)\n hole flat {{ rim = countersink(m4) {lost}\n }}\n {more} }}"
+    (folder / "p.aidl").write_text(text)
+    result = aidl("check", "p.aidl")
+    assert "W0504" in result.err
+    assert "fix:" not in result.err
+    assert "`@depth(…) hole flat { … }`" in result.err

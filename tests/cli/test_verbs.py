@@ -196,6 +196,7 @@ def test_doc_finds_names_by_what_they_speak_of(aidl: Aidl) -> None:
     [
         ("export", "aidl compile --output"),
         ("inch", "in"),
+        ("inch", "aidl compile --units"),
         ("dxf", "aidl compile --dxf"),
         ("kerf", "aidl compile --kerf"),
         ("nest", "aidl compile --nest"),

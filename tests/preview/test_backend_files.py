@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 import base64
 import io
+import os
 import re
 import zipfile
 from pathlib import Path
+from threading import Event, current_thread
 from typing import Any
 
 import ezdxf
@@ -16,6 +18,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.reading import Reads
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.refusing import CannotError
@@ -199,3 +202,43 @@ def test_files_are_written_in_one_step_each(file: Path) -> None:
     file.unlink()
     with pytest.raises(CannotError, match="cannot be read"):
         files.text_of(file)
+
+
+def test_a_slow_file_holds_up_nobody(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is only read to its end once pages were answered meanwhile."""
+    contents, asked, answered = Reads.contents, Event(), Event()
+
+    def slow(self: Reads, path: Path, *more: Any, **named: Any) -> bytes:
+        if current_thread() is not at_work:  # the loop itself is not to wait
+            asked.set()
+            assert answered.wait(60)
+        return contents(self, path, *more, **named)
+
+    with serving(file) as client, talking(client, file) as page:
+        page.preview()
+        assert client.portal is not None
+        at_work = client.portal.call(current_thread)
+        monkeypatch.setattr(Reads, "contents", slow)
+        file.write_text(TEXT.replace("60mm", "80mm"), "utf-8")
+        assert asked.wait(60)
+        try:
+            assert page.preview()["box"][2] == pytest.approx(30)
+        finally:
+            answered.set()
+        while page.told(CHANGED)["box"][2] != pytest.approx(40):
+            pass
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such files")
+def test_a_pipe_in_place_of_the_file_holds_up_nobody(file: Path) -> None:
+    with serving(file) as client, talking(client, file) as page:
+        page.preview()
+        file.unlink()
+        os.mkfifo(file)
+        said = page.told("window/showMessage")["message"]
+        assert said == "part.aidl cannot be read: it is no regular file"
+        assert page.preview()["box"][2] == pytest.approx(30)
+        file.unlink()
+        file.write_text(TEXT.replace("60mm", "80mm"), "utf-8")
+        while page.told(CHANGED)["box"][2] != pytest.approx(40):
+            pass

@@ -149,6 +149,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
         tile=arguments.tile,
         overlap=arguments.overlap,
         theme=arguments.theme,
+        units=arguments.units,
         dxf=arguments.dxf,
         tolerance=arguments.tolerance,
         profile=_profile(arguments.profile),

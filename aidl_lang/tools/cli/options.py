@@ -151,6 +151,12 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
         help="width of the cut: outlines grow by half of it, so that parts keep their size",
     )
     parser.add_argument(
+        "--units",
+        choices=("mm", "in"),
+        default="mm",
+        help="of the coordinates in an SVG or a DXF: millimetres (the default) or inches",
+    )
+    parser.add_argument(
         "--dxf",
         choices=("arcs", "r12", "splines"),
         default="arcs",

@@ -85,11 +85,25 @@ class Host:
 
     def changed(self, paths: Iterable[Path] = ()) -> None:
         """Takes note of files that have, or may have changed; the program's own is read in any case."""
+        self._take(paths, self.text.read)
+
+    async def noticed(self, paths: Iterable[Path] | None = None) -> None:
+        """Does the same, for all files of the program unless some are given, and holds up nobody while the
+        program's own is read.
+        """
+        looks = -1
+        while looks != self.text.looks:  # else what was found is older than what is known by now
+            looks = self.text.looks
+            found = asyncio.ensure_future(asyncio.to_thread(files.text_of, self.path))
+            await asyncio.wait([found])
+        self._take(self._sources() if paths is None else paths, lambda: self.text.take(found.result()))
+
+    def _take(self, paths: Iterable[Path], read: Callable[[], None]) -> None:
         others = [{"uri": path.as_uri(), "type": 2} for path in paths if path != self.path]
         if others:
             self._say("workspace/didChangeWatchedFiles", {"changes": others})
         try:
-            self.text.read()
+            read()
         except CannotError as reason:
             self._tell_trouble(str(reason))
         else:

@@ -53,6 +53,8 @@ class Manuscript:
         self.version = 0
         self.is_contested = False
         """whether the file was changed by others while there was something to save"""
+        self.looks = 0
+        """counts how often the file was read or written"""
         self._in_file = ""
         self._is_foreign = False
         """whether the steps ended with a change by others"""
@@ -74,7 +76,11 @@ class Manuscript:
 
     def read(self) -> None:
         """Takes note of what the file holds now. Raises CannotError."""
-        found = files.text_of(self.path)
+        self.take(files.text_of(self.path))
+
+    def take(self, found: str) -> None:
+        """Takes note of what was found in the file."""
+        self.looks += 1
         if self.text is None or (found != self._in_file and self.is_saved):
             self._is_foreign = self.text is not None
             self._forget()
@@ -179,6 +185,7 @@ class Manuscript:
         written = [(path, after) for path, (_, after) in others.items()]
         if text is not None and text != self._in_file:
             written.append((self.path, files.replaced(self.path, self._in_file, text)))
+        self.looks += 1
         files.write(written, self._write)
         if text is not None:
             self._in_file, self.is_contested = text, False

@@ -53,7 +53,7 @@ async def _working(app: Starlette) -> AsyncIterator[None]:
     """Runs the host, and watches its files, while the application runs."""
     host: Host = app.state.host
     host.start()
-    watching = asyncio.create_task(watch(host.path, host.changed, host.look))
+    watching = asyncio.create_task(watch(host.path, host.noticed, host.noticed))
     yield
     host.close()
     watching.cancel()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
 from watchfiles import Change, awatch
@@ -17,7 +17,11 @@ only now, and not all of them tell of every change.
 """
 
 
-async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
+Changed = Callable[[Iterable[Path]], Awaitable[None]]
+Begun = Callable[[], Awaitable[None]]
+
+
+async def watch(file: Path, changed: Changed, begun: Begun) -> None:
     """Calls back whenever a file, or what it may read in its folder or below, has changed, with the paths;
     after a quiet while, without any; once when it has begun to see changes. Goes on until it is cancelled.
     """
@@ -27,9 +31,7 @@ async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Ca
         await _watch(file, changed, begun, polling=True)
 
 
-async def _watch(
-    file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None], polling: bool | None
-) -> None:
+async def _watch(file: Path, changed: Changed, begun: Begun, polling: bool | None) -> None:
     def concerns(change: Change, path: str) -> bool:
         return may_be_read(path) or path == str(file)
 
@@ -44,7 +46,7 @@ async def _watch(
         yield_on_timeout=True,
     ):
         if changes or has_begun:
-            changed({Path(path) for _, path in changes})
+            await changed({Path(path) for _, path in changes})
         else:
-            begun()
+            await begun()
         has_begun = True

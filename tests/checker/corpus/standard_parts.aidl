@@ -9,7 +9,7 @@ assembly standard_parts {
         ring_ = bolt_circle(6, diameter: 50, size: bolt) at (3, 3)
         hole seat { rim = bearing_seat(608, center: (40, 0)) }
         hole trap { nut = hex_pocket("m5", center: (-45, 0)) }
-        hole thread { rim = tap_hole("m2.5", center: (45, 30)) }
+        thread = tap_hole("m2.5") at (45, 30)
         constrain {
             motor.center == body.center
             ring_.center == body.center

@@ -951,7 +951,7 @@ export const about = {
   "screw": "The sizes of a metric screw from M2 to M12, its nut, its washer and its holes.",
   "clearance_diameter": "The diameter of the through hole of a screw: `close`, `medium` or `loose` (ISO 273).",
   "clearance_hole": "The through hole of a screw, placed with `at`; in a `hole` its rim, a circle.",
-  "tap_hole": "The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle.",
+  "tap_hole": "The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle without the thread.",
   "counterbore": "A through hole with a bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`.",
   "countersink": "A through hole with a cone of 90° in which a flat head lies flush, placed with `at`.",
   "hex_pocket": "A pocket that holds a hexagon nut, `play` wider than it across its flats, placed with `at`; in a `hole` its outline.",
