@@ -219,12 +219,17 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         return NOTHING
     is_loose = any(g.name is None for g in _geometry_in(a["x"])) or isinstance(a["x"], Instantiation)
     is_seen = any(_is_seen(g, env.here) for g in _geometry_in(a["x"])) or not list(_geometry_in(a["x"]))
-    if motion.is_still and is_seen and not is_loose and not env.scope.labels:
+    # In a loop a copy that is given a motion may lie still in one turn only.
+    never_moves = not env.scope.labels or a.keys() == {"x"}
+    if motion.is_still and is_seen and not is_loose and never_moves:
         it.report(
             "W0510",
             "this copy lies exactly on what it is a copy of",
             node,
-            hints=["say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`"],
+            hints=[
+                "say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`",
+                "it stays so: a constraint on it is one on what it is a copy of",
+            ],
         )
     return copied(it, a["x"], motion, node, env)
 

@@ -295,7 +295,8 @@ def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value, env: E
     elif isinstance(left, Num) and isinstance(right, PointVal) and op == "*":
         x, y = arithmetic(it, op, left, right.x, node), arithmetic(it, op, left, right.y, node)
     else:
-        it.misfit(rules.no_vectors(op, type_of(left), type_of(right)), node)
+        sides = shown(node.left), shown(node.right)
+        it.misfit(rules.no_vectors(op, type_of(left), type_of(right), *sides), node)
         return NOTHING
     return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
 

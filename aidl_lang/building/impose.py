@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
@@ -125,6 +125,8 @@ def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
         return  # reported as a breach of validity, and read with values as written
     shape = _library_shape(it, node, env)
     wording = Wording(node, it, env, _read)
+    if _refuses_measured(it, compared(wording), node):
+        return
     false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
     values = f", {both}" if both else ""
     places = () if shape is not None else givens(wording)
@@ -144,15 +146,37 @@ def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
 
 def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
     """Adds a condition that is decided already as a constraint, so that other constants for it can be
-    sought.
+    sought. One that measures what is drawn after solving cannot be.
     """
     wording = Wording(node, it, env, read)
     found = compared(wording) if _library_shape(it, node, env) is None else ()
-    if not found:
+    if not found or _measurements(found):
         return
     turn = ", ".join(env.scope.labels)
     span = it.place(node) or node.span
     it.add_constraint(Constraint(env.here, found, node.span.one_line, span, None, turn, wording))
+
+
+def _measurements(comparisons: Iterable[Comparison]) -> list[Measurement]:
+    """Returns what comparisons take from the drawing."""
+    sides = (e for c in comparisons for e in (c.left, c.right) if e.is_open)
+    return [n.payload for n in ex.nodes(sides, only_open=True) if isinstance(n.payload, Measurement)]
+
+
+def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: ast.Expression) -> bool:
+    """Reports a condition on what is known once all is solved. Returns whether it did."""
+    if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
+        return False
+    it.report(
+        "E0512",
+        "areas, perimeters and clearances of outlines are known after solving only",
+        node,
+        hints=[
+            "put it in an `assert`, or constrain boxes and distances instead",
+            "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
+        ],
+    )
+    return True
 
 
 def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
@@ -181,20 +205,9 @@ def _impose_condition(
             comparisons.append(part)
     if any(map(_is_angle, ast.walk(node))):
         ask_to_turn(comparisons)
-    measured = ex.nodes((e for c in comparisons for e in (c.left, c.right) if e.is_open), only_open=True)
-    found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
-    if any(measurement.kind not in SIDES for measurement in found):
-        it.report(
-            "E0512",
-            "areas, perimeters and clearances of outlines are known after solving only",
-            node,
-            hints=[
-                "put it in an `assert`, or constrain boxes and distances instead",
-                "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
-            ],
-        )
+    if _refuses_measured(it, comparisons, node):
         return
-    if found:
+    if found := _measurements(comparisons):
         comparisons = _with_foreseen_boxes(it, comparisons, found[0], node, env, weight)
     shape = _library_shape(it, node, env)
     if comparisons and shape is not None:

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking.binding import in_order
+from aidl_lang.checking.binding import in_order, select
+from aidl_lang.checking.facts import is_number, is_point
 from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
+from aidl_lang.checking.standard import body_of
 from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
+    Binding,
+    GeometryType,
     GivenArgument,
     ListType,
     Mismatch,
     NumberType,
     PointType,
     Signature,
+    StructureType,
     accepts,
 )
 from aidl_lang.checking.wording import shown
@@ -55,8 +61,48 @@ def no_overload(
         f"`{name}` {closest.reason}",
         at,
         label=f"in this call of `{name}`",
-        hints=_called_as([closest.signature, *others[:2]]),
+        hints=[*_between_ends(check, node, nodes), *_called_as([closest.signature, *others[:2]])],
+        fix=_centre(at, given, misses, closest),
     )
+
+
+def _centre(
+    at: ast.Node, given: Sequence[GivenArgument], misses: Sequence[Mismatch], closest: Mismatch
+) -> Fix | None:
+    """Returns the fix that names the centre of a shape where a point is wanted, if the call fits with it."""
+    if (
+        closest.kinds is None
+        or closest.argument is None
+        or not isinstance(at, ast.Name | ast.Member | ast.Index)
+    ):
+        return None
+    wanted, kind = closest.kinds
+    points = [*given]
+    points[closest.argument] = replace(given[closest.argument], type=wanted)
+    fits = isinstance(select([m.signature for m in misses], points), Binding)
+    if not fits or not isinstance(wanted, PointType) or not isinstance(kind, GeometryType | StructureType):
+        return None
+    text = f"{at.span.text}.center"
+    return Fix(f"write `{text}`", (Edit(at.span, text),))
+
+
+def _between_ends(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression]) -> list[str]:
+    """Returns the hint for an angle or a direction of two points, or of a shape between two, and no line."""
+    facts = [check.fact(each) for each in nodes[:2]]
+    if len(facts) == 2 and all(is_point(fact.type) for fact in facts):
+        (start, end), rest = map(shown, nodes[:2]), nodes[2:]
+    elif facts and facts[0].of is not None and {"start", "end"} <= body_of(check, facts[0].of).values.keys():
+        start, end = (f"{shown(nodes[0])}.{name}" for name in ("start", "end"))
+        rest = nodes[1:]
+    else:
+        return []
+    match check.resolution.canonical.get(node.callee, node.callee.text):
+        case "angle" if all(is_number(check.fact(each).type) for each in rest[:1]) and len(rest) < 2:
+            way = shown(rest[0]) if rest else "angle"
+            return [f"to direct one point from another: `{end} == {start} + polar(length, {way})`"]
+        case "direction" if not rest:
+            return [f"the direction from one point to another is `unit({end} - {start})`"]
+    return []
 
 
 def _called_as(signatures: Sequence[Signature]) -> list[str]:

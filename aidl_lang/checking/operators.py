@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.facts import Fact, is_number, is_point
+from aidl_lang.checking.standard import body_of
 from aidl_lang.checking.types import (
     ANY,
+    GeometryType,
     ListType,
     NumberType,
     PointType,
@@ -15,7 +18,7 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
 )
-from aidl_lang.checking.wording import in_box, shown
+from aidl_lang.checking.wording import a, in_box, shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.syntax import ast
 
@@ -58,7 +61,31 @@ def _vector(check: Inference, node: ast.Binary, left: Fact, right: Fact) -> Fact
         or (numbers[0] and op == "*")
     ):
         return Fact(PointType(), left.reads | right.reads)
-    return check.misfit(rules.no_vectors(op, left.type, right.type), node)
+    misfit = rules.no_vectors(op, left.type, right.type, shown(node.left), shown(node.right))
+    sides = ((node.left, left, right), (node.right, right, left))
+    for side, fact, other in sides:
+        if isinstance(side, ast.Member) and (text := _meant_point(check, side, fact, other)) is not None:
+            hints = misfit.hints
+            if isinstance(fact.type, GeometryType):
+                hints = (f"`{shown(side)}` is {a(fact.type)} of the outline; the corner is `{text}`",)
+            fix = Fix(f"write `{text}`", (Edit(side.span, text),))
+            return check.misfit(replace(misfit, hints=hints), node, fix)
+    return check.misfit(misfit, node)
+
+
+def _meant_point(check: Inference, node: ast.Member, fact: Fact, other: Fact) -> str | None:
+    """Returns the point or coordinate that is meant by a member beside a point or a number:
+    `plate.top_left` by the arc `plate.corner_top_left`, `disc.top.y` by the point `disc.top`.
+    """
+    of, name = node.value.span.text, check.resolution.canonical.get(node.name, node.name.text)
+    if is_number(other.type) and isinstance(fact.type, PointType):
+        axis = {"top": "y", "bottom": "y", "left": "x", "right": "x"}.get(name)
+        return f"{of}.{name}.{axis}" if axis else None
+    corner = name.removeprefix("corner_")
+    whole = check.fact(node.value).of
+    if corner == name or whole is None or not is_point(other.type):
+        return None
+    return f"{of}.{corner}" if corner in body_of(check, whole).values else None
 
 
 def _arithmetic(

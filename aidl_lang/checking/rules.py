@@ -76,11 +76,14 @@ def fraction(what: str, text: str) -> TypeMisfit:
     return TypeMisfit("E0306", f"{what} must be a whole number, and this is `{text}`")
 
 
-def no_vectors(operator: str, left: Type, right: Type) -> TypeMisfit:
+def no_vectors(operator: str, left: Type, right: Type, left_text: str, right_text: str) -> TypeMisfit:
     """Refuses an operator between points, or a point and a number, that has no meaning there."""
     hint = "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
     if operator in "+-" and (isinstance(left, NumberType) or isinstance(right, NumberType)):
+        text = right_text if isinstance(left, NumberType) else left_text
         hint = "to move a point, add a point: `p + (dx, dy)`"
+        if not text.startswith("("):
+            hint = f"a coordinate is `{text}.x` or `{text}.y`; {hint}"
     return TypeMisfit("E0307", f"`{operator}` does not work on {a(left)} and {a(right)}", (hint,))
 
 

@@ -9,7 +9,7 @@ rectangle) add what they enclose outside of it.
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
@@ -78,7 +78,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
             else:
                 result.faces.append(OwnFace((shape.geometry,), section))
             outlines += kept
-        used = {edge for edge, _ in kept}
+        used = {edge for edge, _ in kept} - _bridges(network, kept)
         free += [leaf for leaf in shape.leaves if not _touches(network, leaf[1], used)]
     if free:
         _chain_free(network, free, outlines, result)
@@ -147,15 +147,27 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
         kept = rest
 
 
+def _is_odd(network: Network, uses: Iterable[Use]) -> bool:
+    """Tells whether an odd number of edges end in some node."""
+    degree = Counter(end(network, use) for use in uses for end in (first_node, last_node))
+    return any(d % 2 for d in degree.values())
+
+
+def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
+    """Returns the edges that join loops and bound no face, but for those that are run through twice. There
+    are none where every node has an even degree.
+    """
+    if not _is_odd(network, uses):
+        return set()
+    _, bounding = _outlines(network, uses)
+    return {edge for edge, count in Counter(edge for edge, _ in uses).items() if count == 1} - bounding
+
+
 def _alternating(network: Network, uses: list[Use]) -> Section:
     """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
     enclosed.
     """
-    degree: dict[int, int] = defaultdict(int)
-    for use in uses:
-        degree[first_node(network, use)] += 1
-        degree[last_node(network, use)] += 1
-    if any(d % 2 for d in degree.values()):
+    if _is_odd(network, uses):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
 

@@ -128,6 +128,8 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
             secondary = (Label(other.span, f"the nearest other end, at {at(q)}"),) if other.span else ()
         else:
             hints.insert(0, "close the outline: draw the missing curve, sharing the end points")
+    elif (shape := _partly_closed(finding)) is not None:
+        hints.insert(0, f"its strokes become material with a width, as in `thick({shape.type}(…), 1.2)`")
     else:
         hints.insert(0, "a face needs a closed outline that is not flat: look at its sizes and its points")
     span = gap[0][0].span if gap else finding.curves[0][0].span
@@ -169,6 +171,12 @@ def _whole_names(structure: SolvedStructure, loose: Sequence[SolvedGeometry]) ->
         for curve in curves
     }
     return list(dict.fromkeys(whole.get(g.path, local(structure, g)) for g in loose))
+
+
+def _partly_closed(finding: LooseCurves) -> SolvedGeometry | None:
+    """Returns the shape of which these primitives are some and others bound a face, if there is one."""
+    loose = {g.path for g, _ in finding.curves}
+    return next((g for g in finding.structure.geometry if loose < set(_primitive_paths(g))), None)
 
 
 def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
