@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from aidl_lang import pipeline
+from aidl_lang.checking import library
 from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import Options
 from aidl_lang.parser import parse
+from aidl_lang.syntax import tables
 from tests.compiled import EXAMPLES, example
 from tests.documents import ROOT, Block, programs
 
@@ -50,6 +53,26 @@ def test_example(path: Path) -> None:
 def test_the_pictures_of_the_readme_are_the_examples(name: str, options: Options) -> None:
     committed = ROOT / "docs" / "images" / f"{name}.svg"
     assert example(name).export(".svg", options) == committed.read_bytes(), "run `make accept`"
+
+
+def test_sizes_on_the_page_of_measurements_are_those_of_today() -> None:
+    """To a tenth: who adds much writes the page anew."""
+    page = (ROOT / "docs" / "performance.md").read_text("utf-8")
+    said = re.search(
+        r"built: (\d+) definitions of (\d+) names, (\d+) kB of text.* into (\d+) kB of data", page
+    )
+    tables_said = re.search(r"The parser's tables, (\d+) kB", page)
+    assert said
+    assert tables_said
+    known = library.load()
+    sizes = [
+        sum(len(overloads) for overloads in known.callables.values()),
+        len(known.callables),
+        sum(len(source.text.encode()) for source in known.sources) / 1000,
+        len(library.built()) / 1000,
+        len(tables.built()) / 1000,
+    ]
+    assert [*map(int, said.groups()), int(tables_said[1])] == pytest.approx(sizes, rel=0.1)
 
 
 def test_blocks_have_known_notes() -> None:
