@@ -11,6 +11,12 @@ from aidl_lang.solver.operations import Floats, Ints
 
 EDGES = 3000
 """Edges of a graph up to which scipy is not worth loading."""
+RANK = 1e-6
+"""Singular values of unit rows above this count towards the rank."""
+DOUBT = 1e-8
+"""Singular values below this count as zero; between the two the rank is undecided."""
+LARGE = 300
+"""Rows or columns of a part from which on sparse elimination is quicker."""
 
 
 def components(a: Ints, b: Ints, count: int) -> Ints:
@@ -36,14 +42,6 @@ def connected(a: Ints, b: Ints, count: int) -> Ints:
         np.minimum.at(lowest, above, below)
         while (lowest != (lower := lowest[lowest])).any():
             lowest = lower
-
-
-RANK = 1e-6
-"""Singular values of unit rows above this count towards the rank."""
-DOUBT = 1e-8
-"""Singular values below this count as zero; between the two the rank is undecided."""
-LARGE = 300
-"""Rows or columns of a part from which on sparse elimination is quicker."""
 
 
 class Sorted:

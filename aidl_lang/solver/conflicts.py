@@ -14,7 +14,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,11 +28,6 @@ from aidl_lang.solver.refuting import Relaxation
 from aidl_lang.solver.solution import Concession, Failure, GroupFailure, Member
 from aidl_lang.solver.suspects import MANY, needed, suspects
 from aidl_lang.solver.tiers import Scope
-
-if TYPE_CHECKING:
-    from aidl_lang.solver.hierarchy import Hierarchy
-    from aidl_lang.solver.tiers import Scope
-
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""

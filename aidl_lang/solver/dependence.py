@@ -36,6 +36,16 @@ SHARE = 1e-6
 """Coefficients of unit rows below which they count as zero."""
 MOST = 200
 """The most dependent rows of one large part that are explained."""
+AWAY = 1e-2
+"""Distance from the solution at which a row is tried, relative to its scale."""
+STEPS = 10
+HELD = 1e-10
+"""Residual, relative to the scale of the row, at which the others hold again."""
+HOLDS = 1e-8
+TRIED = 300
+"""Rows or unknowns up to which it is tried whether a row follows from others."""
+WIDER = 40
+"""Rows beyond the combination that are tried one by one."""
 
 Relation: TypeAlias = dict[int, float]
 """A row as a combination of others."""
@@ -206,18 +216,6 @@ def _reduced(left: Floats) -> dict[int, Relation]:
         }
         for row, vector in pivots.items()
     }
-
-
-AWAY = 1e-2
-"""Distance from the solution at which a row is tried, relative to its scale."""
-STEPS = 10
-HELD = 1e-10
-"""Residual, relative to the scale of the row, at which the others hold again."""
-HOLDS = 1e-8
-TRIED = 300
-"""Rows or unknowns up to which it is tried whether a row follows from others."""
-WIDER = 40
-"""Rows beyond the combination that are tried one by one."""
 
 
 @record()

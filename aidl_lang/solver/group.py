@@ -45,7 +45,6 @@ from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
-    from aidl_lang.solver.tiers import Scope
 
 
 Best: TypeAlias = tuple[float, dict[int, float]]
@@ -66,6 +65,10 @@ ROUNDS = 12
 """The most times that something more is freed before all is."""
 SHARE = 1e-9
 """Slope, relative to the terms of its sum, below which an unknown has no share in a proof."""
+FIRMNESS = 1e-5
+"""Unit of the slack of a preference of weight 1: its cost compared with moving things."""
+NEARLY = 1e-6
+"""Weighted violation of a preference that is due to the slack alone."""
 
 
 class Group:
@@ -371,12 +374,6 @@ class Group:
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
             if prefer(hierarchy, self.tiers.scope(tier, preferences), preferences):
                 break
-
-
-FIRMNESS = 1e-5
-"""Unit of the slack of a preference of weight 1: its cost compared with moving things."""
-NEARLY = 1e-6
-"""Weighted violation of a preference that is due to the slack alone."""
 
 
 def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:

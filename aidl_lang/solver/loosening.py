@@ -41,6 +41,24 @@ MANY = 200_000
 
 BOUNDS = 3
 """Rounds of counting inequalities that a step would break."""
+STILL = 1e-9
+"""Moves below this, in units of the unknown's scale, count as none."""
+TIGHT = 10.0
+"""Factor of its tolerance within which an inequality is on its bound."""
+INDEPENDENT = 1e-7
+"""Least part of a column that other columns leave if it reaches further than they do."""
+REACHED = 1e-6
+"""Part of a change within which two changes are the same."""
+ASTRAY = 0.2
+"""Part of the way promised by slopes by which what bends may end elsewhere."""
+FURTHER = 2.4
+"""Factor of the way to the nearest point that something in curved rows may go so that other things can
+stay.
+"""
+SPARING = 8
+"""The most changed sizes of which it is tried whether they need change."""
+MOST = 400
+"""The most moved unknowns that are thinned; above, the nearest point is kept."""
 
 Giver: TypeAlias = tuple[tuple[object, ...], list[int]]
 """What gives way as one: a key by which those that help alike are ordered, and its columns."""
@@ -333,25 +351,6 @@ def _basis(matrix: Floats) -> Floats:
     found: Floats = u[:, sigma > NOTHING * sigma[0]]
     return found
 
-
-STILL = 1e-9
-"""Moves below this, in units of the unknown's scale, count as none."""
-TIGHT = 10.0
-"""Factor of its tolerance within which an inequality is on its bound."""
-INDEPENDENT = 1e-7
-"""Least part of a column that other columns leave if it reaches further than they do."""
-REACHED = 1e-6
-"""Part of a change within which two changes are the same."""
-ASTRAY = 0.2
-"""Part of the way promised by slopes by which what bends may end elsewhere."""
-FURTHER = 2.4
-"""Factor of the way to the nearest point that something in curved rows may go so that other things can
-stay.
-"""
-SPARING = 8
-"""The most changed sizes of which it is tried whether they need change."""
-MOST = 400
-"""The most moved unknowns that are thinned; above, the nearest point is kept."""
 
 Rank: TypeAlias = "Callable[[int], tuple[int, ...]]"
 """The cost class of moving an unknown: a greater one is dearer."""

@@ -24,6 +24,13 @@ from aidl_lang.solver.valuation import Compiled, compiled, run
 Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], int, tuple[int, ...]]"
 """Function, slots of its operands, slot of the value, edges that take the slopes."""
 
+SUM = -1
+"""Operation code of a recipe that is a sum."""
+NUMBER = -2
+"""Operation code of a recipe that is a number."""
+UNUSED = 0
+"""Weight that is written for operands without a free unknown and never read."""
+
 
 @record()
 class Sweep:
@@ -139,14 +146,6 @@ class Program:
         for slot in sweep.inputs:
             if abs(adjoints[slot]) <= CANCELLED * sizes[slot]:
                 adjoints[slot] = 0.0
-
-
-SUM = -1
-"""Operation code of a recipe that is a sum."""
-NUMBER = -2
-"""Operation code of a recipe that is a number."""
-UNUSED = 0
-"""Weight that is written for operands without a free unknown and never read."""
 
 
 @record(slots=True)

@@ -10,7 +10,6 @@ ORSA Journal on Computing 2, 1990). In an affine problem the suspects are a conf
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +23,6 @@ from aidl_lang.solver.quadratic import nearest
 from aidl_lang.solver.refuting import Relaxation
 from aidl_lang.solver.tiers import Scope
 
-if TYPE_CHECKING:
-    from aidl_lang.solver.hierarchy import Hierarchy
-
-
 FAINT = 1e-3
 """Singular values of unit rows that count as none: the search stops near the singular place, not on it."""
 SHARE = 1e-6
@@ -36,6 +31,10 @@ MANY = 12
 """Members of a set above which halves of it are tried before single ones."""
 FAR = 100.0
 """The longest step that counts as mending rows, in sizes of the rows."""
+RESTARTS = 3
+"""Perturbed starts."""
+FEW = 40
+"""Rows up to which all of `within` is searched for together."""
 
 
 class Linearised:
@@ -130,12 +129,6 @@ def _halved(
     from_second = _halved(background + first, True, second, holds)
     from_first = _halved(background + from_second, bool(from_second), first, holds)
     return from_first + from_second
-
-
-RESTARTS = 3
-"""Perturbed starts."""
-FEW = 40
-"""Rows up to which all of `within` is searched for together."""
 
 
 def shortfall(
