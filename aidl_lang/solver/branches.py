@@ -11,8 +11,8 @@ Inequalities join the system when they are violated; those that hold all along h
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -63,14 +63,12 @@ class Verdict:
     """The result of an attempt.
 
     violation  the greatest scaled violation of a hard row at the values that were left
-    proof      for rows by their number in the task, factors with which their sum is the same wherever the
-               free unknowns are, though it would have to vanish (Farkas): no branch is left to choose in
-               these rows, and no start could satisfy them. Empty if that is not known.
+    refuted    True if rows without a branch to choose contradict each other wherever the free unknowns are
     """
 
     end: End
     violation: float
-    proof: Mapping[int, float] = field(default_factory=dict)
+    refuted: bool = False
 
     @property
     def satisfied(self) -> bool:
@@ -121,8 +119,8 @@ class _Attempt:
         self.considered: list[int] = []
         """The equations, and the inequalities that were violated at some time."""
         self.joins = 0
-        self.blamed: dict[int, float] = {}
-        """The rows that contradicted each other in the last branch, with their factors."""
+        self.blamed: list[int] = []
+        """The rows that contradicted each other in the last branch."""
         self.steady = True
         """True if none of the blamed rows hangs on a choice of branches."""
 
@@ -138,7 +136,7 @@ class _Attempt:
             if row.relation is Relation.EQUAL or not holds(row, self.values, tolerance)
         ]
         verdict = self._follow_branches()
-        if verdict.satisfied or verdict.proof:
+        if verdict.satisfied or verdict.refuted:
             return verdict
         return self._try_neighbours(verdict) if self.task.turning else verdict
 
@@ -150,7 +148,7 @@ class _Attempt:
         base = self.origin
         while True:
             verdict, branches, crossed = self._solve_in_branch(base, frozenset())
-            if verdict.proof:
+            if verdict.refuted:
                 return verdict
             if not verdict.satisfied and not crossed:
                 # No solution with these branches; where the search ended others may be active.
@@ -181,7 +179,7 @@ class _Attempt:
             if verdict.satisfied:
                 return verdict, frozen.branches, False
             if self.blamed and self.steady:
-                return replace(verdict, proof=self.blamed), frozen.branches, False
+                return replace(verdict, refuted=True), frozen.branches, False
             if self._join_violated() and not self.clock.expired:
                 continue
             crossed, border = self._crossed(frozen.branches)
@@ -219,11 +217,10 @@ class _Attempt:
         those that decide most about them (the outermost) come first.
         """
         reached, blamed = self._current(), self.blamed
-        proof = self._proof_without_branches()
-        if proof is None or proof:
-            self._move_to(reached)
-            return replace(verdict, proof=proof or {})
+        steady = self._without_branches()
         self._move_to(reached)
+        if steady is None or not steady.satisfied:
+            return replace(verdict, refuted=steady is not None and steady.refuted)
         waiting = deque([(frozenset[int](), self._turning(blamed))])
         known = {frozenset[int]()}
         left = NEIGHBOURS * max(1, self.task.restarts)
@@ -246,7 +243,7 @@ class _Attempt:
         self._move_to(reached)
         return verdict
 
-    def _turning(self, blamed: Mapping[int, float]) -> list[int]:
+    def _turning(self, blamed: Sequence[int]) -> list[int]:
         """Returns the branching nodes that may help where the rows `blamed` contradict each other, or, if
         none is to blame, those that do not hold at the current values.
         """
@@ -260,30 +257,24 @@ class _Attempt:
             nodes += [node for node in others if node not in nodes]
         return nodes
 
-    def _proof_without_branches(self) -> Mapping[int, float] | None:
-        """Returns an empty proof if the rows that hang on no branch can be met by themselves, else the proof
-        that they cannot; None if neither is known or if all rows are such.
-        """
+    def _without_branches(self) -> Verdict | None:
+        """Returns the verdict of the rows that hang on no branch by themselves; None if all rows are such."""
         self._move_to(self.origin)
         rows, softness = self.task.rows, self.task.softness
-        frozen = self.freezer.freeze([row.expression for row in rows])
-        steady = sorted(frozen.steady)
+        steady = sorted(self.freezer.freeze([row.expression for row in rows]).steady)
         if len(steady) == len(rows):
             return None
         alone = Task([rows[i] for i in steady], [softness[i] for i in steady], self.task.free)
-        found = attempt(alone, self.values, self.metric, self.settings, self.clock)
-        if found.satisfied:
-            return {}
-        return {steady[i]: factor for i, factor in found.proof.items()} or None
+        return attempt(alone, self.values, self.metric, self.settings, self.clock)
 
     # -- solving with fixed branches
 
     def _solve(self, frozen: Frozen, base: list[float], restarts: int) -> End:
         """Solves each program by itself and moves to the result; returns the worst end of them."""
         ends = [End.CONVERGED]
-        self.blamed, self.steady = {}, True
+        self.blamed, self.steady = [], True
         if failing := self._failing_constants(frozen):
-            self._blame(frozen, dict.fromkeys(failing[:1], 1.0))
+            self._blame(frozen, failing[:1])
             if restarts <= 1:
                 return End.INFEASIBLE
             ends.append(End.INFEASIBLE)
@@ -334,21 +325,20 @@ class _Attempt:
             restarts,
         )
         if outcome.contradiction is not None:
-            factors = outcome.contradiction / row_scale
             taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()
             if taking_part:
-                self._blame(frozen, {int(program.rows[i]): float(factors[i]) for i in taking_part})
+                self._blame(frozen, [int(program.rows[i]) for i in taking_part])
         x = anchor + scale * outcome.z[: len(scale)]
         if np.isfinite(x).all():
             self.values.assign(zip(program.columns, x.tolist(), strict=True))
         return outcome.end
 
-    def _blame(self, frozen: Frozen, factors: Mapping[int, float]) -> None:
+    def _blame(self, frozen: Frozen, rows: Sequence[int]) -> None:
         """Notes rows that contradict each other; rows that hang on no branch replace rows that do."""
         count = len(self.considered)
-        steady = frozen.steady.issuperset(factors) and max(factors) < count
+        steady = frozen.steady.issuperset(rows) and max(rows) < count
         if not self.blamed or (steady and not self.steady):
-            self.blamed = {self.considered[i]: factor for i, factor in factors.items() if i < count}
+            self.blamed = [self.considered[i] for i in rows if i < count]
             self.steady = steady
 
     def _failing_constants(self, frozen: Frozen) -> list[int]:

@@ -26,16 +26,12 @@ though it is dear is recorded with its constraints, and told. Only what fails is
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from aidl_lang.solver.branches import Task, attempt, violation_of
-from aidl_lang.solver.forms import Affine
-from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.loosening import givers, spare_sizes, thin
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.settings import Stages
@@ -43,14 +39,11 @@ from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
 
 
 Best: TypeAlias = tuple[float, dict[int, float]]
 """The least violation reached so far, and the values there."""
-Proof: TypeAlias = Mapping[int, float]
-"""Factors of tape nodes whose sum shows that rows contradict each other; empty if there is no proof."""
 
 LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
@@ -63,8 +56,6 @@ COSTLY = 20_000
 """Free unknowns times constraints above which a proof is sought before stages are tried as wholes."""
 ROUNDS = 12
 """The most times that something more is freed before all is."""
-SHARE = 1e-9
-"""Slope, relative to the terms of its sum, below which an unknown has no share in a proof."""
 FIRMNESS = 1e-5
 """Unit of the slack of a preference of weight 1: its cost compared with moving things."""
 NEARLY = 1e-6
@@ -187,7 +178,7 @@ class Group:
             if positions and max(map(self.tiers.tier, more)) > POSITIONS:
                 # Before a size changes, branches that positions choose have their say.
                 hierarchy.values.assign(before.items())
-                tier, best = self._climb(positions, seeds, best, self._proof(scope, verdict))
+                tier, best = self._climb(positions, seeds, best, scope.free if verdict.refuted else None)
                 tiers = [tier for tier in tiers if tier > POSITIONS]
                 if tier is not None:
                     return tier, tiers, best
@@ -248,72 +239,39 @@ class Group:
         return None
 
     def _climb(
-        self, tiers: list[Tier], seeds: list[int], best: Best, proof: Proof = MappingProxyType({})
+        self, tiers: list[Tier], seeds: list[int], best: Best, refuted: frozenset[int] | None = None
     ) -> tuple[Tier | None, Best]:
-        """Tries stages in order, each with all that its tiers free, branch by branch, unless `proof` stands
-        against it.
+        """Tries stages in order, each with all that its tiers free, branch by branch; the last of them first,
+        since none leads anywhere if that does not. `refuted` are free unknowns that are known not to suffice.
         """
         hierarchy = self.hierarchy
         everything = self.tiers.everything(seeds).free
         before = hierarchy.save(everything)
-        violated = hierarchy.unmet(seeds)
-        stages: dict[frozenset[int], tuple[Tier, Scope]] = {}
-        for tier in tiers:
-            scope = self.tiers.scope(tier, seeds)
-            if self.tiers.promising(violated, tier) and not self._stands(proof, scope.free):
-                stages.setdefault(scope.free, (tier, scope))
-        order = list(stages.values())
-        if len(order) > 1:  # if not even the last of them leads anywhere, none does
-            order = [order[-1], *order[:-1]]
-        widest: dict[int, float] | None = None
+        scopes = {self.tiers.scope(tier, seeds): tier for tier in reversed(tiers)}
+        stages = {scope: tier for scope, tier in scopes.items() if scope.free != refuted}
+        order = sorted(stages, key=stages.__getitem__)
+        reached: tuple[Scope, dict[int, float]] | None = None
         clock = Clock(min(PATIENCE, hierarchy.clock.left))
-        for tier, scope in order:
+        for scope in [*order[-1:], *order[:-1]]:
             # Groups above a part that failed are not searched for long: the best effort is drawn.
-            is_last = scope is order[0][1] and not hierarchy.failures
+            is_last = scope is order[-1] and not hierarchy.failures
             verdict = hierarchy.attempt(scope, LAST_RESTARTS if is_last else 1, clock)
-            if verdict.satisfied and widest is None and len(order) > 1:
-                widest = hierarchy.save(scope.free)
-                hierarchy.values.assign(before.items())
-                continue
-            self._report(tier, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
-                return tier, best
-            if verdict.violation < 0.99 * best[0]:
-                best = (verdict.violation, hierarchy.save(everything))
+                reached = scope, hierarchy.save(scope.free)
+            else:
+                self._report(stages[scope], scope, None)
+                if verdict.violation < 0.99 * best[0]:
+                    best = (verdict.violation, hierarchy.save(everything))
             hierarchy.values.assign(before.items())
-            if widest is None or clock.expired:
+            if reached is None or (scope is not order[-1] and verdict.satisfied) or clock.expired:
                 break
         hierarchy.timed_out |= hierarchy.clock.expired
-        if widest is not None:
-            tier, scope = order[0]
-            hierarchy.values.assign(widest.items())
-            self._report(tier, scope, before)
-            return tier, best
-        return None, best
-
-    # -- proofs, and sizes in the way
-
-    def _proof(self, scope: Scope, verdict: Verdict) -> Proof:
-        rows = self.hierarchy.rows(scope.constraints)
-        return {rows[i].expression: factor for i, factor in verdict.proof.items()}
-
-    def _stands(self, proof: Proof, free: frozenset[int]) -> bool:
-        """Tells whether the proof holds with more unknowns free: whether none of them has a share in it."""
-        if not proof:
-            return False
-        values = self.hierarchy.values
-        values.update(list(proof))
-        freezer = Freezer(values, free)
-        total: dict[int, float] = {}
-        sizes: dict[int, float] = {}
-        for node, factor in proof.items():
-            form = freezer.form(node)
-            if form is None:
-                return False
-            for slot, slope in form.terms.items() if isinstance(form, Affine) else ():
-                total[slot] = total.get(slot, 0.0) + factor * slope
-                sizes[slot] = sizes.get(slot, 0.0) + abs(factor * slope)
-        return all(abs(slope) <= SHARE * sizes[slot] for slot, slope in total.items())
+        if reached is None:
+            return None, best
+        scope, values = reached
+        hierarchy.values.assign(values.items())
+        self._report(stages[scope], scope, before)
+        return stages[scope], best
 
     def _report(
         self,

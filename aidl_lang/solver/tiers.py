@@ -155,11 +155,6 @@ class Tiers:
             found = [slopes[row.expression] for row in hierarchy.rows([index])]
             yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
 
-    def promising(self, violated: list[int], tier: Tier) -> bool:
-        """Tells whether each violated constraint mentions something free."""
-        mentions = self.hierarchy.mentions
-        return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
-
     def is_dear(self, unknown: int) -> bool:
         """Tells whether a move of an unknown is reported: that of a kept size, of what rides along, and of a
         frame that stood where its content is exact, unless a constraint places it.
