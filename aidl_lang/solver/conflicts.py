@@ -293,7 +293,7 @@ class _ConflictSearch:
         accused = suspects(hierarchy, scope.constraints, scope.free)
         yield from (accused, *self._around(best)) if len(accused) <= MANY else (*self._around(best), accused)
         yield self._violated(best)
-        yield from self._connected()
+        yield list(scope.constraints)
 
     def _violated(self, best: dict[int, float]) -> list[int]:
         self.hierarchy.values.assign(best.items())
@@ -318,25 +318,6 @@ class _ConflictSearch:
             yield around
             touched = touched.union(*(hierarchy.mentions[index] & free for index in around))
             before = len(around)
-
-    def _connected(self) -> Iterator[list[int]]:
-        """Yields the constraints by connected part (linked by free unknowns that they share), at last all of
-        them.
-        """
-        hierarchy, free = self.hierarchy, self.scope.free
-        groups: list[tuple[set[int], list[int]]] = []
-        for index in self.scope.constraints:
-            unknowns, members = set(hierarchy.mentions[index] & free), [index]
-            apart = []
-            for other, indices in groups:
-                if other.isdisjoint(unknowns):
-                    apart.append((other, indices))
-                else:
-                    unknowns |= other
-                    members = indices + members
-            groups = [*apart, (unknowns, members)]
-        yield from (sorted(members) for _, members in groups)
-        yield list(self.scope.constraints)
 
     # -- data of the explanation
 
