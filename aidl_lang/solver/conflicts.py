@@ -93,11 +93,11 @@ def explain(
 
 def is_refuted(hierarchy: Hierarchy, scope: Scope) -> bool:
     """Tells whether a proof exists that the constraints of `scope` cannot hold together with its unknowns
-    free; the bound that one sets on an unknown alone helps with the others.
+    free.
     """
     hierarchy.refresh(scope.constraints)
     rows = hierarchy.rows(scope.constraints)
-    return Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance, rows).is_refuted
+    return Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance).is_refuted
 
 
 def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:

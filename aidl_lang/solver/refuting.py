@@ -23,10 +23,6 @@ CANCELLED = 1e-9
 """Part of the slopes added up that rounding may leave of them."""
 DECIDED = 10.0
 """Factor by which the sum of the rows must exceed what the tolerances allow."""
-FEW_TERMS = 3
-"""The most slots of a form that is taken for granted."""
-MOST_LIMITS = 12
-"""The most times that a slot is put at a limit to see whether a form can be negative."""
 FEW = 60
 """Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
 SOME = 400
@@ -49,8 +45,7 @@ _NONE = _Refutation({}, 0.0, False)
 
 class Relaxation:
     """Some rows with the unknowns `free`, and the bounds of what bends or chooses in them. The nodes of the
-    rows must be up to date. The bound that a row of the `background` sets on one unknown alone, as that a
-    size is not negative, is taken for granted.
+    rows must be up to date.
     """
 
     def __init__(
@@ -59,47 +54,18 @@ class Relaxation:
         rows: Sequence[Row],
         free: Iterable[int],
         tolerance: float,
-        background: Iterable[Row] = (),
     ) -> None:
         self._values, self._free, self._tolerance = values, frozenset(free), tolerance
         self._forms = values.forms(self._free)
         self._put: dict[int, Form] = {}
         self._parts: dict[int, list[Form]] = {}
         """The operands of knots that are numbers of their own."""
-        self._least: dict[int, float] = {}
-        self._most: dict[int, float] = {}
-        self._above: dict[int, list[Form]] = {}
-        """Forms that each slot never exceeds."""
-        self._below: dict[int, list[Form]] = {}
-        self._never: dict[object, bool] = {}
-        """Answers whether forms are nowhere negative, by their terms rounded."""
-        granted = [self._plain(row.expression) for row in background if row.relation is Relation.AT_MOST]
-        for form in granted:
-            self._grant(form)
-        self._put.clear()  # more is known of them now
-        self._parts.clear()
         self._rows = [(self._plain(row.expression), row) for row in rows]
         self._all = list(range(len(self._rows)))
         self.is_exact = not any(self._knots(form) for form, _ in self._rows)
         """True if the rows are affine, so that they hold together unless that is refuted."""
         self.bends = any(self._forms.knots[slot].op not in BRANCHING for slot in self._parts)
         """True if something in the rows neither is affine nor chooses."""
-
-    def _grant(self, form: Form) -> None:
-        """Takes for granted that a form is never positive; notes the bounds that follow for single slots."""
-        for each in (form, *self._bounds([form])):
-            terms = each.terms if isinstance(each, Affine) else {}
-            for slot, slope in terms.items() if 1 < len(terms) <= FEW_TERMS else ():
-                self._never.clear()
-                limit = scaled(combined(each, Affine({slot: slope}, 0.0), -1.0), -1.0 / slope)
-                (self._above if slope > 0.0 else self._below).setdefault(slot, []).append(limit)
-            if len(terms) == 1 and isinstance(each, Affine):
-                ((slot, slope),) = terms.items()
-                end = -each.constant / slope
-                if slope > 0.0:
-                    self._most[slot] = min(end, self._most.get(slot, np.inf))
-                else:
-                    self._least[slot] = max(end, self._least.get(slot, -np.inf))
 
     def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
         """Returns factors of some of the rows `among`, by number, with which they add up to an impossibility;
@@ -225,18 +191,18 @@ class Relaxation:
         first, second = parts[0], parts[1] if len(parts) > 1 else 0.0
         match op:
             case Op.ABS:
-                sign = self._sign(first)
+                sign = _sign(first)
                 return scaled(first, float(sign)) if sign else None
             case Op.SELECT:
-                sign = self._sign(first)
+                sign = _sign(first)
                 return parts[1 if sign > 0 else 2] if sign else None
-            case Op.ATAN2 if first == 0.0 and (sign := self._sign(second)):
+            case Op.ATAN2 if first == 0.0 and (sign := _sign(second)):
                 return 0.0 if sign > 0 else 180.0
-            case Op.ATAN2 if second == 0.0 and (sign := self._sign(first)):
+            case Op.ATAN2 if second == 0.0 and (sign := _sign(first)):
                 return 90.0 * sign
             case Op.HYPOT if 0.0 in (first, second):
                 other = second if first == 0.0 else first
-                sign = self._sign(other)
+                sign = _sign(other)
                 return scaled(other, float(sign)) if sign else None
         return None
 
@@ -247,54 +213,11 @@ class Relaxation:
         outward = 1.0 if op == Op.MAXIMUM else -1.0
         found: list[Form] = []
         for leaf in (leaf for part in parts for leaf in self._leaves(op, part)):
-            if any(self._is_never_behind(scaled(combined(o, leaf, -1.0), outward)) for o in found):
+            if any(_is_never_negative(scaled(combined(o, leaf, -1.0), outward)) for o in found):
                 continue
-            found = [o for o in found if not self._is_never_behind(scaled(combined(leaf, o, -1.0), outward))]
+            found = [o for o in found if not _is_never_negative(scaled(combined(leaf, o, -1.0), outward))]
             found.append(leaf)
         return found
-
-    def _is_never_behind(self, ahead: Form) -> bool:
-        """Tells whether a form is nowhere negative, by the bounds of each slot or by forms that are never
-        positive.
-        """
-        if self._range(ahead)[0] >= 0.0:
-            return True
-        if isinstance(ahead, float) or not (self._above or self._below):
-            return False
-        key = (
-            frozenset((slot, round(slope, 9)) for slot, slope in ahead.terms.items()),
-            round(ahead.constant, 9),
-        )
-        known = self._never.get(key)
-        if known is None:
-            known = self._never[key] = self._is_granted(ahead)
-        return known
-
-    def _is_granted(self, ahead: Affine) -> bool:
-        """Tells whether a form is nowhere negative where the granted forms hold: puts slots at their limits,
-        one after another.
-        """
-        waiting: list[Form] = [ahead]
-        for form in waiting:
-            if self._range(form)[0] >= 0.0:
-                return True
-            for limited in self._at_limits(form):
-                if len(waiting) == MOST_LIMITS:
-                    break
-                waiting.append(limited)
-        return False
-
-    def _at_limits(self, form: Form) -> Iterator[Form]:
-        """Yields a form with one slot put at a limit that makes the form least; a slot without a bound is
-        preferred.
-        """
-        terms = form.terms if isinstance(form, Affine) else {}
-        endless = [s for s, slope in terms.items() if s not in (self._most if slope < 0.0 else self._least)]
-        for slot in endless[:1] or terms:
-            slope = terms[slot]
-            for limit in (self._above if slope < 0.0 else self._below).get(slot, ()):
-                further = combined(limit, Affine({slot: 1.0}, 0.0), -1.0)
-                yield combined(form, scaled(further, slope), 1.0)
 
     def _leaves(self, op: int, part: Form) -> list[Form]:
         """Returns the operands of the `max` or `min` that `part` is but for an added form, each with that
@@ -309,22 +232,6 @@ class Relaxation:
             return [part]
         rest = combined(part, Affine({knots[0]: slope}, 0.0), -1.0)
         return [combined(rest, leaf, slope) for leaf in self._parts[knots[0]]]
-
-    def _sign(self, form: Form) -> int:
-        """Returns 1 or -1 if a form is positive or negative wherever the free unknowns are, else 0."""
-        least, most = self._range(form)
-        return 1 if least > 0.0 else -1 if most < 0.0 else 0
-
-    def _range(self, form: Form) -> tuple[float, float]:
-        """Returns the bounds of a form over all values of the free unknowns."""
-        if isinstance(form, float):
-            return (form, form) if form == form else (-np.inf, np.inf)
-        least = most = form.constant
-        for slot, slope in form.terms.items():
-            low, high = self._least.get(slot, -np.inf), self._most.get(slot, np.inf)
-            least += slope * (low if slope > 0.0 else high)
-            most += slope * (high if slope > 0.0 else low)
-        return least, most
 
     def _knots(self, form: Form) -> list[int]:
         return [slot for slot in form.terms if slot in self._parts] if isinstance(form, Affine) else []
@@ -360,6 +267,15 @@ class Relaxation:
             case Op.SIN | Op.COS:
                 yield combined(itself, 1.0, -1.0)
                 yield combined(scaled(itself, -1.0), 1.0, -1.0)
+
+
+def _is_never_negative(form: Form) -> bool:
+    return isinstance(form, float) and form >= 0.0
+
+
+def _sign(form: Form) -> int:
+    """Returns 1 or -1 if a form is positive or negative wherever the free unknowns are, else 0."""
+    return int(np.sign(form)) if isinstance(form, float) and form == form else 0
 
 
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
