@@ -48,13 +48,7 @@ class Relaxation:
     rows must be up to date.
     """
 
-    def __init__(
-        self,
-        values: Valuation,
-        rows: Sequence[Row],
-        free: Iterable[int],
-        tolerance: float,
-    ) -> None:
+    def __init__(self, values: Valuation, rows: Sequence[Row], free: Iterable[int], tolerance: float) -> None:
         self._values, self._free, self._tolerance = values, frozenset(free), tolerance
         self._forms = values.forms(self._free)
         self._put: dict[int, Form] = {}
@@ -178,33 +172,10 @@ class Relaxation:
             self._parts[slot] = parts
             return itself
         form = branched(knot.op, parts) if knot.op in BRANCHING else applied(knot.op, parts)
-        form = self._decided(knot.op, parts) if form is None else form
         if form is None:
             self._parts[slot] = parts
             return itself
         return form
-
-    def _decided(self, op: int, parts: Sequence[Form]) -> Form | None:
-        """Returns the result of an operation that the known signs of its operands decide; None if they do
-        not.
-        """
-        first, second = parts[0], parts[1] if len(parts) > 1 else 0.0
-        match op:
-            case Op.ABS:
-                sign = _sign(first)
-                return scaled(first, float(sign)) if sign else None
-            case Op.SELECT:
-                sign = _sign(first)
-                return parts[1 if sign > 0 else 2] if sign else None
-            case Op.ATAN2 if first == 0.0 and (sign := _sign(second)):
-                return 0.0 if sign > 0 else 180.0
-            case Op.ATAN2 if second == 0.0 and (sign := _sign(first)):
-                return 90.0 * sign
-            case Op.HYPOT if 0.0 in (first, second):
-                other = second if first == 0.0 else first
-                sign = _sign(other)
-                return scaled(other, float(sign)) if sign else None
-        return None
 
     def _outermost(self, op: int, parts: Sequence[Form]) -> list[Form]:
         """Returns the operands of `max` or `min` with nested ones of the same kind opened up, without those
@@ -271,11 +242,6 @@ class Relaxation:
 
 def _is_never_negative(form: Form) -> bool:
     return isinstance(form, float) and form >= 0.0
-
-
-def _sign(form: Form) -> int:
-    """Returns 1 or -1 if a form is positive or negative wherever the free unknowns are, else 0."""
-    return int(np.sign(form)) if isinstance(form, float) and form == form else 0
 
 
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
