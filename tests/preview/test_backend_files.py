@@ -84,13 +84,13 @@ def test_nothing_but_the_program_is_edited(file: Path, uri: str) -> None:
 
     async def edited() -> Any:
         host = Host(file, refuse)
-        host.start()
+        await host.start()
         document = host.server.documents.get(host.uri)
         assert document is not None
         await document.until_solved(document.serial, 60)
         texts = [{"textDocument": {"uri": uri, "version": None}, "edits": edits}]
         stale = [{"textDocument": {"uri": host.uri, "version": 7}, "edits": edits}]
-        made = [host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
+        made = [await host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
         host.close()
         return made
 

@@ -84,8 +84,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _is_unheard() -> bool:
     """Tells whether a message was lost."""
-    raw = getattr(getattr(sys.stderr, "buffer", None), "raw", None)
-    return isinstance(raw, _Messages) and raw.is_lost
+    return isinstance(sys.stderr, _Messages) and sys.stderr.is_lost
 
 
 def _ended(argv: Sequence[str] | None) -> int:
@@ -170,20 +169,20 @@ def _seldom_search() -> None:
     atexit.register(gc.freeze)
 
 
-class _Messages(FileIO):
-    """Standard error; a message that it does not take ends nothing."""
+class _Messages(TextIOWrapper):
+    """Standard error; what it does not take ends nothing, and is told by the exit code."""
 
     is_lost = False
 
-    def write(self, data: Any) -> int:
+    def write(self, text: str) -> int:
         try:
-            return super().write(data)
-        except BrokenPipeError:
+            return super().write(text)
+        except OSError as error:
             _forget(2)
-            raise
-        except OSError:  # told by the exit code: there is nothing else to tell it with
+            if isinstance(error, BrokenPipeError):
+                raise
             self.is_lost = True
-            return len(data)
+            return len(text)
 
 
 def _keep_writing() -> None:
@@ -199,8 +198,8 @@ def _keep_writing() -> None:
         encoding, by_line = sys.stdout.encoding, sys.stdout.isatty()
         sys.stdout = TextIOWrapper(buffer, encoding, "backslashreplace", line_buffering=by_line)
     if type(sys.stderr) is TextIOWrapper and sys.stderr.fileno() == 2:
-        messages = BufferedWriter(_Messages(2, "w", closefd=False))
-        sys.stderr = TextIOWrapper(messages, sys.stderr.encoding, "backslashreplace", line_buffering=True)
+        told = BufferedWriter(FileIO(2, "w", closefd=False))
+        sys.stderr = _Messages(told, sys.stderr.encoding, "backslashreplace", line_buffering=True)
 
 
 def _forget(stream: int) -> None:
