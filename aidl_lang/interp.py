@@ -28,7 +28,7 @@ from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
 from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.names import fold
+from aidl_lang.common.names import fold, folded
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
@@ -85,7 +85,7 @@ def interpret(
 
 def _speaks_of_rotation(module: ast.Module) -> bool:
     """Tells whether a file reads the rotation of something."""
-    if fold(ROTATION) not in fold(module.source.text):
+    if fold(ROTATION) not in folded(module.source.text):
         return False
     return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))
 

@@ -25,7 +25,12 @@ _MOST_LETTERS = 200_000
 @lru_cache(maxsize=4096)
 def fold(name: str) -> str:
     """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
-    return name.replace("_", "").casefold()
+    return folded(name)
+
+
+def folded(text: str) -> str:
+    """Returns the same of a whole program, which is not remembered as names are."""
+    return text.replace("_", "").casefold()
 
 
 def find(name: str, table: Mapping[str, T]) -> str | None:

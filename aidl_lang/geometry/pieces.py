@@ -256,6 +256,9 @@ def _severed(
     """Yields the warning that holes leave a solid in pieces beside one another which were one before, and of
     which nothing else holds those that are not the largest.
     """
+    holes = [hole for hole in holes if hole.path in walk.sections]
+    if not holes:
+        return
     pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
     enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
     beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
@@ -263,8 +266,8 @@ def _severed(
     for whole in union(faces).decompose():
         parts = [piece for piece in beside if covers(whole, piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
-        cut = [h for h in holes if h.path in walk.sections and _links(walk.sections[h.path], parts)]
-        if apart and cut:
+        cut = [h for h in holes if apart and _links(walk.sections[h.path], parts)]
+        if cut:
             yield _cut_through(walk, mass.structure, cut, [parts[0], *apart])
 
 

@@ -118,7 +118,8 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
 
 def semicolons(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[60; 80]` and `rectangle(a; b)`: a bracket that is closed on its line, with semicolons."""
-    if t.token.kind != ";" or not t.open or not t.accepts(","):
+    is_written = t.token.kind == ";" == t.span().text  # not put in for a bracket
+    if not is_written or not t.open or not t.accepts(","):
         return None
     end, depth, stop = line_end(t.source.text, t.token.start), 0, t.position
     while depth >= 0 and stop - t.position < LONGEST:

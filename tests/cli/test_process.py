@@ -188,6 +188,26 @@ def test_a_full_device_is_told(folder: Path, arguments: list[str], is_buffered: 
     assert done.stderr == "error[E0904]: standard output cannot be written: no space left on device\n"
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
+@pytest.mark.parametrize(
+    "arguments",
+    [["compile", "good.aidl", "-o", "made.svg"], ["check", "none.aidl"], ["nonsense"], ["check", "--wrong"]],
+)
+def test_a_message_that_is_lost_is_told_by_the_exit_code(folder: Path, arguments: list[str]) -> None:
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run([*COMMAND, *arguments], stdout=subprocess.PIPE, stderr=full, check=False)
+    assert (done.returncode, done.stdout) == (74, b"")
+    assert (folder / "made.svg").exists() == ("made.svg" in arguments)
+
+
+def test_a_reader_of_messages_that_goes_away_ends_the_command(folder: Path) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    with open(writing, "wb") as gone:
+        done = subprocess.run([*COMMAND, "check", "none.aidl"], stderr=gone, check=False)
+    assert done.returncode == 141
+
+
 @pytest.mark.parametrize("closed", [1, 2])
 def test_a_stream_that_is_closed_takes_all(folder: Path, closed: int) -> None:
     done = subprocess.run(

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from aidl_lang.common import names
 from aidl_lang.tools.lsp import tidying
 from aidl_lang.tools.lsp.serve import make
 
@@ -80,6 +81,15 @@ def test_models_of_old_texts_and_closed_documents_are_released(
         gc.unfreeze()
     assert typing < EDITS / 2
     assert closed == 0
+
+
+def test_texts_are_not_remembered_as_names_are(tmp_path: Path) -> None:
+    """Once all names are known, no edit adds to them: neither its text nor anything else."""
+    names.fold.cache_clear()
+    asyncio.run(typed(tmp_path / "a.aidl"))
+    known = [text for text in gc.get_referents(names.fold) if isinstance(text, str)]
+    assert known
+    assert not [text for text in known if "\n" in text]
 
 
 def test_nothing_is_asked_of_a_text_that_is_no_program(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import os
 import re
 import zipfile
 from pathlib import Path
-from threading import Event, current_thread
+from threading import Event
 from typing import Any
 
 import ezdxf
@@ -84,13 +84,13 @@ def test_nothing_but_the_program_is_edited(file: Path, uri: str) -> None:
 
     async def edited() -> Any:
         host = Host(file, refuse)
-        host.start()
+        await host.start()
         document = host.server.documents.get(host.uri)
         assert document is not None
         await document.until_solved(document.serial, 60)
         texts = [{"textDocument": {"uri": uri, "version": None}, "edits": edits}]
         stale = [{"textDocument": {"uri": host.uri, "version": 7}, "edits": edits}]
-        made = [host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
+        made = [await host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
         host.close()
         return made
 
@@ -204,28 +204,38 @@ def test_files_are_written_in_one_step_each(file: Path) -> None:
         files.text_of(file)
 
 
-def test_a_slow_file_holds_up_nobody(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file that is only read to its end once pages were answered meanwhile."""
+@pytest.mark.parametrize("order", ["aidl/setKnob", "aidl/save", "aidl/undo", "aidl/takeFile", None])
+def test_a_slow_file_holds_up_nobody(file: Path, order: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is only read to its end once another page was answered meanwhile: after an order, or after
+    it was changed by others.
+    """
     contents, asked, answered = Reads.contents, Event(), Event()
 
     def slow(self: Reads, path: Path, *more: Any, **named: Any) -> bytes:
-        if current_thread() is not at_work:  # the loop itself is not to wait
-            asked.set()
-            assert answered.wait(60)
+        asked.set()
+        assert answered.wait(60)
         return contents(self, path, *more, **named)
 
-    with serving(file) as client, talking(client, file) as page:
+    with serving(file) as client, talking(client, file) as page, talking(client, file) as other:
         page.preview()
-        assert client.portal is not None
-        at_work = client.portal.call(current_thread)
+        assert page.answer("aidl/setKnob", path="width", value=80) == {"applied": True}
+        while other.preview()["box"][2] != pytest.approx(40):
+            pass
         monkeypatch.setattr(Reads, "contents", slow)
-        file.write_text(TEXT.replace("60mm", "80mm"), "utf-8")
+        asked.clear()
+        if order is None:
+            file.write_text(TEXT.replace("60mm", "50mm"), "utf-8")
+        else:
+            number = page.ask(order, path="width", value=50)
         assert asked.wait(60)
         try:
-            assert page.preview()["box"][2] == pytest.approx(30)
+            assert other.preview()["box"][2] == pytest.approx(40)
         finally:
             answered.set()
-        while page.told(CHANGED)["box"][2] != pytest.approx(40):
+        if order is not None:
+            assert "error" not in page.answered(number)
+        width = {"aidl/setKnob": 50, "aidl/undo": 60, None: 50}.get(order, 80)
+        while page.preview()["box"][2] != pytest.approx(width / 2):
             pass
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from aidl_lang.checking.builtins import COPYING, CUTS, OUTLINES, PATTERNS
 from aidl_lang.checking.synonyms import PARAMETERS
 from aidl_lang.checking.types import Signature
-from aidl_lang.common.names import fold
+from aidl_lang.common.names import fold, folded
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -48,7 +48,7 @@ def meant(candidates: Sequence[Signature], is_hole: bool) -> Sequence[Signature]
 
 def _cuts_in(module: ast.Module) -> frozenset[str]:
     """Returns the folded names of cuts that a file may mean: none that it defines itself."""
-    text = fold(module.source.text)
+    text = folded(module.source.text)
     found = {name for name in _FOLDED if name in text}
     if found:
         found -= {fold(n.name.text) for n in ast.walk(module) if isinstance(n, ast.Callable | ast.Alias)}

@@ -2,7 +2,8 @@
 
 Only the verb that is asked for is loaded, and what costs time to import is imported inside it where it is
 needed, so that `aidl --help` is quick.
-Exit codes: 0 done, 1 the program is wrong or does not solve, 2 wrong use, 130 interrupted.
+Exit codes: 0 done, 1 the program is wrong or does not solve, 2 wrong use, 74 messages were lost, 130
+interrupted.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ from aidl_lang.version import __version__
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
+UNHEARD = 74
+"""Exit code where messages were lost, as on a full disk: `EX_IOERR` of sysexits.h."""
 _BETWEEN_SEARCHES = 100_000
 """Objects made before cycles among them are sought."""
 
@@ -65,11 +68,27 @@ AIDL {__version__}: say what the parts are and how they relate, get an exact dra
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Runs the command line and returns its exit code; wrong use of options raises `SystemExit(2)`."""
+    """Runs the command line and returns its exit code; wrong use of options raises SystemExit."""
     # Threads cost more than they save for matrices of the size of a part; numpy reads this when it is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_writing()
     _seldom_search()
+    try:
+        code = _ended(argv)
+    except SystemExit:
+        if _is_unheard():
+            raise SystemExit(UNHEARD) from None
+        raise
+    return UNHEARD if _is_unheard() else code
+
+
+def _is_unheard() -> bool:
+    """Tells whether a message was lost."""
+    return isinstance(sys.stderr, _Messages) and sys.stderr.is_lost
+
+
+def _ended(argv: Sequence[str] | None) -> int:
+    """Returns the exit code of the command line, all that went wrong told."""
     try:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
@@ -83,10 +102,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        _forget_output()
+        _forget(sys.stdout.fileno())
         return BROKEN_PIPE
     except _OutputError as reason:
-        _forget_output()
+        _forget(sys.stdout.fileno())
         report.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
         return 2
     return code
@@ -150,6 +169,22 @@ def _seldom_search() -> None:
     atexit.register(gc.freeze)
 
 
+class _Messages(TextIOWrapper):
+    """Standard error; what it does not take ends nothing, and is told by the exit code."""
+
+    is_lost = False
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except OSError as error:
+            _forget(2)
+            if isinstance(error, BrokenPipeError):
+                raise
+            self.is_lost = True
+            return len(text)
+
+
 def _keep_writing() -> None:
     """Makes standard streams escape characters that the terminal's encoding lacks instead of raising, and
     standard output tell that it failed. What was closed by who runs the command takes all and keeps nothing.
@@ -162,10 +197,11 @@ def _keep_writing() -> None:
         buffer = BufferedWriter(_Output(sys.stdout.fileno(), "w", closefd=False))
         encoding, by_line = sys.stdout.encoding, sys.stdout.isatty()
         sys.stdout = TextIOWrapper(buffer, encoding, "backslashreplace", line_buffering=by_line)
-    if isinstance(sys.stderr, TextIOWrapper):
-        sys.stderr.reconfigure(errors="backslashreplace")
+    if type(sys.stderr) is TextIOWrapper and sys.stderr.fileno() == 2:
+        told = BufferedWriter(FileIO(2, "w", closefd=False))
+        sys.stderr = _Messages(told, sys.stderr.encoding, "backslashreplace", line_buffering=True)
 
 
-def _forget_output() -> None:
-    """Redirects output to nowhere after the reader has gone, for the flush at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _forget(stream: int) -> None:
+    """Redirects a stream to nowhere after its reader has gone, for the flush at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream)

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from functools import partial
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 from lsprotocol.types import ErrorCodes, LSPErrorCodes
 from pygls.exceptions import JsonRpcInvalidParams
@@ -51,7 +52,11 @@ _CLIENT: Json = {
 
 
 class Host:
-    """All methods belong to the loop's thread. `start` is called once, in the loop that serves the pages."""
+    """All methods belong to the loop's thread. `start` is called once, in the loop that serves the pages.
+
+    Files are read and written in other threads, so that a slow one holds up no page: one change of the text
+    at a time, in order.
+    """
 
     def __init__(self, path: Path, write: files.Write) -> None:
         self.path = path
@@ -67,14 +72,17 @@ class Host:
         self._numbers = count(1)
         self._asked: dict[int, Callable[[Json], None]] = {}
         self._busy: asyncio.TimerHandle | None = None
+        self._turn = asyncio.Lock()
+        """held by who changes the text"""
+        self._tasks: set[asyncio.Task[None]] = set()
 
-    def start(self) -> None:
+    async def start(self) -> None:
         self._loop = asyncio.get_running_loop()
         self.server.start()
         self.server.protocol.set_writer(self, include_headers=False)
         self._ask("initialize", {"processId": None, "rootUri": None, "capabilities": _CLIENT}, _ignore)
         self._say("initialized", {})
-        self.look()
+        await self.noticed()
 
     def close(self) -> None:
         """Cancels the work under way."""
@@ -83,36 +91,30 @@ class Host:
 
     # --- The text
 
-    def changed(self, paths: Iterable[Path] = ()) -> None:
-        """Takes note of files that have, or may have changed; the program's own is read in any case."""
-        self._take(paths, self.text.read)
-
     async def noticed(self, paths: Iterable[Path] | None = None) -> None:
-        """Does the same, for all files of the program unless some are given, and holds up nobody while the
-        program's own is read.
+        """Takes note of files that have, or may have changed, of all of the program unless some are given;
+        the program's own is read in any case.
         """
-        looks = -1
-        while looks != self.text.looks:  # else what was found is older than what is known by now
+        while True:
             looks = self.text.looks
             found = asyncio.ensure_future(asyncio.to_thread(files.text_of, self.path))
             await asyncio.wait([found])
-        self._take(self._sources() if paths is None else paths, lambda: self.text.take(found.result()))
+            async with self._turn:
+                if looks == self.text.looks:  # else what was found is older than what is known by now
+                    self._take(self._sources() if paths is None else paths, found)
+                    return
 
-    def _take(self, paths: Iterable[Path], read: Callable[[], None]) -> None:
+    def _take(self, paths: Iterable[Path], found: asyncio.Future[str]) -> None:
         others = [{"uri": path.as_uri(), "type": 2} for path in paths if path != self.path]
         if others:
             self._say("workspace/didChangeWatchedFiles", {"changes": others})
         try:
-            read()
+            self.text.take(found.result())
         except CannotError as reason:
             self._tell_trouble(str(reason))
         else:
             self._tell_trouble("")
         self._renew()
-
-    def look(self) -> None:
-        """Reads the program's files again: any may have changed before anybody watched it."""
-        self.changed(self._sources())
 
     def _renew(self) -> None:
         """Tells the server and the pages of what has become of the text."""
@@ -199,7 +201,7 @@ class Host:
         except (ValueError, RecursionError, JsonRpcInvalidParams):
             return
         if request.method == _TYPING:
-            self._answer(page, request, partial(self._type, page))
+            self._spawn(self._answer(page, request, partial(self._type, page)))
         elif request.method not in _METHODS | _OWN:
             page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
         elif request.method == _ATTEMPT:
@@ -234,8 +236,7 @@ class Host:
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
         """Has a request of a page answered, most by the server."""
         if request.method in _OWN:
-            self._answer(page, request, self._changes[request.method])
-            then()
+            self._spawn(self._answer(page, request, self._changes[request.method], then))
             return
 
         def answered(message: Json) -> None:
@@ -257,17 +258,27 @@ class Host:
             "aidl/takeFile": lambda _: self.text.take_file(),
         }
 
-    def _answer(self, page: Page, request: Request, change: Callable[[Json], None]) -> None:
-        """Changes the text for a page, and answers it."""
-        try:
-            change(request.params)
-        except CannotError as reason:
-            result = {"applied": False, "reason": str(reason)}
-        else:
-            result = {"applied": True, "version": self.text.version}
-        if page in self.pages:
-            page.post({"id": request.id, "result": result})
-        self.changed(self._sources() if result["applied"] and request.method != _TYPING else ())
+    async def _answer(
+        self,
+        page: Page,
+        request: Request,
+        change: Callable[[Json], None],
+        then: Callable[[], None] | None = None,
+    ) -> None:
+        """Changes the text for a page, and answers it; with files unless it was only typed."""
+        async with self._turn:
+            try:
+                await asyncio.to_thread(change, request.params)
+            except CannotError as reason:
+                result = {"applied": False, "reason": str(reason)}
+            else:
+                result = {"applied": True, "version": self.text.version}
+            if page in self.pages:
+                page.post({"id": request.id, "result": result})
+            self._renew()
+        if then is not None:
+            then()
+            await self.noticed(self._sources() if result["applied"] else ())
 
     def _type(self, page: Page, given: Json) -> None:
         """Changes the text as a page types; one that does not have it yet is told of it first."""
@@ -299,8 +310,7 @@ class Host:
         if method is None:
             self._asked.pop(message["id"])(message)
         elif "id" in message:
-            made = self._edited(params) if method == "workspace/applyEdit" else None
-            self._receive({"id": message["id"], "result": made})
+            self._spawn(self._reply(message["id"], params if method == "workspace/applyEdit" else None))
         elif method == "aidl/previewChanged":
             self._rested()
             for page in self.pages:
@@ -311,20 +321,25 @@ class Host:
         elif method == "window/showMessage":
             self._tell_all(message)
 
-    def _edited(self, params: Json) -> Json:
+    async def _reply(self, number: object, edit: Json | None) -> None:
+        made = None if edit is None else await self._edited(edit)
+        self._receive({"id": number, "result": made})
+
+    async def _edited(self, params: Json) -> Json:
         """Makes an edit that the server asks for."""
-        try:
-            self._edit(params.get("label") or "Change", params["edit"]["documentChanges"])
-        except CannotError as reason:
-            return {"applied": False, "failureReason": str(reason)}
-        self.look()
+        label, changes = params.get("label") or "Change", params["edit"]["documentChanges"]
+        uri_of = self.server.documents.uri_of
+        async with self._turn:
+            known = {uri_of(path): (path, source) for path, source in self._sources().items()}
+            try:
+                await asyncio.to_thread(self._edit, label, changes, known)
+            except CannotError as reason:
+                return {"applied": False, "failureReason": str(reason)}
+        await self.noticed()
         return {"applied": True}
 
-    def _edit(self, label: str, changes: list[Json]) -> None:
+    def _edit(self, label: str, changes: list[Json], known: Mapping[str, tuple[Path, SourceFile]]) -> None:
         """Edits each file as a whole or not at all. Raises CannotError."""
-        known = {
-            self.server.documents.uri_of(path): (path, source) for path, source in self._sources().items()
-        }
         own: SourceFile | None = None
         edits: list[Edit] = []
         others = {}
@@ -340,6 +355,11 @@ class Host:
             else:
                 others[path] = files.rewritten(path, source, made)
         self.text.set(label, own, edits, others)
+
+    def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        task = self._loop.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
 
 
 def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:

@@ -185,8 +185,10 @@ class Manuscript:
         written = [(path, after) for path, (_, after) in others.items()]
         if text is not None and text != self._in_file:
             written.append((self.path, files.replaced(self.path, self._in_file, text)))
-        self.looks += 1
-        files.write(written, self._write)
+        try:
+            files.write(written, self._write)
+        finally:
+            self.looks += 1
         if text is not None:
             self._in_file, self.is_contested = text, False
 

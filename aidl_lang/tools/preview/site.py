@@ -52,7 +52,7 @@ def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
 async def _working(app: Starlette) -> AsyncIterator[None]:
     """Runs the host, and watches its files, while the application runs."""
     host: Host = app.state.host
-    host.start()
+    await host.start()
     watching = asyncio.create_task(watch(host.path, host.noticed, host.noticed))
     yield
     host.close()
