@@ -251,7 +251,7 @@ class Explanation:
         numbers equal; as a last resort, making one of the constraints a wish.
         """
         cheapest = sorted(self._remedies, key=self._dearness)
-        for found in cheapest[:_FINISHED]:
+        for found in filter(self._may_finish, cheapest[:_FINISHED]):
             fix = self._once(found)
             if self.trials.finishes(fix.edits):
                 return fix
@@ -260,9 +260,17 @@ class Explanation:
         for party in reversed(self.parties if self.is_proven else []):
             if party.node is not None and self.times[party.stated.span] == 1:
                 edits = (fix := wished(party.stated)).edits
-                if self.trials.mends(edits, self.failure) and self.trials.finishes(edits):
+                has_others = len(self.solution.failures) > 1
+                if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
                     return fix
         return None
+
+    def _may_finish(self, found: Remedy) -> bool:
+        """Tells whether no other proven conflict is left as it is by a remedy."""
+        others = (f for f in self.solution.failures if f is not self.failure)
+        proven = [spans for f, spans in zip(others, self._others, strict=True) if f.reason in _PROVEN]
+        place = found.dial.place
+        return found.dial.is_exact or all(any(s.overlaps(place) for s in spans) for spans in proven)
 
     def _once(self, found: Remedy) -> Fix:
         """Returns the fix, or the one that leaves the statement out if the changed statement would repeat

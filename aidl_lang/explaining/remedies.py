@@ -111,11 +111,11 @@ def remedies(searches: Iterable[RemedySearch]) -> Iterator[Remedy]:
     found, is_enough = set[Span](), False
     waiting = iter(searches)
     for first in waiting:
-        if first.trials.is_late:
+        if first.is_late:
             return
         few = [first, *itertools.islice(waiting, _ABREAST - 1)]
         for search in sorted(few, key=lambda search: search.reach):
-            if is_enough and search.trials.is_late:
+            if is_enough and search.is_late:
                 return
             if search.place not in found and (remedy := search.remedy()) is not None:
                 found.add(search.place)
@@ -143,13 +143,18 @@ class RemedySearch:
         self.dial, self.failure, self.trials, self.place = dial, failure, trials, place
         self._member = member if failure.is_curved else None
 
+    @property
+    def is_late(self) -> bool:
+        """True if the time to begin the search is over."""
+        return self.trials.is_late(self.failure)
+
     @cached_property
     def reach(self) -> float:
         """The relative change of the number that its influence predicts, times its cost; infinite if nothing
         is predicted.
         """
         value = self.dial.value
-        if self.trials.is_late:
+        if self.is_late:
             return np.inf
         target = self._pinned_target if self._member is not None else None
         target = self._even_target if target is None else target

@@ -18,13 +18,16 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.problem import Problem, Rows
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.solver.suspects import nearby_solution, residual, shortfall
 
 SECONDS, LONGEST = 1.5, 3.0
-"""Time after which no new search is begun for the messages of one run, and time after which nothing is tried
-at all: some programs take long to build.
+"""Time after which no new search is begun for one failure, and time after which nothing is tried at all for a
+single one: some programs take long to build.
 """
+MOST = 5
+"""The most failures that prolong the latter, each by the former."""
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 """Codes of diagnostics that report what gave way."""
 _TOLD = GAVE_WAY | {"N0604"}
@@ -50,6 +53,8 @@ class Trials:
     lowered: Lowered
     solution: Solution
     settings: Settings
+    _begun: dict[tuple[int, ...], float] = field(default_factory=dict, repr=False)
+    """The time that was left when the first search for a failure began."""
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
     _said: dict[str, Sequence[Diagnostic]] = field(default_factory=dict, repr=False)
     _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
@@ -65,12 +70,12 @@ class Trials:
     @cached_property
     def _clock(self) -> Clock:
         """The time of all trials; it runs from the first one."""
-        return Clock(LONGEST)
+        return Clock(LONGEST + SECONDS * (min(len(self.solution.failures), MOST) - 1))
 
-    @property
-    def is_late(self) -> bool:
-        """True if no new search should be begun."""
-        return self._clock.left < LONGEST - SECONDS
+    def is_late(self, failure: GroupFailure) -> bool:
+        """Tells whether no new search should be begun for a failure."""
+        left = self._clock.left
+        return self.is_over or self._begun.setdefault(failure.conflict, left) - left > SECONDS
 
     @property
     def is_over(self) -> bool:
@@ -168,13 +173,17 @@ class Trials:
         return self._mended[key]
 
     def _is_mended(self, failure: GroupFailure, other: Lowered) -> bool:
-        others = self._others(failure)
-        found = solve(other.problem, replace(self._quick, explain=bool(others)))
-        unmet = [i for i in np.flatnonzero(np.isnan(other.problem.weight)).tolist() if not found.satisfied[i]]
-        if unmet:
+        problem = other.problem
+        if others := self._others(failure):
+            # What is stated at one place for several things is judged for all of them.
+            repeated = {c.span for i in failure.conflict if (c := self.lowered.stated[i]) is not None}
+            stated = {i: c.span for i in others if (c := self.lowered.stated[i]) is not None}
             matched = _matched(self.lowered, other) or _by_text(self.lowered, other)
-            if not {matched.get(i, -1) for i in others}.issuperset(unmet):
-                return False
+            apart = [matched[i] for i, span in stated.items() if i in matched and span not in repeated]
+            problem = _without(problem, apart)
+        found = solve(problem, self._quick)
+        if not np.all(np.asarray(found.satisfied)[np.isnan(problem.weight)]):
+            return False
         asked = {self.lowered.problem.names[u] for u in failure.sizes}
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
@@ -218,6 +227,14 @@ class Trials:
         if changed.text not in self._built:
             self._built[changed.text] = self.build(changed)
         return self._built[changed.text]
+
+
+def _without(problem: Problem, constraints: Sequence[int]) -> Problem:
+    """Returns a problem in which some constraints ask for nothing."""
+    rows = problem.rows
+    left = ~np.isin(rows.constraint, constraints)
+    kept = Rows(rows.expression[left], rows.at_most[left], rows.scale[left], rows.constraint[left])
+    return replace(problem, rows=kept)
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:

@@ -117,7 +117,11 @@ def test_nothing_is_asked_of_a_text_that_is_no_program(tmp_path: Path) -> None:
             if number in (0, 3):
                 message["id"] = number
             server.protocol.receive(json.dumps(message).encode())
-        while not (found := [a for a in answers if a.get("id") == 3]):
+        published = "textDocument/publishDiagnostics"
+        while not (
+            (found := [a for a in answers if a.get("id") == 3])
+            and any(a.get("method") == published for a in answers)
+        ):
             await asyncio.sleep(0.05)
         told = [
             d
