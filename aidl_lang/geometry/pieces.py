@@ -106,6 +106,7 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
     return [
         _Piece(section, outline.region, region_bounds(outline.region), tuple(own))
         for section, outline, own in zip(sections, traced, of, strict=True)
+        if own  # else it is a hole beside the material
     ]
 
 
