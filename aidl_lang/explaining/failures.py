@@ -251,16 +251,16 @@ class Explanation:
         numbers equal; as a last resort, making one of the constraints a wish.
         """
         cheapest = sorted(self._remedies, key=self._dearness)
+        has_others = len(self.solution.failures) > 1
         for found in filter(self._may_finish, cheapest[:_FINISHED]):
             fix = self._once(found)
             if self.trials.finishes(fix.edits):
                 return fix
-        if len(self.solution.failures) > 1 and cheapest:  # none mends all that is wrong
+        if has_others and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
         for party in reversed(self.parties if self.is_proven else []):
             if party.node is not None and self.times[party.stated.span] == 1:
                 edits = (fix := wished(party.stated)).edits
-                has_others = len(self.solution.failures) > 1
                 if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
                     return fix
         return None

@@ -18,7 +18,6 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.problem import Problem, Rows
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.solver.suspects import nearby_solution, residual, shortfall
 
@@ -176,11 +175,12 @@ class Trials:
         problem = other.problem
         if others := self._others(failure):
             # What is stated at one place for several things is judged for all of them.
-            repeated = {c.span for i in failure.conflict if (c := self.lowered.stated[i]) is not None}
-            stated = {i: c.span for i in others if (c := self.lowered.stated[i]) is not None}
+            places = [None if c is None else c.span for c in self.lowered.stated]
+            judged = {None, *(places[i] for i in failure.conflict)}
             matched = _matched(self.lowered, other) or _by_text(self.lowered, other)
-            apart = [matched[i] for i, span in stated.items() if i in matched and span not in repeated]
-            problem = _without(problem, apart)
+            apart = {matched[i] for i in others if i in matched and places[i] not in judged}
+            left = [c for i, c in enumerate(problem.constraints) if i not in apart]
+            problem = problem.with_constraints(left)
         found = solve(problem, self._quick)
         if not np.all(np.asarray(found.satisfied)[np.isnan(problem.weight)]):
             return False
@@ -227,14 +227,6 @@ class Trials:
         if changed.text not in self._built:
             self._built[changed.text] = self.build(changed)
         return self._built[changed.text]
-
-
-def _without(problem: Problem, constraints: Sequence[int]) -> Problem:
-    """Returns a problem in which some constraints ask for nothing."""
-    rows = problem.rows
-    left = ~np.isin(rows.constraint, constraints)
-    kept = Rows(rows.expression[left], rows.at_most[left], rows.scale[left], rows.constraint[left])
-    return replace(problem, rows=kept)
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:

@@ -80,12 +80,6 @@ class Freezer:
         """Returns programs for `roots` in the branches that are active."""
         return self.choice().freeze(roots)
 
-    def form(self, node: int) -> Form | None:
-        """Returns the form of a node over the free unknowns; None if it hangs on a choice."""
-        form = self.forms[node]
-        found = self.choice().form(form)
-        return None if self.hangs(form) else found
-
     def slopes(self, node: int) -> dict[int, float] | None:
         """Returns the slopes of a node in the branch that is active, by unknown; None where it bends."""
         form, width = self.choice().form(self.forms[node]), self.forms.width

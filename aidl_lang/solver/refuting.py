@@ -54,7 +54,7 @@ class Relaxation:
         self._put: dict[int, Form] = {}
         self._parts: dict[int, list[Form]] = {}
         """The operands of knots that are numbers of their own."""
-        self._rows = [(self._plain(row.expression), row) for row in rows]
+        self._rows = [(self._put_in(self._forms[row.expression]), row) for row in rows]
         self._all = list(range(len(self._rows)))
         self.is_exact = not any(self._knots(form) for form, _ in self._rows)
         """True if the rows are affine, so that they hold together unless that is refuted."""
@@ -132,13 +132,8 @@ class Relaxation:
 
     # -- forms over what is free
 
-    def _plain(self, node: int) -> Form:
-        """Returns the form of a node with numbers for what is not free, and with knots that are decided
-        replaced.
-        """
-        return self._put_in(self._forms[node])
-
     def _put_in(self, form: Form) -> Form:
+        """Returns a form with numbers for what is not free, and with knots that are decided replaced."""
         if isinstance(form, float):
             return form
         width = self._forms.width
