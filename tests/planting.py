@@ -50,7 +50,7 @@ def _bounds(random: Random, r: str, c: str) -> list[str]:
 
 
 def _sums(random: Random, r: str, c: str) -> list[str]:
-    wide, left = random.randint(20, 30), random.randint(4, 9)
+    wide, left = random.randint(20, 30), random.randint(4, 6)  # so that room is left for a circle
     right = left + 2 * random.randint(1, 3)
     return [
         f"{r}.width == {wide}",
