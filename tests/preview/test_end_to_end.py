@@ -243,13 +243,24 @@ def test_what_is_being_typed_stays_when_a_new_picture_comes(preview: Preview) ->
     expect(field).to_have_value("200")
 
 
+def test_what_is_selected_to_be_typed_over_stays_selected_when_a_new_picture_comes(preview: Preview) -> None:
+    field = preview.page.get_by_role("textbox", name="width")
+    field.select_text()
+    preview.file.write_text(TELEPHONE.replace("160mm", "150mm"), "utf-8")
+    expect(field).to_have_value("150")
+    preview.page.keyboard.type("200")
+    expect(field).to_have_value("200")
+    field.press("Enter")
+    wait(lambda: preview.text == TELEPHONE.replace("160mm", "200mm"))
+
+
 def test_a_failed_assertion_changes_the_status_while_a_slider_moves(preview: Preview) -> None:
     text = (
         "solid a {\n    param w = 30 in 10..90\n    body = rectangle(width: w, height: 20)\n"
         '    assert w < 60, "too wide"\n}\n'
     )
     preview.file.write_text(text, "utf-8")
-    expect(preview.find("#source-lines")).to_contain_text("too wide")
+    expect(preview.page.get_by_role("textbox", name="w", exact=True)).to_have_value("30")
     status = preview.find("#status")
     expect(status).to_have_text("Solved")
     slider = preview.find("#knobs-list input[type=range]")

@@ -285,7 +285,7 @@ function number(row, id) {
     }
     set(slider, { min: `${scale.start}`, max: `${scale.end}` });
     slider.value = String(value);
-    if (!isTyping) field.value = plain(Number(value));
+    if (!isTyping) rewrite(field, plain(Number(value)));
     fill(Number(value));
   }
 
@@ -333,6 +333,17 @@ function number(row, id) {
   show(knob.value);
   const measure = el("span", { class: knob.unit ? "measure with-unit" : "measure" }, field, unit);
   return { elements: [slider, measure], show };
+}
+
+/**
+ * Puts a text into a field; if all of it was selected, as by who is about to type, all of it still is.
+ * @param {HTMLInputElement} field
+ * @param {string} text
+ */
+function rewrite(field, text) {
+  const isSelected = field.selectionStart === 0 && field.selectionEnd === field.value.length;
+  field.value = text;
+  if (isSelected && document.activeElement === field) field.select();
 }
 
 /**
