@@ -66,6 +66,9 @@ class Protocol(LanguageServerProtocol):
         if not isinstance(data, dict) or data.get("jsonrpc") != JsonRPCProtocol.VERSION:
             self._refuse(None, exceptions.JsonRpcInvalidRequest())
             return
+        if "id" in data and ("method" not in data or "error" in data) and not self._has_asked(data["id"]):
+            log.warning("an answer to what was not asked: %r", data["id"])
+            return
         asked = data.get("id") if "method" in data else None
         try:
             method: Any = data.get("method")
@@ -81,6 +84,12 @@ class Protocol(LanguageServerProtocol):
                 self._refuse(asked, trouble)
             return
         self.handle_message(message)
+
+    def _has_asked(self, number: object) -> bool:
+        """Tells whether a request of the server has this number. pygls keeps those of the client in the same
+        table, and would take an answer to one of those for its outcome.
+        """
+        return isinstance(number, str) and number in self._result_types
 
     def _require_time(self, method: str) -> None:
         if method == types.INITIALIZE:
