@@ -27,10 +27,6 @@ from aidl_lang.solver.quadratic import nearest
 
 GAIN = 0.1
 """A step must bring this part of the decrease that the linearised rows promise."""
-LEAPS = 5
-"""Full steps that may be taken in a row while the residuals are greater than they were."""
-HIGHEST = 100.0
-"""The most by which the squares of the residuals may grow meanwhile."""
 STILL = 1e-11
 """Steps shorter than this (scaled units, relative to the size of z) are no progress."""
 FLAT = 1e-11
@@ -345,8 +341,7 @@ class _Newton:
             if shortest.feasible:
                 step, share = self._bounded(shortest.point)
                 left = (1.0 - share) ** 2 * merit
-                taken = self._try(z, step, merit, left) or self._leap(z, step, merit)
-                if taken:
+                if taken := self._try(z, step, merit, left):
                     return *taken, 0.0
         self._isolated = None
         rows = ~system.inequality | (residuals > 0.0)
@@ -382,32 +377,6 @@ class _Newton:
         reached = _squares(self.system.violations(residuals))
         if merit - reached >= GAIN * (merit - predicted):  # False if not a number
             return trial, residuals
-        return None
-
-    def _leap(self, z: Floats, step: Floats, merit: float) -> tuple[Floats, Floats] | None:
-        """Takes full steps, although the residuals grow for a while, to the first point where they are
-        smaller.
-
-        In a long chain of parts a step turns what is far down the chain, which stretches it; the steps after
-        that mend it, while damped ones would creep. (The watchdog technique; Nocedal and Wright, chapter 15.)
-        """
-        system = self.system
-        if len(system.inequality) != system.size or system.inequality.any():
-            return None
-        for _ in range(LEAPS):
-            z = z + step
-            residuals = system.residuals(z)
-            reached = _squares(residuals)
-            if not reached <= HIGHEST * merit:
-                return None
-            if reached <= (1.0 - GAIN) * merit:
-                return z, residuals
-            jacobian = system.jacobian()
-            shortest = nearest(jacobian, -residuals, system.inequality)
-            self._isolated = jacobian if shortest.unique else None
-            if not shortest.feasible:
-                return None
-            step, _ = self._bounded(shortest.point)
         return None
 
     # -- polishing
