@@ -170,7 +170,7 @@ def serving(*arguments: str) -> Iterator[str]:
     with subprocess.Popen([*COMMAND, *arguments], stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
         assert process.stderr is not None
         try:
-            yield process.stderr.readline().partition(": ")[0]
+            yield process.stderr.readline().split()[2]
         finally:
             process.send_signal(signal.SIGTERM)
             process.wait(60)

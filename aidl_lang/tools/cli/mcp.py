@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.tools.agents.server import serve
 
     if listener is not None:
-        say(f"http://{listening.LOCALHOST}:{listener.getsockname()[1]}{path}: serving, stop with Ctrl-C")
+        say(f"serving at http://{listening.LOCALHOST}:{listener.getsockname()[1]}{path} until Ctrl-C")
     serve(root, listener, path)
     return 0
 
