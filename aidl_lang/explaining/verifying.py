@@ -10,7 +10,7 @@ from dataclasses import replace
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.explaining.trials import GAVE_WAY, Trials
 
-_TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0604"})
+_TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0602", "N0604"})
 """Codes of findings whose fixes were tried already."""
 
 
