@@ -5,9 +5,9 @@ more parts change inside than have to.
 from __future__ import annotations
 
 import random
+from collections.abc import Collection
 from itertools import combinations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -90,20 +90,26 @@ def moved_inside(lowered: Lowered, values: list[float]) -> set[str]:
     return found
 
 
-def least_inside(lowered: Lowered, parts: list[str]) -> int:
-    """Returns the least number of parts whose inside has to move, by trying all sets of them."""
+def cost(parts: Collection[str]) -> tuple[int, int]:
+    """Returns the number of rigid parts among these, which are not torn to spare a beam, and of beams."""
+    beams = sum(part.startswith("beam") for part in parts)
+    return len(parts) - beams, beams
+
+
+def least_inside(lowered: Lowered, parts: list[str]) -> tuple[int, int]:
+    """Returns the least cost of parts whose inside has to move, by trying all sets of them."""
     problem = lowered.problem
     hard = range(len(problem.holder))
-    for count in range(len(parts) + 1):
-        for chosen in combinations(parts, count):
-            start = {
-                i: float(problem.initial[i])
-                for i, u in enumerate(lowered.unknowns)
-                if (u.frame_of is not None and u.frame_of.path.count(".") == 1)
-                or (u.path.split(".")[1] in chosen and not u.kept)
-            }
-            if nearby_solution(problem, Settings(), hard, start) is not None:
-                return count
+    sets = [chosen for count in range(len(parts) + 1) for chosen in combinations(parts, count)]
+    for chosen in sorted(sets, key=cost):
+        start = {
+            i: float(problem.initial[i])
+            for i, u in enumerate(lowered.unknowns)
+            if (u.frame_of is not None and u.frame_of.path.count(".") == 1)
+            or (u.path.split(".")[1] in chosen and not u.kept)
+        }
+        if nearby_solution(problem, Settings(), hard, start) is not None:
+            return cost(chosen)
     raise AssertionError("no set of parts will do")
 
 
@@ -116,11 +122,10 @@ def test_parts_move_whole(seed: int) -> None:
     assert moved_inside(lowered, solution.values.tolist()) == {f"beam{i}" for i in range(beams)}
 
 
-@pytest.mark.slow
 @given(st.integers(0, 1_000_000))
-@tries(8)
+@tries(100)
 def test_as_few_parts_as_possible_change_inside(seed: int) -> None:
     text, _ = picture(seed, most=3)
     lowered, solution = solved(text)
     parts = sorted({u.path.split(".")[1] for u in lowered.unknowns})
-    assert len(moved_inside(lowered, solution.values.tolist())) == least_inside(lowered, parts)
+    assert cost(moved_inside(lowered, solution.values.tolist())) == least_inside(lowered, parts)
