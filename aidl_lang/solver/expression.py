@@ -1,7 +1,7 @@
 """Expressions over the unknowns as one shared graph: the tape.
 
 A tape is a directed acyclic graph in plain arrays, each node after its operands, equal nodes stored once.
-`TapeBuilder` makes it; `operations` says what each node means; `program` evaluates parts of it.
+`TapeBuilder` makes it; `operations` says what each node means; `freezing` evaluates parts of it.
 """
 
 from __future__ import annotations
