@@ -335,20 +335,22 @@ class ArrayFreezing:
         branches are taken for one if they change alike in a direction in which no two unknowns change alike.
         """
         tape, schedule = self._schedule.tape, self._schedule
-        values, slopes, plain = (
-            self._values,
-            np.zeros(len(self._values)),
-            np.ones(len(self._values), np.bool_),
-        )
+        values, slopes = self._values, np.zeros(len(self._values))
+        plain = np.ones(len(values), dtype=np.bool_)
         turn = np.mod(schedule.unknowns * GOLDEN, 1.0) + 0.5
         slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
         with np.errstate(all="ignore"):
             for batch in schedule.batches:
-                nodes, operands = batch.nodes, batch.operands
-                slopes[nodes], known = _slope(batch, values, slopes)
-                for operand in operands:
-                    known = known & plain[operand]
-                plain[nodes] = known
+                inner = [slopes[a] for a in batch.operands]
+                if batch.op in (Op.MINIMUM, Op.MAXIMUM):
+                    slope, known = inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
+                else:
+                    operands = tuple(values[a] for a in batch.operands)
+                    partials = partials_of(batch.op, operands, values[batch.nodes])
+                    slope = sum(map(np.multiply, inner, partials))
+                    known = ~_bends(np.full(len(slope), batch.op), [each != 0.0 for each in inner])
+                slopes[batch.nodes] = slope
+                plain[batch.nodes] = known & plain[np.array(batch.operands)].all(axis=0)
         plain[len(tape) :] = False
         return plain
 
@@ -370,7 +372,8 @@ class ArrayFreezing:
         indptr = np.zeros(len(roots) + 1, dtype=np.int64)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
         affine = np.ones(len(roots), dtype=np.bool_)
-        affine[layout.rows[self._curved(layout.nodes)]] = False
+        varying = [self._varies[a] & (a >= 0) for a in self._operands[layout.nodes].T]
+        affine[layout.rows[_bends(self._ops[layout.nodes], varying)]] = False
         place = np.empty(width, dtype=np.int64)
         place[columns] = np.arange(len(columns))
         input_of = np.empty(width, dtype=np.int64)
@@ -438,15 +441,6 @@ class ArrayFreezing:
         child = children[at, k].astype(np.int64)
         above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
 
-    def _curved(self, nodes: Ints) -> Bools:
-        """Tells whether each node is not an affine function of those of its operands that vary."""
-        ops, operands = self._ops[nodes], self._operands[nodes]
-        second = self._varies[operands[:, 1]] & (operands[:, 1] >= 0)
-        straight = _STRAIGHT[ops]
-        straight |= (ops == Op.DIV) & ~second
-        straight |= (ops == Op.MUL) & ~(second & self._varies[operands[:, 0]])
-        return ~straight
-
 
 class _Pending:
     """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
@@ -490,27 +484,8 @@ def _distinct(numbers: Ints, count: int) -> Ints:
     return np.flatnonzero(found)
 
 
-def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
-    """Returns the slope of each node along the direction in which `slopes` has those of its operands, and a
-    mask of the nodes whose slope is the same everywhere.
-    """
-    op, operands = batch.op, batch.operands
-    inner = [slopes[a] for a in operands]
-    steady = np.ones(len(batch.nodes), dtype=np.bool_)
-    match op:
-        case Op.ADD:
-            return inner[0] + inner[1], steady
-        case Op.SUB:
-            return inner[0] - inner[1], steady
-        case Op.NEG:
-            return -inner[0], steady
-        case Op.MUL:
-            a, b = (values[operand] for operand in operands)
-            return inner[0] * b + inner[1] * a, (inner[0] == 0.0) | (inner[1] == 0.0)
-        case Op.DIV:
-            return inner[0] / values[operands[1]], inner[1] == 0.0
-        case Op.MINIMUM | Op.MAXIMUM:
-            return inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
-    for slope in inner:
-        steady &= slope == 0.0
-    return np.zeros(len(batch.nodes)), steady
+def _bends(ops: NDArray[np.int8], moving: Sequence[Bools]) -> Bools:
+    """Tells whether operations (k,) are not affine in those of their operands that are `moving`."""
+    first, second = moving[0], moving[1] if len(moving) > 1 else ~FIRST
+    straight = _STRAIGHT[ops] | ((ops == Op.DIV) & ~second) | ((ops == Op.MUL) & ~(first & second))
+    return ~straight & np.any(moving, axis=0)

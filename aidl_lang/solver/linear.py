@@ -37,8 +37,6 @@ INDEPENDENT = 1e-4
 """Least pivot of Cholesky's method, relative to the greatest, at which no row is in doubt."""
 GIVE = 1e-9
 """Give of rows that depend on each other, relative to the longest."""
-GIVING_STEPS = 6
-"""Steps that take the give away."""
 LARGE = 3000
 """Number of entries above which damped steps are solved for one by one."""
 SMALL = 300
@@ -73,7 +71,7 @@ def least_norm(jacobian: Matrix, y: Floats) -> LeastNorm:
         return jacobian.least_norm(y)
     if len(y) == 1:
         return _least_norm_of_one(jacobian, y)
-    if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y) or _by_giving(jacobian, y)):
+    if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y)):
         return solved
     u, sigma, vt = np.linalg.svd(jacobian, full_matrices=False)
     rank = int(np.count_nonzero(sigma > RANK * sigma[0])) if sigma.any() else 0
@@ -117,39 +115,6 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     if error > 1e-10 * float(np.abs(y).max()):
         return None
     return LeastNorm(point, multipliers, None, len(y) == jacobian.shape[1])
-
-
-def _by_giving(jacobian: Floats, y: Floats) -> LeastNorm | None:
-    """Solves the normal equations of rows that depend on each other with a little give, which is taken away
-    again (the proximal point method). The result is proved: a point that is a combination of the rows and
-    meets them is the shortest; a part of `y` that no column reaches cannot be met. Returns None if neither is
-    clear.
-    """
-    gram = jacobian @ jacobian.T
-    if not np.isfinite(gram).all():
-        return None
-    largest = float(gram.diagonal().max())
-    size = float(np.abs(y).max())
-    if not 0.0 < largest < np.inf or size == 0.0:
-        return None
-    giving = np.linalg.inv(gram + GIVE * largest * np.eye(len(y)))
-    lengths, rest = np.zeros(len(y)), y
-    for _ in range(GIVING_STEPS):
-        lengths = lengths + giving @ rest
-        before, rest = rest, y - gram @ lengths
-        if float(np.abs(rest).max()) <= 1e-12 * size or float(np.abs(rest - before).max()) <= 1e-13 * size:
-            break
-    left = float(np.abs(rest).max())
-    multipliers = -lengths
-    if left <= 1e-11 * size:
-        unique = len(y) >= jacobian.shape[1] and _well_conditioned(jacobian.T @ jacobian)
-        return LeastNorm(jacobian.T @ lengths, multipliers, None, unique)
-    slope = float(np.abs(jacobian.T @ rest).max())
-    if left > max(CONSISTENT * size, NOISE) and slope <= 1e-9 * left * float(np.sqrt(largest)):
-        lengths = giving @ (y - rest)
-        lengths = lengths + giving @ (y - rest - gram @ lengths)
-        return LeastNorm(jacobian.T @ lengths, -lengths, rest, False)
-    return None
 
 
 def _well_conditioned(gram: Floats) -> bool:
