@@ -347,7 +347,7 @@ class ArrayFreezing:
                 else:
                     operands = tuple(values[a] for a in batch.operands)
                     partials = partials_of(batch.op, operands, values[batch.nodes])
-                    slope = sum(map(np.multiply, inner, partials))
+                    slope = np.sum([i * p for i, p in zip(inner, partials, strict=False)], axis=0)
                     known = ~_bends(np.full(len(slope), batch.op), [each != 0.0 for each in inner])
                 slopes[batch.nodes] = slope
                 plain[batch.nodes] = known & plain[np.array(batch.operands)].all(axis=0)
@@ -488,4 +488,5 @@ def _bends(ops: NDArray[np.int8], moving: Sequence[Bools]) -> Bools:
     """Tells whether operations (k,) are not affine in those of their operands that are `moving`."""
     first, second = moving[0], moving[1] if len(moving) > 1 else ~FIRST
     straight = _STRAIGHT[ops] | ((ops == Op.DIV) & ~second) | ((ops == Op.MUL) & ~(first & second))
-    return ~straight & np.any(moving, axis=0)
+    bent: Bools = ~straight & np.any(moving, axis=0)
+    return bent
