@@ -341,16 +341,10 @@ class ArrayFreezing:
         slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
         with np.errstate(all="ignore"):
             for batch in schedule.batches:
-                inner = [slopes[a] for a in batch.operands]
-                if batch.op in (Op.MINIMUM, Op.MAXIMUM):
-                    slope, known = inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
-                else:
-                    operands = tuple(values[a] for a in batch.operands)
-                    partials = partials_of(batch.op, operands, values[batch.nodes])
-                    slope = np.sum([i * p for i, p in zip(inner, partials, strict=False)], axis=0)
-                    known = ~_bends(np.full(len(slope), batch.op), [each != 0.0 for each in inner])
-                slopes[batch.nodes] = slope
-                plain[batch.nodes] = known & plain[np.array(batch.operands)].all(axis=0)
+                slopes[batch.nodes], known = _slope(batch, values, slopes)
+                for operand in batch.operands:
+                    known = known & plain[operand]
+                plain[batch.nodes] = known
         plain[len(tape) :] = False
         return plain
 
@@ -372,8 +366,7 @@ class ArrayFreezing:
         indptr = np.zeros(len(roots) + 1, dtype=np.int64)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
         affine = np.ones(len(roots), dtype=np.bool_)
-        varying = [self._varies[a] & (a >= 0) for a in self._operands[layout.nodes].T]
-        affine[layout.rows[_bends(self._ops[layout.nodes], varying)]] = False
+        affine[layout.rows[self._curved(layout.nodes)]] = False
         place = np.empty(width, dtype=np.int64)
         place[columns] = np.arange(len(columns))
         input_of = np.empty(width, dtype=np.int64)
@@ -441,6 +434,13 @@ class ArrayFreezing:
         child = children[at, k].astype(np.int64)
         above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
 
+    def _curved(self, nodes: Ints) -> Bools:
+        """Tells whether each node is not an affine function of those of its operands that vary."""
+        ops, operands = self._ops[nodes], self._operands[nodes]
+        first, second = (self._varies[operands[:, k]] & (operands[:, k] >= 0) for k in (0, 1))
+        curved: Bools = ~(_STRAIGHT[ops] | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
+        return curved
+
 
 class _Pending:
     """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
@@ -484,9 +484,19 @@ def _distinct(numbers: Ints, count: int) -> Ints:
     return np.flatnonzero(found)
 
 
-def _bends(ops: NDArray[np.int8], moving: Sequence[Bools]) -> Bools:
-    """Tells whether operations (k,) are not affine in those of their operands that are `moving`."""
-    first, second = moving[0], moving[1] if len(moving) > 1 else ~FIRST
-    straight = _STRAIGHT[ops] | ((ops == Op.DIV) & ~second) | ((ops == Op.MUL) & ~(first & second))
-    bent: Bools = ~straight & np.any(moving, axis=0)
-    return bent
+def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
+    """Returns the slope of each node along the direction in which `slopes` has those of its operands, and a
+    mask of the nodes whose slope is the same everywhere.
+    """
+    op, operands = batch.op, batch.operands
+    inner = [slopes[a] for a in operands]
+    if op == Op.MUL:
+        slope = inner[0] * values[operands[1]] + inner[1] * values[operands[0]]
+        return slope, (inner[0] == 0.0) | (inner[1] == 0.0)
+    if op == Op.DIV:
+        return inner[0] / values[operands[1]], inner[1] == 0.0
+    if op in (Op.MINIMUM, Op.MAXIMUM):
+        return inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
+    if op in LINEAR:
+        return values_of(op, tuple(inner)), np.ones(len(batch.nodes), dtype=np.bool_)
+    return np.zeros(len(batch.nodes)), ~np.any(inner, axis=0)

@@ -25,7 +25,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, TIE, ZERO, ArrayFreezing, ArrayProgram
 from aidl_lang.solver.gradients import components
-from aidl_lang.solver.operations import BRANCHING, PARTIALS, Floats, Ints, Op
+from aidl_lang.solver.operations import BRANCHING, PARTIALS, Floats, Op
 from aidl_lang.solver.valuation import (
     Affine,
     Compiled,
@@ -299,38 +299,26 @@ class Choice:
     # -- from forms to programs
 
     def _programs(self, rooted: list[tuple[int, Affine]]) -> list[AffineProgram | Program]:
-        leader: dict[int, int] = {}
-
-        def find(unknown: int) -> int:
-            while (above := leader.setdefault(unknown, unknown)) != unknown:
-                leader[unknown] = unknown = leader[above]
-            return unknown
-
-        for _, form in rooted:
-            first = None
-            for slot in form.terms:
-                for unknown in (slot,) if slot < self.width else self._inputs(slot):
-                    at = find(unknown)
-                    if first is None:
-                        first = at
-                    elif at != first:
-                        low, high = min(first, at), max(first, at)
-                        leader[high] = first = low
-        members: dict[int, list[tuple[int, Affine]]] = {}
-        for row, form in rooted:
-            first = next(unknown for slot in form.terms for unknown in self._inputs(slot))
-            members.setdefault(find(first), []).append((row, form))
-        unknowns: dict[int, list[int]] = {first: [] for first in members}
-        for unknown in sorted(leader):
-            unknowns[find(unknown)].append(unknown)
-        return [self._program(rows, unknowns[first]) for first, rows in members.items()]
+        """Returns a program for each set of rows that share unknowns, directly or by way of others."""
+        part_of: dict[int, tuple[list[int], set[int]]] = {}
+        """The rows and unknowns that hang together, by unknown."""
+        for i, (_, form) in enumerate(rooted):
+            unknowns: set[int] = set().union(*map(self._inputs, form.terms))
+            parts = {id(part_of[u]): part_of[u] for u in unknowns if u in part_of}
+            largest = max(parts.values(), key=lambda part: len(part[1]), default=([], set()))
+            for part in (([i], unknowns), *parts.values()):
+                if part is not largest:
+                    largest[0].extend(part[0])
+                    part_of.update(dict.fromkeys(part[1] - largest[1], largest))
+                    largest[1].update(part[1])
+        found = {id(part): (sorted(part[0]), sorted(part[1])) for part in part_of.values()}
+        return [self._program([rooted[i] for i in rows], own) for rows, own in sorted(found.values())]
 
     def _program(self, rows: list[tuple[int, Affine]], columns: list[int]) -> AffineProgram | Program:
         column = {unknown: i for i, unknown in enumerate(columns)}
         numbers = [row for row, _ in rows]
         if any(slot >= self.width for _, form in rows for slot in form.terms):
-            forms = [form for _, form in rows]
-            return Assembly(self.recipes, self.width, columns).program(numbers, forms)
+            return Program(numbers, [form for _, form in rows], columns, self.recipes, self.width)
         matrix = np.zeros((len(rows), len(columns)))
         for i, (_, form) in enumerate(rows):
             for unknown, slope in form.terms.items():
@@ -364,6 +352,20 @@ class Sweep:
     merging: bool
 
 
+@record(slots=True)
+class SlotRecipe:
+    """The computation of a slot from others: an operation, or a sum with these slopes.
+
+    inputs  the free unknowns that it depends on
+    """
+
+    op: int
+    operands: tuple[int, ...]
+    inputs: frozenset[int]
+    slopes: tuple[float, ...] = ()
+    constant: float = 0.0
+
+
 @record()
 class AffineProgram:
     """Some rows that are affine functions of their free unknowns, with branches fixed.
@@ -393,46 +395,65 @@ class AffineProgram:
         return matrix
 
 
-@record(frozen=False)
 class Program:
     """Some rows as functions of their free unknowns, with branches fixed.
 
     rows    (r,) which of the roots given to the freezer
     columns (k,) the unknowns, ascending
+
+    It has slots of its own: the unknowns first, then what is made of them, operands before results. In the
+    forms of the rows, slots from `width` on are recipes.
     """
 
-    rows: list[int]
-    roots: list[int]
-    columns: list[int]
-    slots: list[int]
-    values: list[float] = field(repr=False)
-    weights: list[float] = field(repr=False)
-    linear: ClassVar[bool] = False
-    code: list[Compiled] = field(default_factory=list, repr=False)
-    partials: list[Partial] = field(default_factory=list, repr=False)
-    sweeps: list[Sweep] = field(default_factory=list, repr=False)
-    scatter: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp), repr=False)
+    linear = False
+
+    def __init__(
+        self,
+        rows: list[int],
+        forms: Sequence[Affine],
+        columns: list[int],
+        recipes: Sequence[SlotRecipe],
+        width: int,
+    ) -> None:
+        self.rows, self.columns, self._recipes, self._width = rows, columns, recipes, width
+        self._local = {unknown: i for i, unknown in enumerate(columns)}
+        self._values = [0.0] * len(columns)
+        self._edges: list[list[tuple[int, int]]] = [[] for _ in columns]
+        self._weights = [0.0]
+        self._varies = [True] * len(columns)
+        self._code: list[Compiled] = []
+        self._partials: list[Partial] = []
+        for form in forms:
+            for slot in form.terms:
+                self._reach(slot)
+        self._roots: list[int] = []
+        for form in forms:
+            operands = tuple(self._local[slot] for slot in form.terms)
+            self._roots.append(self._sum(operands, tuple(form.terms.values()), form.constant))
+        self._sweeps = [self._sweep(root) for root in self._roots]
+        k = len(columns)
+        scatter = [i * k + slot for i, sweep in enumerate(self._sweeps) for slot in sweep.inputs]
+        self._scatter = np.array(scatter, dtype=np.intp)
 
     def residuals(self, x: Floats) -> Floats:
         """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
-        values = self.values
-        for slot, value in zip(self.slots, x.tolist(), strict=True):
-            values[slot] = value
-        run(self.code, values)
-        return np.array([values[root] for root in self.roots])
+        values = self._values
+        values[: len(x)] = x.tolist()
+        run(self._code, values)
+        return np.array([values[root] for root in self._roots])
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
         """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
         factors.
         """
-        values, weights = self.values, self.weights
-        for partial, operands, out, edges in self.partials:
+        values, weights = self._values, self._weights
+        for partial, operands, out, edges in self._partials:
             slopes = partial(*[values[i] for i in operands], values[out])
             for edge, slope in zip(edges, slopes, strict=False):
                 weights[edge] = slope
         adjoints = [0.0] * len(values)
         entries: list[float] = []
-        for sweep in self.sweeps:
+        for sweep in self._sweeps:
             adjoints[sweep.root] = 1.0
             if sweep.merging:
                 self._accumulate_with_care(sweep, adjoints)
@@ -443,7 +464,7 @@ class Program:
             for slot in sweep.touched:
                 adjoints[slot] = 0.0
         flat = np.zeros(len(self.rows) * len(self.columns))
-        flat[self.scatter] = entries
+        flat[self._scatter] = entries
         if not np.isfinite(flat).all():  # products of finite slopes may still overflow
             np.nan_to_num(flat, copy=False)
         matrix = flat.reshape(len(self.rows), len(self.columns))
@@ -455,7 +476,7 @@ class Program:
         """Accumulates slopes so that those that cancel become zero: a frame that moves all of a row moves
         nothing in it.
         """
-        weights, sizes = self.weights, dict.fromkeys(sweep.touched, 0.0)
+        weights, sizes = self._weights, dict.fromkeys(sweep.touched, 0.0)
         for parent, child, edge in sweep.edges:
             slope = adjoints[parent]
             if abs(slope) > CANCELLED * sizes[parent]:
@@ -465,48 +486,6 @@ class Program:
         for slot in sweep.inputs:
             if abs(adjoints[slot]) <= CANCELLED * sizes[slot]:
                 adjoints[slot] = 0.0
-
-
-@record(slots=True)
-class SlotRecipe:
-    """The computation of a slot from others: an operation, or a sum with these slopes.
-
-    inputs  the free unknowns that it depends on
-    """
-
-    op: int
-    operands: tuple[int, ...]
-    inputs: frozenset[int]
-    slopes: tuple[float, ...] = ()
-    constant: float = 0.0
-
-
-class Assembly:
-    """Puts together a program of rows that are not all affine, with slots of its own: the unknowns first,
-    then what is made of them, operands before results. In the forms of the rows, slots from `width` on are
-    recipes.
-    """
-
-    def __init__(self, recipes: Sequence[SlotRecipe], width: int, columns: list[int]) -> None:
-        self._recipes, self._width, self._columns = recipes, width, columns
-        self._local = {unknown: i for i, unknown in enumerate(columns)}
-        self._values = [0.0] * len(columns)
-        self._edges: list[list[tuple[int, int]]] = [[] for _ in columns]
-        self._weights = [0.0]
-        self._varies = [True] * len(columns)
-        self._program = Program([], [], columns, list(range(len(columns))), self._values, self._weights)
-
-    def program(self, rows: list[int], forms: Sequence[Affine]) -> Program:
-        program = self._program
-        program.rows = rows
-        for form in forms:
-            for slot in form.terms:
-                self._reach(slot)
-        for form in forms:
-            operands = tuple(self._local[slot] for slot in form.terms)
-            program.roots.append(self._sum(operands, tuple(form.terms.values()), form.constant))
-        self._plan_sweeps()
-        return program
 
     def _reach(self, root: int) -> None:
         stack = [root]
@@ -530,15 +509,15 @@ class Assembly:
         if recipe.op == SUM:
             return self._sum(operands, recipe.slopes, recipe.constant)
         out = self._new_slot(0.0)
-        self._program.code.append(compiled(recipe.op, out, operands))
+        self._code.append(compiled(recipe.op, out, operands))
         edges = tuple(self._new_edge(out, a) if self._varies[a] else UNUSED for a in operands)
         padded = operands if len(operands) > 1 else operands * 2
-        self._program.partials.append((PARTIALS[recipe.op], padded, out, edges))
+        self._partials.append((PARTIALS[recipe.op], padded, out, edges))
         return out
 
     def _sum(self, operands: tuple[int, ...], slopes: tuple[float, ...], constant: float) -> int:
         out = self._new_slot(0.0)
-        self._program.code.append((_weighted(slopes, constant), operands, -1, out))
+        self._code.append((_weighted(slopes, constant), operands, -1, out))
         for slot, slope in zip(operands, slopes, strict=True):
             self._weights[self._new_edge(out, slot)] = slope
         return out
@@ -554,20 +533,8 @@ class Assembly:
         self._edges[parent].append((child, len(self._weights) - 1))
         return len(self._weights) - 1
 
-    def _plan_sweeps(self) -> None:
-        program, width = self._program, len(self._columns)
-        scatter: list[int] = []
-        for i, root in enumerate(program.roots):
-            touched = self._below(root)
-            edges = [(parent, child, edge) for parent in touched for child, edge in self._edges[parent]]
-            leaves = [slot for slot in touched if slot < width]
-            merging = len(edges) >= len(touched)
-            program.sweeps.append(Sweep(root, edges, leaves, touched, merging))
-            scatter.extend(i * width + slot for slot in leaves)
-        program.scatter = np.array(scatter, dtype=np.intp)
-
-    def _below(self, root: int) -> list[int]:
-        """Slots that the root depends on, and itself, operands last."""
+    def _sweep(self, root: int) -> Sweep:
+        """Returns the sweep of a root over the slots that it depends on, operands last."""
         seen = {root}
         stack = [root]
         while stack:
@@ -575,7 +542,10 @@ class Assembly:
                 if child not in seen:
                     seen.add(child)
                     stack.append(child)
-        return sorted(seen, reverse=True)
+        touched = sorted(seen, reverse=True)
+        edges = [(parent, child, edge) for parent in touched for child, edge in self._edges[parent]]
+        leaves = [slot for slot in touched if slot < len(self.columns)]
+        return Sweep(root, edges, leaves, touched, merging=len(edges) >= len(touched))
 
 
 def _weighted(slopes: tuple[float, ...], constant: float) -> Callable[..., float]:
