@@ -31,7 +31,7 @@ from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 from aidl_lang.geometry.tessellate import loop_points
-from aidl_lang.solver.components import connected
+from aidl_lang.solver.gradients import connected
 
 HOLE, OPEN = "hole", "open"
 

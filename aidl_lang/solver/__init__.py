@@ -1,11 +1,10 @@
 """The constraint solver: `solve(problem) -> Solution`. It knows nothing of the language.
 
-In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `forms`, `freezing`,
-`program` (some rows, on numbers); `arrays`, `array_freezing`, `array_program` (many rows, on arrays);
-`dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones), `branches`
-(one attempt); `tiers` (what is free when), `loosening` (who gives way), `group` (one structure), `levels`
-(all groups of a depth), `hierarchy` (`solve`), `memory`; `suspects`, `refuting`, `conflicts`, `solution`.
-What is said of a solution afterwards is in `analysis`. What stands at this door is loaded when it
+In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing` (some rows,
+on numbers); `array_program` (many rows, on arrays); `linear`, `sparse`; `newton` (one smooth system),
+`branches` (one attempt); `tiers` (what is free when), `loosening` (who gives way), `group` (one structure),
+`levels` (all groups of a depth), `hierarchy` (`solve`), `memory`; `suspects`, `refuting`, `conflicts`,
+`solution`. What is said of a solution afterwards is in `analysis`. What stands at this door is loaded when it
 is asked for: who only checks a program needs the limits of the solver (`settings`) and neither the solver nor
 numpy.
 """

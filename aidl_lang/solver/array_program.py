@@ -1,13 +1,14 @@
 """Many rows as functions of their free unknowns, on whole arrays.
 
-The counterpart of `program` for large systems: nodes are evaluated a level and an operation at a time, and
-derivatives are accumulated in reverse for all rows at once. They live by *pairs* of a row and a node below
-it; which pairs there are, and in which order they are visited, is laid out once, by `array_freezing`.
+The counterpart of `freezing` for large systems: `ArrayFreezing` chooses branches and separates what varies
+from what does not; an `ArrayProgram` evaluates nodes a level and an operation at a time, and accumulates
+derivatives in reverse for all rows at once. They live by *pairs* of a row and a node below it; which pairs
+there are, and in which order they are visited, is laid out once.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -15,17 +16,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.linear import Matrix
-from aidl_lang.solver.operations import Bools, Floats, Ints, Op
+from aidl_lang.solver.newton import GOLDEN
+from aidl_lang.solver.operations import (
+    BRANCHING,
+    IDENTITY,
+    LINEAR,
+    Bools,
+    Floats,
+    Ints,
+    Op,
+    partials_of,
+    values_of,
+)
 
 DENSE = 4096
 """Entries of a Jacobian up to which it is a dense matrix."""
 CANCELLED = 1e-13
 """Part of its terms below which a sum is what rounding left of zero."""
-IDENTITY = 40
-"""The code of a branching node whose branch is chosen; beyond the codes of `Op`."""
+ZERO = -1
+"""First member of a difference that is 0."""
+TIE = 1e-9
+"""Difference, relative to the operands, below which rounding shall not decide between branches."""
+ALIKE = 1e-12
+"""Relative difference of slopes that is rounding alone."""
+FIRST = np.ones(1, dtype=np.bool_)
+"""The mask of the first of some numbers, which always differs from the one before."""
 
 
 @record()
@@ -85,8 +102,7 @@ class ArrayProgram:
         values[self._inputs] = x
         with np.errstate(all="ignore"):
             for batch in self._batches:
-                operands = tuple(values[a] for a in batch.operands)
-                values[batch.nodes] = _value(batch, operands)
+                values[batch.nodes] = values_of(batch.op, tuple(values[a] for a in batch.operands))
         return values[self.roots]
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix:
@@ -119,7 +135,7 @@ class ArrayProgram:
         with np.errstate(all="ignore"):
             for batch in self._batches:
                 operands = tuple(values[a] for a in batch.operands)
-                for k, slope in enumerate(_partials(batch, operands, values)):
+                for k, slope in enumerate(partials_of(batch.op, operands, values[batch.nodes])):
                     slopes[k * stride + batch.nodes] = slope
             adjoints = np.empty(self._steps[-1].high + 1 if self._steps else 1)
             adjoints[-1] = 1.0
@@ -134,18 +150,6 @@ class ArrayProgram:
         return found if np.isfinite(found).all() else np.nan_to_num(found)
 
 
-def _value(batch: Batch, operands: tuple[Floats, ...]) -> Floats:
-    if batch.op == IDENTITY:
-        return operands[0]
-    return arrays.values(batch.op, operands)
-
-
-def _partials(batch: Batch, operands: tuple[Floats, ...], values: Floats) -> tuple[Floats | float, ...]:
-    if batch.op == IDENTITY:
-        return (1.0,)
-    return arrays.partials(batch.op, operands, values[batch.nodes])
-
-
 @record()
 class Batch:
     """Nodes (k,) of one operation on one level, and the nodes (k,) of each of their operands."""
@@ -155,26 +159,19 @@ class Batch:
     operands: tuple[Ints, ...]
 
 
-@record()
-class Graph:
-    """A tape whose branching nodes may have become others: ops (m,), operands (m, 4), levels (m,)."""
-
-    ops: NDArray[np.int8]
-    operands: NDArray[np.int32]
-    levels: NDArray[np.int32]
-
-    def batches(self, nodes: Ints) -> list[Batch]:
-        """Returns these nodes (k,) as batches in an order in which they can be evaluated."""
-        key = self.levels[nodes].astype(np.int64) * 64 + self.ops[nodes]
-        order = np.argsort(key, kind="stable")
-        nodes, key = nodes[order], key[order]
-        bounds = np.flatnonzero(np.diff(key, prepend=-1, append=-1)).tolist()
-        found = []
-        for low, high in pairwise(bounds):
-            columns = self.operands[nodes[low:high]].astype(np.int64).T
-            arity = int(np.count_nonzero(columns[:, 0] >= 0))
-            found.append(Batch(int(key[low]) % 64, nodes[low:high], tuple(columns[:arity])))
-        return found
+def _batches(
+    ops: NDArray[np.int8], operands: NDArray[np.int32], levels: NDArray[np.int32], nodes: Ints
+) -> list[Batch]:
+    """Returns some nodes (k,) of a tape as batches in an order in which they can be evaluated."""
+    key = levels[nodes].astype(np.int64) * 64 + ops[nodes]
+    order = np.argsort(key, kind="stable")
+    nodes, key = nodes[order], key[order]
+    found = []
+    for low, high in pairwise(np.flatnonzero(np.diff(key, prepend=-1, append=-1)).tolist()):
+        columns = operands[nodes[low:high]].astype(np.int64).T
+        arity = int(np.count_nonzero(columns[:, 0] >= 0))
+        found.append(Batch(int(key[low]) % 64, nodes[low:high], tuple(columns[:arity])))
+    return found
 
 
 class Schedule:
@@ -196,7 +193,7 @@ class Schedule:
     def batches(self) -> list[Batch]:
         """All other nodes, in an order in which they can be evaluated."""
         tape = self.tape
-        return Graph(tape.ops, tape.operands, tape.levels).batches(np.flatnonzero(tape.ops > Op.UNKNOWN))
+        return _batches(tape.ops, tape.operands, tape.levels, np.flatnonzero(tape.ops > Op.UNKNOWN))
 
     @cached_property
     def by_level(self) -> list[Ints]:
@@ -205,13 +202,16 @@ class Schedule:
         bounds = np.cumsum(np.bincount(self.tape.levels))
         return np.split(order, bounds[:-1])[1:] if len(order) else []
 
-    def above(self, unknowns: Bools) -> bytes:
-        """Returns for each node whether it hangs on nothing but these unknowns (n,)."""
-        found = np.ones(len(self.tape) + 1, dtype=np.bool_)  # the last for operands that are not there
-        found[self.inputs] = unknowns[self.unknowns]
-        for nodes in self.by_level:
-            found[nodes] = found[self.tape.operands[nodes]].all(axis=1)
-        return found.tobytes()
+    def varying(self, free: Bools, operands: NDArray[np.int32] | None = None) -> Bools:
+        """Returns the mask of nodes that depend on the unknowns `free` (n,). `operands` are those through the
+        branches that were chosen, with those of nodes added behind the tape.
+        """
+        operands = self.tape.operands if operands is None else operands
+        found = np.zeros(len(operands) + 1, dtype=np.bool_)  # the last is what missing operands refer to
+        found[self.inputs] = free[self.unknowns]
+        for nodes in (*self.by_level, np.arange(len(self.tape), len(operands))):
+            found[nodes] = found[operands[nodes]].any(axis=1)
+        return found[:-1]
 
     def evaluate(self, x: Floats) -> Floats:
         """Returns the value (m,) of each node at the unknowns `x` (n,)."""
@@ -219,5 +219,284 @@ class Schedule:
         values[self.inputs] = x[self.unknowns]
         with np.errstate(all="ignore"):
             for batch in self.batches:
-                values[batch.nodes] = arrays.values(batch.op, tuple(values[a] for a in batch.operands))
+                values[batch.nodes] = values_of(batch.op, tuple(values[a] for a in batch.operands))
         return values
+
+
+@record()
+class _Layout:
+    """The layout of a sweep: its steps; rows and nodes of the pairs above the unknowns; row and unknown of
+    each entry.
+    """
+
+    steps: list[Step]
+    rows: Ints
+    nodes: Ints
+    row: Ints
+    unknown: Ints
+
+
+class ArrayFreezing:
+    """The rows of a tape at one place, with branches chosen; makes programs of some of them.
+
+    `values` (m,) are those of all nodes at that place. Branching nodes in `flipped` take the branch that is
+    not active. Each of `differences` becomes a further node, numbered from m on. The programs share memory:
+    no two of them may have unknowns in common. Without `choosing`, every branch counts as active, which is
+    good for patterns only.
+    """
+
+    def __init__(
+        self,
+        schedule: Schedule,
+        values: Floats,
+        free: Bools,
+        flipped: Collection[int] = (),
+        differences: Sequence[tuple[int, int]] = (),
+        choosing: bool = True,
+    ) -> None:
+        tape = schedule.tape
+        self._schedule, self._free = schedule, free
+        self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
+        self._values = values.copy()
+        self._branching = np.flatnonzero(_BRANCHES[tape.ops])
+        self.choices = np.zeros(len(self._branching), dtype=np.int64)
+        if choosing and len(self._branching):
+            self._choose(flipped)
+        if differences:
+            self._append(differences)
+        self._varies = schedule.varying(free, self._operands)
+        self._laid_out: tuple[Ints, _Layout] | None = None
+        self._slopes = np.ones(4 * len(self._values) + 1)
+
+    def branches(self, roots: Ints) -> list[tuple[int, int]]:
+        """Returns the branching nodes below these nodes (r,) through active branches, and the choice made at
+        each.
+        """
+        below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
+        below[roots] = True
+        added = np.arange(len(self._schedule.tape), len(self._values))
+        for nodes in (added, *reversed(self._schedule.by_level)):
+            below[self._operands[nodes[below[nodes]]]] = True
+        taken = below[self._branching]
+        return list(zip(self._branching[taken].tolist(), self.choices[taken].tolist(), strict=True))
+
+    @property
+    def knows_all_values(self) -> bool:
+        """True if every value follows from the unknowns of a program, whatever the others were."""
+        return not len(self._branching) and bool(self._varies[self._ops > Op.UNKNOWN].all())
+
+    def varies(self, roots: Ints) -> Bools:
+        """Tells whether each of these nodes depends on a free unknown."""
+        return self._varies[roots]
+
+    # -- branches
+
+    def _choose(self, flipped: Collection[int]) -> None:
+        nodes, values = self._branching, self._values
+        ops = self._ops[nodes]
+        operands = self._operands[nodes].astype(np.int64)
+        first, second = values[operands[:, 0]], values[operands[:, 1]]
+        second[ops == Op.ABS] = 0.0
+        with np.errstate(all="ignore"):
+            ahead = np.where(ops == Op.MINIMUM, first - second, second - first)
+            choice = (ahead > TIE * (1.0 + np.abs(first))).astype(np.int64)
+            choice[ops == Op.SELECT] = ~(first[ops == Op.SELECT] >= 0.0)
+        if flipped:
+            choice ^= np.isin(nodes, list(flipped))
+        choice[ops == Op.SELECT] += 1
+        self._ops, self._operands = self._ops.copy(), self._operands.copy()
+        self._ops[nodes] = IDENTITY
+        self._ops[nodes[(ops == Op.ABS) & (choice == 1)]] = Op.NEG
+        taken = np.where(ops == Op.ABS, 0, choice)
+        chosen = np.full((len(nodes), 4), -1)
+        chosen[:, 0] = operands[np.arange(len(nodes)), taken]
+        self._operands[nodes] = chosen
+        self.choices = choice
+
+    def _append(self, differences: Sequence[tuple[int, int]]) -> None:
+        pairs = np.array(differences, dtype=np.int32)
+        from_zero = pairs[:, 0] == ZERO
+        operands = np.full((len(pairs), 4), -1, dtype=np.int32)
+        operands[:, :2] = pairs
+        operands[from_zero, 0], operands[from_zero, 1] = pairs[from_zero, 1], -1
+        values = self._values[pairs]
+        values[from_zero, 0] = 0.0
+        self._ops = np.append(self._ops, np.where(from_zero, Op.NEG, Op.SUB).astype(np.int8))
+        self._operands = np.vstack((self._operands, operands))
+        top = np.full(len(pairs), self._levels.max(initial=0) + 1, dtype=np.int32)
+        self._levels = np.append(self._levels, top)
+        self._values = np.append(self._values, values[:, 0] - values[:, 1])
+
+    @cached_property
+    def _plain(self) -> Bools:
+        """The mask (m,) of nodes that are affine functions of the free unknowns whatever branches are taken.
+
+        The least of several coordinates of one rigid part is such a function, as all of them move alike: two
+        branches are taken for one if they change alike in a direction in which no two unknowns change alike.
+        """
+        tape, schedule = self._schedule.tape, self._schedule
+        values, slopes = self._values, np.zeros(len(self._values))
+        plain = np.ones(len(values), dtype=np.bool_)
+        turn = np.mod(schedule.unknowns * GOLDEN, 1.0) + 0.5
+        slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
+        with np.errstate(all="ignore"):
+            for batch in schedule.batches:
+                slopes[batch.nodes], known = _slope(batch, values, slopes)
+                for operand in batch.operands:
+                    known = known & plain[operand]
+                plain[batch.nodes] = known
+        plain[len(tape) :] = False
+        return plain
+
+    # -- programs
+
+    def pattern(self, roots: Ints) -> tuple[Ints, Ints]:
+        """Returns row and unknown (e,) of each entry of the Jacobian of these nodes (r,), each of which
+        varies.
+        """
+        layout = self._lay_out(roots)
+        return layout.row, layout.unknown
+
+    def program(self, roots: Ints) -> ArrayProgram:
+        """Returns the program of the rows at these nodes (r,), each of which varies."""
+        layout = self._lay_out(roots)
+        count, width = len(self._values), len(self._free)
+        nodes = _distinct(layout.nodes, count)
+        columns = _distinct(layout.unknown, width)
+        indptr = np.zeros(len(roots) + 1, dtype=np.int64)
+        np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
+        affine = np.ones(len(roots), dtype=np.bool_)
+        affine[layout.rows[self._curved(layout.nodes)]] = False
+        place = np.empty(width, dtype=np.int64)
+        place[columns] = np.arange(len(columns))
+        input_of = np.empty(width, dtype=np.int64)
+        input_of[self._schedule.unknowns] = self._schedule.inputs
+        return ArrayProgram(
+            roots,
+            columns,
+            indptr,
+            place[layout.unknown],
+            affine,
+            np.arange(len(roots)),
+            input_of[columns],
+            self._batches(nodes),
+            layout.steps,
+            self._values,
+            self._slopes,
+            lambda: self._plain[roots],
+        )
+
+    def _batches(self, nodes: Ints) -> list[Batch]:
+        if self._operands is self._schedule.tape.operands and len(nodes) == self._schedule.size:
+            return self._schedule.batches
+        return _batches(self._ops, self._operands, self._levels, nodes)
+
+    def _lay_out(self, roots: Ints) -> _Layout:
+        """Returns the layout of the pairs of a row and a node below it that varies; remembers that of the
+        last roots.
+        """
+        if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
+            self._laid_out = roots, self._find_pairs(roots)
+        return self._laid_out[1]
+
+    def _find_pairs(self, roots: Ints) -> _Layout:
+        steps: list[Step] = []
+        count, width = len(self._values), len(self._free)
+        above = _Pending()
+        rows = np.arange(len(roots))
+        above.add(self._levels[roots], rows, roots, np.full(len(roots), -1), np.full(len(roots), 4 * count))
+        low = 0
+        visited_rows, visited = [rows[:0]], [rows[:0]]
+        row, second = rows[:0], roots[:0]
+        for level in above.descending():
+            row, node, parent, slope = above.take(level)
+            second = node if level else self._operands[node, 0].astype(np.int64)
+            key = row * max(count, width) + second
+            order = np.argsort(key, kind="stable")
+            key = key[order]
+            starts = np.flatnonzero(np.concatenate((FIRST, key[1:] != key[:-1])))
+            unique = order[starts]
+            row, second = row[unique], second[unique]
+            single = len(starts) == len(order)
+            high = low + len(starts)
+            steps.append(Step(low, high, parent[order], slope[order], None if single else starts))
+            if level:
+                visited_rows.append(row)
+                visited.append(second)
+                self._descend(above, row, second, low)
+            low = high
+        return _Layout(steps, np.concatenate(visited_rows), np.concatenate(visited), row, second)
+
+    def _descend(self, above: _Pending, row: Ints, node: Ints, low: int) -> None:
+        """Adds the pairs below those of one level, which are numbered from `low` on."""
+        children = self._operands[node]
+        at, k = np.nonzero((children >= 0) & self._varies[children])
+        child = children[at, k].astype(np.int64)
+        above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
+
+    def _curved(self, nodes: Ints) -> Bools:
+        """Tells whether each node is not an affine function of those of its operands that vary."""
+        ops, operands = self._ops[nodes], self._operands[nodes]
+        first, second = (self._varies[operands[:, k]] & (operands[:, k] >= 0) for k in (0, 1))
+        curved: Bools = ~(_STRAIGHT[ops] | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
+        return curved
+
+
+class _Pending:
+    """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
+
+    def __init__(self) -> None:
+        self._levels: dict[int, list[tuple[Ints, ...]]] = {}
+
+    def add(self, levels: NDArray[np.int32], *columns: Ints) -> None:
+        for level in np.flatnonzero(np.bincount(levels)).tolist():
+            members = np.flatnonzero(levels == level)
+            found = columns if len(members) == len(levels) else tuple(column[members] for column in columns)
+            self._levels.setdefault(level, []).append(found)
+
+    def descending(self) -> Iterable[int]:
+        """Returns the levels that are left, from above; taking one may add lower ones."""
+        while self._levels:
+            yield max(self._levels)
+
+    def take(self, level: int) -> tuple[Ints, ...]:
+        pieces = self._levels.pop(level)
+        if len(pieces) == 1:
+            return pieces[0]
+        return tuple(np.concatenate(column) for column in zip(*pieces, strict=True))
+
+
+def _table(ops: Iterable[int]) -> Bools:
+    """Tells whether each code of an operation is among `ops`."""
+    found = np.zeros(64, dtype=np.bool_)
+    found[list(ops)] = True
+    return found
+
+
+_BRANCHES = _table(BRANCHING)
+_STRAIGHT = _table([*LINEAR, IDENTITY])
+
+
+def _distinct(numbers: Ints, count: int) -> Ints:
+    """Returns the different numbers below `count` that occur, ascending."""
+    found = np.zeros(count, dtype=np.bool_)
+    found[numbers] = True
+    return np.flatnonzero(found)
+
+
+def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
+    """Returns the slope of each node along the direction in which `slopes` has those of its operands, and a
+    mask of the nodes whose slope is the same everywhere.
+    """
+    op, operands = batch.op, batch.operands
+    inner = [slopes[a] for a in operands]
+    if op == Op.MUL:
+        slope = inner[0] * values[operands[1]] + inner[1] * values[operands[0]]
+        return slope, (inner[0] == 0.0) | (inner[1] == 0.0)
+    if op == Op.DIV:
+        return inner[0] / values[operands[1]], inner[1] == 0.0
+    if op in (Op.MINIMUM, Op.MAXIMUM):
+        return inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
+    if op in LINEAR:
+        return values_of(op, tuple(inner)), np.ones(len(batch.nodes), dtype=np.bool_)
+    return np.zeros(len(batch.nodes)), ~np.any(inner, axis=0)

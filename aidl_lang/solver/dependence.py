@@ -22,9 +22,8 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
-from aidl_lang.solver.components import DOUBT, LARGE, RANK, Sorted, connected, lots, stacked
 from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.gradients import Sparse, linearise
+from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, linearise, lots, stacked
 from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Problem
 
@@ -172,7 +171,7 @@ def _relations(matrix: Sparse) -> dict[int, Relation] | None:
 
 
 def _sparse_relations(matrix: Sparse, columns: Ints) -> dict[int, Relation] | None:
-    from aidl_lang.solver.elimination import UndecidedError, combinations, independent_rows
+    from aidl_lang.solver.sparse import UndecidedError, combinations, independent_rows
 
     local = Sparse(matrix.starts, np.searchsorted(columns, matrix.columns), matrix.entries)
     try:

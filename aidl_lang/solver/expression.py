@@ -1,7 +1,7 @@
 """Expressions over the unknowns as one shared graph: the tape.
 
 A tape is a directed acyclic graph in plain arrays, each node after its operands, equal nodes stored once.
-`TapeBuilder` makes it; `operations` says what each node means; `program` evaluates parts of it.
+`TapeBuilder` makes it; `operations` says what each node means; `freezing` evaluates parts of it.
 """
 
 from __future__ import annotations
@@ -47,6 +47,14 @@ class Tape:
         """The operands of each node: node ids, none for constants, the index for an unknown."""
         arity = [1 if op == Op.UNKNOWN else ARITY[op] for op in self.op_list]
         return [tuple(row[:k]) for row, k in zip(self.operands.tolist(), arity, strict=True)]
+
+
+def _of_one(op: int) -> Callable[[TapeBuilder, int], int]:
+    return lambda tape, a: tape._node(op, a)
+
+
+def _of_two(op: int) -> Callable[[TapeBuilder, int, int], int]:
+    return lambda tape, a, b: tape._node(op, a, b)
 
 
 class TapeBuilder:
@@ -139,6 +147,12 @@ class TapeBuilder:
             self._shifts.add(node)
         return node
 
+    sin, cos, tan, asin, acos, sqrt, abs, square = map(
+        _of_one, (Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.SQRT, Op.ABS, Op.SQUARE)
+    )
+    atan2, hypot, mod = map(_of_two, (Op.ATAN2, Op.HYPOT, Op.MOD))
+    """`mod` is the remainder a - b floor(a / b), which has the sign of b."""
+
     def power(self, base: int, exponent: int) -> int:
         if self._is(exponent, 1.0):
             return base
@@ -148,45 +162,11 @@ class TapeBuilder:
             return self.sqrt(base)
         return self._node(Op.POWER, base, exponent)
 
-    def sin(self, a: int) -> int:
-        return self._node(Op.SIN, a)
-
-    def cos(self, a: int) -> int:
-        return self._node(Op.COS, a)
-
-    def tan(self, a: int) -> int:
-        return self._node(Op.TAN, a)
-
-    def asin(self, a: int) -> int:
-        return self._node(Op.ASIN, a)
-
-    def acos(self, a: int) -> int:
-        return self._node(Op.ACOS, a)
-
-    def atan2(self, y: int, x: int) -> int:
-        return self._node(Op.ATAN2, y, x)
-
-    def sqrt(self, a: int) -> int:
-        return self._node(Op.SQRT, a)
-
-    def abs(self, a: int) -> int:
-        return self._node(Op.ABS, a)
-
-    def square(self, a: int) -> int:
-        return self._node(Op.SQUARE, a)
-
-    def hypot(self, a: int, b: int) -> int:
-        return self._node(Op.HYPOT, a, b)
-
     def minimum(self, *args: int) -> int:
-        return self._extremum(self._minimum_of_two, args)
+        return self._extremum(Op.MINIMUM, args)
 
     def maximum(self, *args: int) -> int:
-        return self._extremum(self._maximum_of_two, args)
-
-    def mod(self, a: int, b: int) -> int:
-        """Returns the node of the remainder a - b floor(a / b), which has the sign of `b`."""
-        return self._node(Op.MOD, a, b)
+        return self._extremum(Op.MAXIMUM, args)
 
     def select(self, condition: int, a: int, b: int) -> int:
         """Returns the node of `a` where `condition` >= 0, else `b`."""
@@ -223,13 +203,7 @@ class TapeBuilder:
     def _is(self, node: int, value: float) -> bool:
         return self._ops[node] == CONSTANT and self._constants[node] == value
 
-    def _minimum_of_two(self, a: int, b: int) -> int:
-        return a if a == b else self._of_two(Op.MINIMUM, min(a, b), max(a, b))
-
-    def _maximum_of_two(self, a: int, b: int) -> int:
-        return a if a == b else self._of_two(Op.MAXIMUM, min(a, b), max(a, b))
-
-    def _extremum(self, of_two: Callable[[int, int], int], args: Sequence[int]) -> int:
+    def _extremum(self, op: int, args: Sequence[int]) -> int:
         """Returns a balanced tree of binary nodes, so that the depth of the tape stays logarithmic. What is
         added to several operands is added to the least (greatest) of these: the box of a rigid part is worked
         out once and moved with it.
@@ -244,16 +218,19 @@ class TapeBuilder:
         for shifts, members in alike.items():
             if shifts and len(members) > 1:
                 rests = [self._split(a)[1] for a in members]
-                level.append(self._sum(shifts, self._extremum(of_two, rests)))
+                level.append(self._sum(shifts, self._extremum(op, rests)))
             else:
                 level += members
         common, rests = self._apart(level)
         if common:
-            return self._sum(common, self._extremum(of_two, rests))
+            return self._sum(common, self._extremum(op, rests))
         while len(level) > 1:
-            pairs = [of_two(level[i], level[i + 1]) for i in range(0, len(level) - 1, 2)]
+            pairs = [self._extreme(op, *level[i : i + 2]) for i in range(0, len(level) - 1, 2)]
             level = pairs + level[len(pairs) * 2 :]
         return level[0]
+
+    def _extreme(self, op: int, a: int, b: int) -> int:
+        return a if a == b else self._of_two(op, min(a, b), max(a, b))
 
     # -- shifts
 

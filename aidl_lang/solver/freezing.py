@@ -1,30 +1,45 @@
 """Makes programs of rows of the tape: holds what is not free, fixes the branches, separates what is
 independent.
 
-A `Freezer` takes the forms of the rows (`forms`) for one attempt, and puts in the values of what is not free.
-Knots may then become numbers, or affine. `abs`, `minimum`, `maximum` and `select` are replaced by the branch
-active at the current values (paper, appendix B), but for those that no free unknown can decide: two places on
-one rigid part keep their order wherever it goes. Only what is left to choose counts as a branch. Rows that
-share no free unknown go to programs of their own.
+A `Freezer` takes the forms of the rows (`valuation`) for one attempt, and puts in the values of what is not
+free. Knots may then become numbers, or affine. `abs`, `minimum`, `maximum` and `select` are replaced by the
+branch active at the current values (paper, appendix B), but for those that no free unknown can decide: two
+places on one rigid part keep their order wherever it goes. Only what is left to choose counts as a branch.
+Rows that share no free unknown go to programs of their own.
+
+Affine rows are a matrix. Others are straight-line code on plain floats: for the ten to some hundred unknowns
+that a structure has, it is quicker than arrays, whose price is paid per operation. Derivatives are
+accumulated in reverse, row by row, along a schedule made once.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field, replace
-from typing import TypeAlias
+from operator import mul
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
-from aidl_lang.solver.array_program import ArrayProgram
-from aidl_lang.solver.components import components
-from aidl_lang.solver.forms import Affine, Form, Knot, add_terms, applied, branched, combined, scaled
-from aidl_lang.solver.operations import BRANCHING, Op
-from aidl_lang.solver.program import NUMBER, SUM, AffineProgram, Assembly, Program, SlotRecipe
-from aidl_lang.solver.valuation import Valuation
+from aidl_lang.solver.array_program import CANCELLED, TIE, ZERO, ArrayFreezing, ArrayProgram
+from aidl_lang.solver.gradients import components
+from aidl_lang.solver.operations import BRANCHING, PARTIALS, Floats, Op
+from aidl_lang.solver.valuation import (
+    Affine,
+    Compiled,
+    Form,
+    Knot,
+    Valuation,
+    add_terms,
+    applied,
+    branched,
+    combined,
+    compiled,
+    run,
+    scaled,
+)
 
 Root: TypeAlias = "int | tuple[int, int]"
 """A tape node, or the difference of two, the first of which may be `ZERO`."""
@@ -284,40 +299,257 @@ class Choice:
     # -- from forms to programs
 
     def _programs(self, rooted: list[tuple[int, Affine]]) -> list[AffineProgram | Program]:
-        leader: dict[int, int] = {}
-
-        def find(unknown: int) -> int:
-            while (above := leader.setdefault(unknown, unknown)) != unknown:
-                leader[unknown] = unknown = leader[above]
-            return unknown
-
-        for _, form in rooted:
-            first = None
-            for slot in form.terms:
-                for unknown in (slot,) if slot < self.width else self._inputs(slot):
-                    at = find(unknown)
-                    if first is None:
-                        first = at
-                    elif at != first:
-                        low, high = min(first, at), max(first, at)
-                        leader[high] = first = low
-        members: dict[int, list[tuple[int, Affine]]] = {}
-        for row, form in rooted:
-            first = next(unknown for slot in form.terms for unknown in self._inputs(slot))
-            members.setdefault(find(first), []).append((row, form))
-        unknowns: dict[int, list[int]] = {first: [] for first in members}
-        for unknown in sorted(leader):
-            unknowns[find(unknown)].append(unknown)
-        return [self._program(rows, unknowns[first]) for first, rows in members.items()]
+        """Returns a program for each set of rows that share unknowns, directly or by way of others."""
+        part_of: dict[int, tuple[list[int], set[int]]] = {}
+        """The rows and unknowns that hang together, by unknown."""
+        for i, (_, form) in enumerate(rooted):
+            unknowns: set[int] = set().union(*map(self._inputs, form.terms))
+            parts = {id(part_of[u]): part_of[u] for u in unknowns if u in part_of}
+            largest = max(parts.values(), key=lambda part: len(part[1]), default=([], set()))
+            for part in (([i], unknowns), *parts.values()):
+                if part is not largest:
+                    largest[0].extend(part[0])
+                    part_of.update(dict.fromkeys(part[1] - largest[1], largest))
+                    largest[1].update(part[1])
+        found = {id(part): (sorted(part[0]), sorted(part[1])) for part in part_of.values()}
+        return [self._program([rooted[i] for i in rows], own) for rows, own in sorted(found.values())]
 
     def _program(self, rows: list[tuple[int, Affine]], columns: list[int]) -> AffineProgram | Program:
         column = {unknown: i for i, unknown in enumerate(columns)}
         numbers = [row for row, _ in rows]
         if any(slot >= self.width for _, form in rows for slot in form.terms):
-            forms = [form for _, form in rows]
-            return Assembly(self.recipes, self.width, columns).program(numbers, forms)
+            return Program(numbers, [form for _, form in rows], columns, self.recipes, self.width)
         matrix = np.zeros((len(rows), len(columns)))
         for i, (_, form) in enumerate(rows):
             for unknown, slope in form.terms.items():
                 matrix[i, column[unknown]] = slope
         return AffineProgram(numbers, columns, matrix, np.array([form.constant for _, form in rows]))
+
+
+# -- programs
+
+Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], int, tuple[int, ...]]"
+"""Function, slots of its operands, slot of the value, edges that take the slopes."""
+
+SUM = -1
+"""Operation code of a recipe that is a sum."""
+NUMBER = -2
+"""Operation code of a recipe that is a number."""
+UNUSED = 0
+"""Weight that is written for operands without a free unknown and never read."""
+
+
+@record()
+class Sweep:
+    """Reverse accumulation of one row, from its root to the unknowns in it; `merging` if some slot is reached
+    in several ways, whose slopes may cancel.
+    """
+
+    root: int
+    edges: list[tuple[int, int, int]]
+    inputs: list[int]
+    touched: list[int]
+    merging: bool
+
+
+@record(slots=True)
+class SlotRecipe:
+    """The computation of a slot from others: an operation, or a sum with these slopes.
+
+    inputs  the free unknowns that it depends on
+    """
+
+    op: int
+    operands: tuple[int, ...]
+    inputs: frozenset[int]
+    slopes: tuple[float, ...] = ()
+    constant: float = 0.0
+
+
+@record()
+class AffineProgram:
+    """Some rows that are affine functions of their free unknowns, with branches fixed.
+
+    rows     (r,) which of the roots given to the freezer
+    columns  (k,) the unknowns, ascending
+    matrix   (r, k) the slopes
+    constant (r,) the values where all unknowns are 0
+    """
+
+    rows: list[int]
+    columns: list[int]
+    matrix: Floats
+    constant: Floats
+    linear: ClassVar[bool] = True
+
+    def residuals(self, x: Floats) -> Floats:
+        """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
+        with np.errstate(all="ignore"):
+            values: Floats = self.matrix @ x + self.constant
+        return values
+
+    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
+        """Returns the (r, k) partial derivatives, times these factors."""
+        with np.errstate(all="ignore"):
+            matrix: Floats = self.matrix * row_factors[:, None] * column_factors
+        return matrix
+
+
+class Program:
+    """Some rows as functions of their free unknowns, with branches fixed.
+
+    rows    (r,) which of the roots given to the freezer
+    columns (k,) the unknowns, ascending
+
+    It has slots of its own: the unknowns first, then what is made of them, operands before results. In the
+    forms of the rows, slots from `width` on are recipes.
+    """
+
+    linear = False
+
+    def __init__(
+        self,
+        rows: list[int],
+        forms: Sequence[Affine],
+        columns: list[int],
+        recipes: Sequence[SlotRecipe],
+        width: int,
+    ) -> None:
+        self.rows, self.columns, self._recipes, self._width = rows, columns, recipes, width
+        self._local = {unknown: i for i, unknown in enumerate(columns)}
+        self._values = [0.0] * len(columns)
+        self._edges: list[list[tuple[int, int]]] = [[] for _ in columns]
+        self._weights = [0.0]
+        self._varies = [True] * len(columns)
+        self._code: list[Compiled] = []
+        self._partials: list[Partial] = []
+        for form in forms:
+            for slot in form.terms:
+                self._reach(slot)
+        self._roots: list[int] = []
+        for form in forms:
+            operands = tuple(self._local[slot] for slot in form.terms)
+            self._roots.append(self._sum(operands, tuple(form.terms.values()), form.constant))
+        self._sweeps = [self._sweep(root) for root in self._roots]
+        k = len(columns)
+        scatter = [i * k + slot for i, sweep in enumerate(self._sweeps) for slot in sweep.inputs]
+        self._scatter = np.array(scatter, dtype=np.intp)
+
+    def residuals(self, x: Floats) -> Floats:
+        """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
+        values = self._values
+        values[: len(x)] = x.tolist()
+        run(self._code, values)
+        return np.array([values[root] for root in self._roots])
+
+    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
+        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
+        factors.
+        """
+        values, weights = self._values, self._weights
+        for partial, operands, out, edges in self._partials:
+            slopes = partial(*[values[i] for i in operands], values[out])
+            for edge, slope in zip(edges, slopes, strict=False):
+                weights[edge] = slope
+        adjoints = [0.0] * len(values)
+        entries: list[float] = []
+        for sweep in self._sweeps:
+            adjoints[sweep.root] = 1.0
+            if sweep.merging:
+                self._accumulate_with_care(sweep, adjoints)
+            else:
+                for parent, child, edge in sweep.edges:
+                    adjoints[child] += adjoints[parent] * weights[edge]
+            entries.extend([adjoints[slot] for slot in sweep.inputs])
+            for slot in sweep.touched:
+                adjoints[slot] = 0.0
+        flat = np.zeros(len(self.rows) * len(self.columns))
+        flat[self._scatter] = entries
+        if not np.isfinite(flat).all():  # products of finite slopes may still overflow
+            np.nan_to_num(flat, copy=False)
+        matrix = flat.reshape(len(self.rows), len(self.columns))
+        matrix *= row_factors[:, None]
+        matrix *= column_factors
+        return matrix
+
+    def _accumulate_with_care(self, sweep: Sweep, adjoints: list[float]) -> None:
+        """Accumulates slopes so that those that cancel become zero: a frame that moves all of a row moves
+        nothing in it.
+        """
+        weights, sizes = self._weights, dict.fromkeys(sweep.touched, 0.0)
+        for parent, child, edge in sweep.edges:
+            slope = adjoints[parent]
+            if abs(slope) > CANCELLED * sizes[parent]:
+                slope *= weights[edge]
+                adjoints[child] += slope
+                sizes[child] += abs(slope)
+        for slot in sweep.inputs:
+            if abs(adjoints[slot]) <= CANCELLED * sizes[slot]:
+                adjoints[slot] = 0.0
+
+    def _reach(self, root: int) -> None:
+        stack = [root]
+        while stack:
+            slot = stack[-1]
+            if slot in self._local:
+                stack.pop()
+                continue
+            recipe = self._recipes[slot - self._width]
+            missing = [a for a in recipe.operands if a not in self._local]
+            if missing:
+                stack.extend(missing)
+            else:
+                stack.pop()
+                self._local[slot] = self._make(recipe)
+
+    def _make(self, recipe: SlotRecipe) -> int:
+        operands = tuple(self._local[slot] for slot in recipe.operands)
+        if recipe.op == NUMBER:
+            return self._new_slot(recipe.constant, False)
+        if recipe.op == SUM:
+            return self._sum(operands, recipe.slopes, recipe.constant)
+        out = self._new_slot(0.0)
+        self._code.append(compiled(recipe.op, out, operands))
+        edges = tuple(self._new_edge(out, a) if self._varies[a] else UNUSED for a in operands)
+        padded = operands if len(operands) > 1 else operands * 2
+        self._partials.append((PARTIALS[recipe.op], padded, out, edges))
+        return out
+
+    def _sum(self, operands: tuple[int, ...], slopes: tuple[float, ...], constant: float) -> int:
+        out = self._new_slot(0.0)
+        self._code.append((_weighted(slopes, constant), operands, -1, out))
+        for slot, slope in zip(operands, slopes, strict=True):
+            self._weights[self._new_edge(out, slot)] = slope
+        return out
+
+    def _new_slot(self, value: float, varies: bool = True) -> int:
+        self._values.append(value)
+        self._edges.append([])
+        self._varies.append(varies)
+        return len(self._values) - 1
+
+    def _new_edge(self, parent: int, child: int) -> int:
+        self._weights.append(0.0)
+        self._edges[parent].append((child, len(self._weights) - 1))
+        return len(self._weights) - 1
+
+    def _sweep(self, root: int) -> Sweep:
+        """Returns the sweep of a root over the slots that it depends on, operands last."""
+        seen = {root}
+        stack = [root]
+        while stack:
+            for child, _ in self._edges[stack.pop()]:
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        touched = sorted(seen, reverse=True)
+        edges = [(parent, child, edge) for parent in touched for child, edge in self._edges[parent]]
+        leaves = [slot for slot in touched if slot < len(self.columns)]
+        return Sweep(root, edges, leaves, touched, merging=len(edges) >= len(touched))
+
+
+def _weighted(slopes: tuple[float, ...], constant: float) -> Callable[..., float]:
+    def total(*values: float) -> float:
+        return sum(map(mul, slopes, values), constant)
+
+    return total

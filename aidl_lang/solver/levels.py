@@ -5,22 +5,29 @@ in the same sweep over arrays: which constraints are violated, what becomes free
 their solution. A part for which the plain course fails is left untouched for `hierarchy`, which knows more
 ways; whether a result counts is decided by the original expressions in either case. So is a part in which
 more moved than its rows ask for, unless it is so large that the nearest point has to do.
+
+Systems of equal shape are stacked: their matrices become one array, and a step is taken for all of them in
+the time that a few would need one by one. It is the method of `newton`, cut down to the plain course: full
+steps that bring what they promise, then the polishing. A system for which that is not enough is left as it
+was, for the careful method to take up. Inequalities in it are those that shall hold with equality; the
+result counts only if their multipliers say that they push.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import field
 
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.solver import batch, newton
-from aidl_lang.solver.array_freezing import ArrayFreezing
-from aidl_lang.solver.array_program import ArrayProgram, Schedule
+from aidl_lang.solver import newton
+from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
-from aidl_lang.solver.components import components
+from aidl_lang.solver.gradients import Sorted, components
+from aidl_lang.solver.linear import stacked_least_norm
 from aidl_lang.solver.loosening import MOST, STILL
-from aidl_lang.solver.newton import Clock, End, System
+from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
 from aidl_lang.solver.riding import riding_depths
@@ -30,6 +37,10 @@ ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
 STACKED = 4096
 """Entries of a Jacobian up to which systems are stacked; larger ones are solved one by one."""
+STEPS = 80
+"""Evaluations of all stacked systems, at the most."""
+PULLING = 1e-9
+"""Part of the greatest multiplier by which another may have the wrong sign through rounding."""
 KINDS = {name: kind for kind, name in NAMES.items()}
 DEPTHS = 1 << 20
 """The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
@@ -265,36 +276,64 @@ class Levels:
         """Returns the values (n,) that satisfy the rows, the parts in which some row could not be satisfied,
         and the parts in which some row certainly cannot be.
         """
-        program = freezing.program(self.problem.rows.expression[rows])
-        systems = _systems(program)
+        program, listed = freezing.program(self.problem.rows.expression[rows]), self.problem.rows
+        height, width = program.shape
+        labels = components(program.entry_rows, program.indices + height, height + width)
+        count = int(labels.max(initial=-1)) + 1
+        of_row, of_column = Sorted(labels[:height], count), Sorted(labels[height:], count)
+        wanted = of_row.count * of_column.count <= STACKED
         x = self.x.copy()
-        columns = program.columns
-        metric, listed = self.metric, self.problem.rows
-        longest = None if metric.longest is None else metric.longest[columns]
-        scaling = batch.Scaling(self.x[columns], metric.scale[columns], listed.scale[rows], longest)
-        tolerance = TIGHTER * self.settings.tolerance
-        solved, hopeless = np.zeros((2, len(systems.wanted)), dtype=np.bool_)
-        if systems.wanted.any():
-            reached, solved, hopeless = batch.solve(
-                program, systems, scaling, listed.at_most[rows], tolerance, self.clock
-            )
-            x[columns] = np.where(solved[systems.of_column], reached, x[columns])
-        choosy = np.zeros(len(solved), dtype=np.bool_)  # which inequalities bind has to be searched for
-        choosy[systems.of_row[listed.at_most[rows]]] = True
-        if not systems.wanted.any() and systems.square and len(solved) > 1:
+        solved, hopeless = np.zeros((2, count), dtype=np.bool_)
+        if wanted.any():
+            reached, solved, hopeless = self._solve_stacked(program, rows, of_row, of_column, wanted)
+            x[program.columns] = np.where(solved[of_column.part], reached, x[program.columns])
+        elif bool((of_row.count == of_column.count).all()) and count > 1:
             # Systems that leave no choice may be solved as one.
             solved[:] = self._solve_alone(program, rows, x) is End.CONVERGED
-        for system in np.flatnonzero((~systems.wanted | choosy) & ~solved & ~hopeless).tolist():
-            members = np.flatnonzero(systems.of_row == system)
+        choosy = np.zeros(count, dtype=np.bool_)  # which inequalities bind has to be searched for
+        choosy[of_row.part[listed.at_most[rows]]] = True
+        for system in np.flatnonzero((~wanted | choosy) & ~solved & ~hopeless).tolist():
+            members = np.sort(of_row.members(system))
             whole = len(members) == len(rows)
             alone = program if whole else freezing.program(listed.expression[rows[members]])
             end = self._solve_alone(alone, rows[members], x)
             solved[system] = end is End.CONVERGED
             hopeless[system] = end is End.INFEASIBLE and bool(alone.plain.all())
         failed, contrary = np.zeros((2, parts), dtype=np.bool_)
-        failed[part[~solved[systems.of_row]]] = True
-        contrary[part[hopeless[systems.of_row]]] = True
+        failed[part[~solved[of_row.part]]] = True
+        contrary[part[hopeless[of_row.part]]] = True
         return x, failed, contrary
+
+    def _solve_stacked(
+        self, program: ArrayProgram, rows: Ints, of_row: Sorted, of_column: Sorted, wanted: Bools
+    ) -> tuple[Floats, Bools, Bools]:
+        """Returns the values (k,) of all columns, the mask of the wanted systems that were solved (values of
+        others mean nothing), and the mask of those whose linear equations contradict each other in any
+        branch.
+        """
+        metric, columns = self.metric, program.columns
+        origin, scale, row_scale = self.x[columns], metric.scale[columns], self.problem.rows.scale[rows]
+        longest = None if metric.longest is None else metric.longest[columns] / scale
+        stacks = list(_stacks(program, of_row, of_column, wanted, self.problem.rows.at_most[rows]))
+        x = origin.copy()
+        entries: Floats | None = None
+        for _ in range(STEPS):
+            if all(stack.settled for stack in stacks) or self.clock.expired:
+                break
+            residuals = program.residuals(x) / row_scale
+            if entries is None or not program.linear:
+                entries = program.entries() * scale[program.indices] / row_scale[program.entry_rows]
+            for stack in stacks:
+                if not stack.settled:
+                    stack.advance(residuals, entries, TIGHTER * self.settings.tolerance, longest)
+                    x[stack.columns] = origin[stack.columns] + scale[stack.columns] * stack.z
+        solved, hopeless = np.zeros((2, len(wanted)), dtype=np.bool_)
+        for stack in stacks:
+            solved[stack.systems] = stack.done
+            hopeless[stack.systems] = stack.out_of_reach
+        if hopeless.any():
+            hopeless[of_row.part[~program.plain]] = False
+        return x, solved, hopeless
 
     def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
         """Solves one system with all care; moves `x` there if that succeeds."""
@@ -318,13 +357,138 @@ class Levels:
         return outcome.end
 
 
-def _systems(program: ArrayProgram) -> batch.Systems:
-    """Returns the connected systems of rows and columns, with the mask of those small enough to be
-    stacked.
+def _stacks(
+    program: ArrayProgram, of_row: Sorted, of_column: Sorted, wanted: Bools, at_most: Bools
+) -> Iterator[_Stack]:
+    """Yields the wanted systems stacked by shape."""
+    entry_system = of_row.part[program.entry_rows]
+    bent = np.zeros(len(wanted), dtype=np.bool_)
+    bent[of_row.part[~program.affine]] = True
+    shape = of_row.count * (int(of_column.count.max(initial=0)) + 1) + of_column.count
+    shape[~wanted] = -1
+    for code in sorted(set(shape[wanted].tolist())):
+        members = np.flatnonzero(shape == code)
+        m, k = int(of_row.count[members[0]]), int(of_column.count[members[0]])
+        place = np.full(len(wanted), -1)
+        place[members] = np.arange(len(members))
+        entries = np.flatnonzero(place[entry_system] >= 0)
+        at = place[entry_system[entries]] * m + of_row.place[program.entry_rows[entries]]
+        rows = of_row.of[of_row.first[members][:, None] + np.arange(m)]
+        yield _Stack(
+            members,
+            rows,
+            of_column.of[of_column.first[members][:, None] + np.arange(k)],
+            entries,
+            at * k + of_column.place[program.indices[entries]],
+            at_most[rows],
+            bent[members],
+        )
+
+
+@record(frozen=False)
+class _Stack:
+    """b systems of m rows and k columns.
+
+    systems (b,); rows (b, m), columns (b, k) of the program; entries (e,) of its Jacobian, and their places
+    (e,) in (b, m, k); at_most (b, m); curved (b,) whether the nearest point has to be searched for
     """
-    rows, columns = program.shape
-    labels = components(program.entry_rows, program.indices + rows, rows + columns)
-    of_row, of_column = labels[:rows], labels[rows:]
-    count = int(labels.max(initial=-1)) + 1
-    height, width = np.bincount(of_row, minlength=count), np.bincount(of_column, minlength=count)
-    return batch.Systems(of_row, of_column, height * width <= STACKED, bool((height == width).all()))
+
+    systems: Ints
+    rows: Ints
+    columns: Ints
+    entries: Ints
+    places: Ints
+    at_most: Bools
+    curved: Bools
+    z: Floats = field(init=False)
+    done: Bools = field(init=False)
+
+    def __post_init__(self) -> None:
+        count = len(self.systems)
+        self.z = np.zeros(self.columns.shape)
+        self.done = np.zeros(count, dtype=np.bool_)
+        self.failed = np.zeros(count, dtype=np.bool_)
+        self.out_of_reach = np.zeros(count, dtype=np.bool_)
+        self.polishing = np.zeros(count, dtype=np.bool_)
+        self.promised = np.full(count, np.inf)
+        """The greatest sum of squared residuals allowed after the last step."""
+        self.before: tuple[Floats, Floats] | None = None
+        """The start of the last polishing step, and the step."""
+
+    @property
+    def settled(self) -> bool:
+        return bool((self.done | self.failed).all())
+
+    def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats | None) -> None:
+        """Takes one step of each system that is not settled, from the residuals and derivatives at its
+        place.
+        """
+        b, m = self.rows.shape
+        k = self.columns.shape[1]
+        jacobian = np.zeros(b * m * k)
+        jacobian[self.places] = entries[self.entries]
+        jacobian = jacobian.reshape(b, m, k)
+        r = residuals[self.rows]
+        with np.errstate(all="ignore"):
+            squares = np.einsum("bm,bm->b", r, r)
+            met = np.abs(r).max(axis=1) <= tolerance
+            self.failed |= ~self.done & ~(squares <= self.promised) & ~met
+            reached = ~self.failed & ~self.done & met & ~self.polishing
+            ready = reached & ~self.curved
+            if self.at_most.any() and ready.any():
+                ready &= self._push(jacobian)
+            self.done |= ready
+            self.polishing |= reached & self.curved
+            moving = ~(self.done | self.failed)
+            if not moving.any():
+                return
+            wanted = np.where(self.polishing[:, None], np.einsum("bmk,bk->bm", jacobian, self.z) - r, -r)
+            point, outside = stacked_least_norm(jacobian, wanted, moving)
+            feasible = ~outside.any(axis=1)
+            # This is a proof by Farkas' lemma if the part out of reach pulls at no inequality.
+            pulls = (np.where(self.at_most, outside, 0.0) > 0.0).any(axis=1)
+            self.out_of_reach |= moving & ~feasible & ~pulls
+            self.failed |= moving & ~feasible
+            moving &= feasible
+            self._approach(moving & ~self.polishing, point, squares, limit)
+            self._polish(moving & self.polishing, point, jacobian)
+
+    def _approach(self, which: Bools, step: Floats, squares: Floats, limit: Floats | None) -> None:
+        if limit is not None:
+            excess = (np.abs(step) / limit[self.columns]).max(axis=1)
+            self.failed |= which & (excess > 1.0)
+        self.z = np.where(which[:, None], self.z + step, self.z)
+        self.promised = np.where(which, (1.0 - GAIN) * squares, self.promised)
+
+    def _polish(self, which: Bools, point: Floats, jacobian: Floats) -> None:
+        """Steps towards the projection of the origin, by Anderson's method of memory one."""
+        step = np.where(which[:, None], point - self.z, 0.0)
+        size = 1.0 + np.abs(self.z).max(axis=1)
+        still = which & (np.abs(step).max(axis=1) <= POLISHED * size)
+        self.promised[which] = np.inf
+        target = self.z + step
+        if self.before is not None:
+            last, last_step = self.before
+            change = step - last_step
+            length = np.einsum("bk,bk->b", change, change)
+            mix = np.where(length > 0.0, np.einsum("bk,bk->b", change, step) / length, 0.0)
+            mix = np.where(np.abs(mix) < 1e3, mix, 0.0)
+            known = which & ~still & (np.abs(last_step).max(axis=1) > 0.0)
+            mixed = target - mix[:, None] * (self.z - last + change)
+            target = np.where(known[:, None], mixed, target)
+        self.before = self.z, step
+        self.z = np.where(which[:, None], target, self.z)
+        if still.any():
+            pushing = self._push(jacobian) if self.at_most.any() else still
+            self.done |= still & pushing
+            self.failed |= still & ~pushing
+
+    def _push(self, jacobian: Floats) -> Bools:
+        """Returns the mask of systems whose inequalities all push against the nearest point; fails the
+        others, in which some inequality is not met with equality.
+        """
+        multipliers = -np.einsum("bkm,bk->bm", np.linalg.pinv(jacobian), self.z)
+        slack = PULLING * (1.0 + np.abs(multipliers).max(axis=1))
+        pushing: Bools = (np.where(self.at_most, multipliers, 0.0) >= -slack[:, None]).all(axis=1)
+        self.failed |= ~pushing & ~self.done
+        return pushing

@@ -15,8 +15,7 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
-from aidl_lang.solver.components import DOUBT, LARGE, RANK, Sorted, connected, lots, stacked
-from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, lots, stacked
 from aidl_lang.solver.operations import Bools, Floats, Ints
 
 SEEN = 1e-7
@@ -225,7 +224,7 @@ def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tup
 
 
 def _settle_large(parts: _Parts, part: int, found: Mobility) -> None:
-    from aidl_lang.solver.elimination import UndecidedError
+    from aidl_lang.solver.sparse import UndecidedError
 
     columns, groups = parts.columns.members(part), parts.groups(part)
     try:
@@ -244,7 +243,7 @@ def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools
     """Returns the motions of a large part (None if they are too many), the mask of its columns that move, and
     its degrees of freedom by group and in all.
     """
-    from aidl_lang.solver.elimination import NullSpace, UndecidedError, rank_of
+    from aidl_lang.solver.sparse import NullSpace, UndecidedError, independent_rows
 
     width = int(parts.columns.count[part])
     rows = parts.rows.members(part)
@@ -253,7 +252,7 @@ def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools
     observed = parts.local(parts.observables.take(parts.seen.members(part)))
 
     def degrees_of(rows: Sparse) -> int:
-        return rank_of([null_space.rows, _unit(rows)], width) - len(null_space.rows)
+        return len(independent_rows(null_space.rows.above(_unit(rows)), width)) - len(null_space.rows)
 
     total = degrees_of(observed)
     if not total:

@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.solver.linear import Matrix, damped_steps, with_slacks
+from aidl_lang.solver.linear import Matrix, damped_steps, nearest, with_slacks
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.quadratic import nearest
 
 GAIN = 0.1
 """A step must bring this part of the decrease that the linearised rows promise."""
@@ -107,7 +106,7 @@ class Clock:
 
 
 class Rows(Protocol):
-    """Some rows as functions of their free unknowns: `program.Program` or `array_program.ArrayProgram`."""
+    """Some rows as functions of their free unknowns: `freezing.Program` or `array_program.ArrayProgram`."""
 
     @property
     def linear(self) -> bool:

@@ -11,7 +11,7 @@ are chosen so that Newton's method can leave them:
     abs    at 0                   1
     asin, acos at -1 and 1        the slope is capped at 1e8
 
-Each operation has a scalar and a vectorised form; small systems are quicker with the former.
+Each operation has a scalar form; those that are frequent have one on arrays besides, of the same meaning.
 Functions of one operand take a second and ignore it, so that both are called alike.
 """
 
@@ -71,6 +71,8 @@ ARITY: tuple[int, ...] = (0, 0, 2, 2, 2, 2, 1, 2, 1, 1, 1, 1, 1, 2, 1, 1, 1, 2, 
 
 BRANCHING = frozenset({Op.ABS, Op.MINIMUM, Op.MAXIMUM, Op.SELECT})
 LINEAR = frozenset({Op.ADD, Op.SUB, Op.NEG})
+IDENTITY = 40
+"""The code, on arrays, of a branching node whose branch is chosen; beyond the codes of `Op`."""
 
 
 # ---- scalar values ------------------------------------------------------------------------------------
@@ -256,3 +258,78 @@ PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.SELECT: lambda c, a, b, _: (0.0, 1.0, 0.0) if c >= 0.0 else (0.0, 0.0, 1.0),
     Op.CUBIC_MAX: _d_cubic_max,
 }
+
+
+# ---- on arrays, many nodes at once; rare operations are left to the functions above ---------------------
+
+
+def values_of(op: int, operands: tuple[Floats, ...]) -> Floats:
+    """Returns the values (k,) of k nodes of one operation, from (k,) arrays of their operands."""
+    if function := _VALUES.get(op):
+        return function(*operands)
+    return np.array([VALUE[op](*each) for each in zip(*_columns(operands), strict=True)])
+
+
+def partials_of(op: int, operands: tuple[Floats, ...], value: Floats) -> tuple[Floats, ...]:
+    """Returns the partial derivatives of k nodes, an array (k,) for each operand; always finite."""
+    if function := _SLOPES.get(op):
+        return tuple(
+            slope if np.isfinite(slope).all() else np.where(np.isfinite(slope), slope, 0.0)
+            for slope in function(*operands, value)
+        )
+    slopes = [PARTIALS[op](*each) for each in zip(*_columns(operands), value.tolist(), strict=True)]
+    return tuple(np.array(slopes).reshape(len(value), -1).T)
+
+
+def _columns(operands: tuple[Floats, ...]) -> list[list[float]]:
+    return [a.tolist() for a in (operands if len(operands) > 1 else operands * 2)]
+
+
+def _over_square(y: Floats, x: Floats, _: Floats) -> tuple[Floats, Floats]:
+    square = x * x + y * y
+    singular = square == 0.0
+    return np.where(singular, 1.0, x / square), np.where(singular, 0.0, -y / square)
+
+
+def _over_length(a: Floats, b: Floats, length: Floats) -> tuple[Floats, Floats]:
+    singular = length == 0.0
+    return np.where(singular, 1.0, a / length), np.where(singular, 0.0, b / length)
+
+
+def _select(condition: Floats, a: Floats, b: Floats) -> Floats:
+    return np.where(condition >= 0.0, a, b)
+
+
+_VALUES: dict[int, Callable[..., Floats]] = {
+    Op.ADD: np.add,
+    Op.SUB: np.subtract,
+    Op.MUL: np.multiply,
+    Op.DIV: lambda a, b: a / (b + 0.0),  # zero has no sign
+    Op.NEG: np.negative,
+    Op.SIN: np.sin,
+    Op.COS: np.cos,
+    Op.ATAN2: np.arctan2,
+    Op.SQRT: lambda a: np.sqrt(np.where((a < 0.0) & (a >= -ROUNDING), 0.0, a)),
+    Op.ABS: np.abs,
+    Op.SQUARE: np.square,
+    Op.HYPOT: np.hypot,
+    Op.MINIMUM: lambda a, b: np.where(a <= b, a, np.where(b < a, b, np.nan)),
+    Op.MAXIMUM: lambda a, b: np.where(a >= b, a, np.where(b > a, b, np.nan)),
+    Op.SELECT: _select,
+    IDENTITY: lambda a: a,
+}
+_SLOPES: dict[int, Callable[..., tuple[Floats, ...]]] = {
+    Op.ADD: lambda a, b, _: (np.ones_like(a), np.ones_like(b)),
+    Op.SUB: lambda a, b, _: (np.ones_like(a), np.full_like(b, -1.0)),
+    Op.NEG: lambda a, _: (np.full_like(a, -1.0),),
+    Op.MUL: lambda a, b, _: (b, a),
+    Op.DIV: lambda a, b, _: (1.0 / b, -a / (b * b)),
+    Op.SIN: lambda a, _: (np.cos(a),),
+    Op.COS: lambda a, _: (-np.sin(a),),
+    Op.ATAN2: _over_square,
+    Op.SQRT: lambda _, root: (np.where(root > 0.0, 0.5 / root, 1.0),),
+    Op.SQUARE: lambda a, _: (2.0 * a,),
+    Op.HYPOT: _over_length,
+    IDENTITY: lambda a, _: (np.ones_like(a),),
+}
+"""Branching operations are not here: before they are differentiated a branch is chosen."""

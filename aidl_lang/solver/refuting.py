@@ -1,6 +1,6 @@
 """Proofs that rows never hold together, wherever the free unknowns are and whichever branches they take.
 
-A row is a combination of unknowns and knots (`forms`). Here a knot is a number of its own, of which only
+A row is a combination of unknowns and knots (`valuation`). Here a knot is a number of its own, of which only
 bounds are kept that always hold: `max(a, b)` is no less than `a` and no less than `b`, a root is not
 negative. Rows that contradict each other even then are contradictory, and the factors with which they add up
 to an impossibility prove it (Farkas' lemma). The reverse is not true, unless there are no knots.
@@ -13,11 +13,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.forms import Affine, Form, add_terms, applied, branched, combined, scaled
+from aidl_lang.solver.linear import nearest, plainly_hold
 from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.problem import Relation, Row
-from aidl_lang.solver.quadratic import nearest, plainly_hold
-from aidl_lang.solver.valuation import Valuation
+from aidl_lang.solver.valuation import Affine, Form, Valuation, add_terms, applied, branched, combined, scaled
 
 CANCELLED = 1e-9
 """Part of the slopes added up that rounding may leave of them."""

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.hierarchy import Hierarchy
+from aidl_lang.solver.linear import nearest
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Problem, Relation, Settings
-from aidl_lang.solver.quadratic import nearest
 from aidl_lang.solver.refuting import Relaxation
 from aidl_lang.solver.tiers import Scope
 

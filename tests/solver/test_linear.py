@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
-from aidl_lang.solver import batch, components, dense, quadratic, sparse
+from aidl_lang.solver import gradients, linear
 from aidl_lang.solver.sparse import SparseMatrix
 from tests.amount import tries
 
@@ -31,10 +31,8 @@ def system(seed: int, kind: str, consistent: bool = True) -> tuple[np.ndarray, n
     return matrix, y if consistent else y + random.uniform(-5.0, 5.0, len(y))
 
 
-def least_norm(way: str, matrix: np.ndarray, y: np.ndarray) -> dense.LeastNorm:
-    if way == "dense":
-        return dense.least_norm(matrix, y)
-    return sparse.least_norm(SparseMatrix(csr_array(matrix)), y)
+def least_norm(way: str, matrix: np.ndarray, y: np.ndarray) -> linear.LeastNorm:
+    return linear.least_norm(matrix if way == "dense" else SparseMatrix(csr_array(matrix)), y)
 
 
 @pytest.mark.parametrize("way", ["dense", "sparse"])
@@ -76,7 +74,7 @@ def test_singular_square_matrices_are_no_danger(seed: int, kind: str) -> None:
     if kind == "overflow" and len(sparse_matrix.data):
         sparse_matrix.data[0] = np.inf
     with np.errstate(all="ignore"):
-        found = sparse.least_norm(SparseMatrix(sparse_matrix), np.ones(n))
+        found = linear.least_norm(SparseMatrix(sparse_matrix), np.ones(n))
     assert found.point.shape == (n,)
     if kind != "overflow" and found.outside is None:
         assert np.abs(matrix @ found.point - 1.0).max() <= 1e-6
@@ -99,10 +97,8 @@ def test_damped_steps(seed: int, damping: float) -> None:
     matrix, residuals = system(seed, "redundant", consistent=False)
     mu = 10.0**damping
     expected = -np.linalg.solve(matrix.T @ matrix + mu * np.eye(matrix.shape[1]), matrix.T @ residuals)
-    for steps in (
-        dense.DampedSteps(matrix, residuals),
-        sparse.DampedSteps(SparseMatrix(csr_array(matrix)), residuals),
-    ):
+    for kind in (matrix, SparseMatrix(csr_array(matrix))):
+        steps = linear.damped_steps(kind, residuals)
         assert np.abs(steps.step(mu) - expected).max() <= 1e-6 * (1.0 + np.abs(expected).max())
         assert steps.slope == pytest.approx(np.linalg.norm(matrix.T @ residuals))
         assert steps.largest >= 0.99 * np.linalg.norm(matrix, 2) ** 2
@@ -113,12 +109,12 @@ def test_damped_steps(seed: int, damping: float) -> None:
 def test_a_stack_is_its_members(members: list[tuple[int, bool]]) -> None:
     systems = [system(seed, "redundant", consistent) for seed, consistent in members]
     matrices, sides = (np.array(column) for column in zip(*systems, strict=True))
-    points, outside = batch.least_norm(matrices, sides, np.ones(len(members), dtype=np.bool_))
+    points, outside = linear.stacked_least_norm(matrices, sides, np.ones(len(members), dtype=np.bool_))
     for matrix, y, point, rest, (_, consistent) in zip(
         matrices, sides, points, outside, members, strict=True
     ):
         assert bool(rest.any()) == (not consistent)
-        alone = dense.least_norm(matrix, y)
+        alone = linear.least_norm(matrix, y)
         assert np.abs(point - alone.point).max() <= 1e-6 * (1.0 + np.abs(point).max())
 
 
@@ -128,8 +124,8 @@ def test_many_inequalities_enter_together_and_end_at_the_same_point(seed: int) -
     random = np.random.default_rng(seed)
     matrix, y = random.uniform(-1.0, 1.0, (40, 15)), random.uniform(-1.0, 0.5, 40)
     inequality = np.arange(40) >= 3
-    one_by_one = quadratic._DualActiveSet(matrix, y, inequality).solve()
-    found = quadratic.nearest(matrix, y, inequality)
+    one_by_one = linear._DualActiveSet(matrix, y, inequality).solve()
+    found = linear.nearest(matrix, y, inequality)
     assert found.feasible == one_by_one.feasible
     if found.feasible:
         assert np.abs(found.point - one_by_one.point).max() <= 1e-8
@@ -143,8 +139,8 @@ def test_components(count: int, links: list[tuple[int, int]], with_scipy: bool) 
     links = [(a % count, b % count) for a, b in links]
     pairs = np.array(links, dtype=np.int64).reshape(-1, 2)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(components, "EDGES", -1 if with_scipy else 10**9)
-        labels = components.components(pairs[:, 0], pairs[:, 1], count).tolist()
+        patch.setattr(gradients, "EDGES", -1 if with_scipy else 10**9)
+        labels = gradients.components(pairs[:, 0], pairs[:, 1], count).tolist()
     sets = [{i} for i in range(count)]
     for a, b in links:
         joined = next(s for s in sets if a in s) | next(s for s in sets if b in s)

@@ -30,7 +30,7 @@ from aidl_lang.geometry.freedom.scene import (
 )
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom
-from aidl_lang.solver.components import connected
+from aidl_lang.solver.gradients import connected
 from aidl_lang.solver.solution import Solution
 
 MOST = 200

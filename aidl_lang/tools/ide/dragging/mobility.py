@@ -24,8 +24,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.solver.array_program import Schedule
-from aidl_lang.solver.components import components
-from aidl_lang.solver.gradients import linearise
+from aidl_lang.solver.gradients import components, linearise
 from aidl_lang.solver.problem import violations
 from aidl_lang.tools.ide.dragging.grips import Grip
 
