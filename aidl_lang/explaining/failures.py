@@ -252,10 +252,15 @@ class Explanation:
         """
         cheapest = sorted(self._remedies, key=self._dearness)
         has_others = len(self.solution.failures) > 1
+        idle: Fix | None = None
         for found in filter(self._may_finish, cheapest[:_FINISHED]):
             fix = self._once(found)
             if self.trials.finishes(fix.edits):
-                return fix
+                if not self.trials.idles(fix.edits):
+                    return fix
+                idle = idle or fix
+        if idle is not None:
+            return idle
         if has_others and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
         for party in reversed(self.parties if self.is_proven else []):
@@ -389,6 +394,8 @@ class Explanation:
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
             yield f"{hidden} more take part, which are not shown"
+        for flat in (r.flat_at for r in self._remedies if r.flat_at and r.fix is self._fix):
+            yield f"at `{flat}` all would lie flat, with no room to turn: the fix goes a little further"
         gaps = dict(self.failure.gaps)
         parties = sorted(self.parties, key=lambda party: party is not self._chief)
         yield from itertools.islice(
