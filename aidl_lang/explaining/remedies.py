@@ -51,7 +51,7 @@ _FURTHER = 0.25
 """Part of a change that is added to try whether numbers beyond fit as well."""
 _SHARP = 0.03
 """Part of a change by which a number before the end of a range must fail to fit."""
-_BEYOND = (_FURTHER, 1.0, 2.0, 4.0, 8.0)
+_BEYOND = (1.0, 2.0, 4.0, 8.0)
 """Parts of a change that are added in search of the other end of a range."""
 _INWARD, _INWARD_SHARE = 0.125, 0.02
 """Parts of a change and of a number by which a number lies within a range at whose end all lies flat."""
@@ -59,8 +59,10 @@ _LITTLE = 0.02
 """Part of a number that is tried in place of 0."""
 _DIVISORS = range(2, 65)
 _DIGITS = (6, 9, 12)
-_PLAIN, _ROUGH = 3, 5
-"""Digits of a number that is easily written, and of one that is worth mentioning where any point would do."""
+_SHORT, _PLAIN, _ROUGH = 2, 3, 5
+"""Digits of an end that is hardly met by chance, of a number that is easily written, and of one that is worth
+mentioning where any point would do.
+"""
 _WHOLE = (-1.0, 1.0, -2.0, 2.0)
 """Changes that are tried of a number that must be whole."""
 
@@ -109,13 +111,14 @@ def dear(dial: Dial, share: float, plain: bool) -> float:
 
 def remedies(searches: Iterable[RemedySearch]) -> Iterator[Remedy]:
     """Yields remedies, at most one for each place; none for searches that find no number, or for which there
-    is no time. A first remedy of few digits ends what is sought late. Of each few searches, those start first
-    that would change least.
+    is no time, which is noted with the trials. A first remedy of few digits ends what is sought late. Of each
+    few searches, those start first that would change least.
     """
     found, is_enough = set[Span](), False
     waiting = iter(searches)
     for first in waiting:
         if first.is_late:
+            first.trials.cut_short.add(first.failure.conflict)
             return
         few = [first, *itertools.islice(waiting, _ABREAST - 1)]
         for search in sorted(few, key=lambda search: search.reach):
@@ -272,6 +275,8 @@ class RemedySearch:
 
     def _range(self, end: _Written, target: float, change: float) -> Remedy:
         """Returns the remedy for numbers that fit from an `end` onward, which was sought at a `target`."""
+        if self.failure.is_curved and not _is_plain(end.value, _SHORT):
+            end = self._end_between(end.value - _SHARP * change, end.value) or end
         end = self._ending(end, target, change)
         further = self._plain(_neat(end.value, change, _FURTHER * abs(change)))
         if not self._is_sharp(end, change) or not self._fits(further):
@@ -296,8 +301,8 @@ class RemedySearch:
         return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
 
     def _other_end(self, end: _Written, change: float) -> _Written | None:
-        """Returns the other end of the numbers that fit, or the furthest that was seen to fit if the end was
-        not found; None if all fit that may be meant.
+        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None if
+        all fit that may be meant.
         """
         inside = end.value
         for part in _BEYOND:
@@ -305,9 +310,7 @@ class RemedySearch:
             if end.value > 0.0 >= outside:  # what turns round is another matter
                 outside = _LITTLE * end.value
             if self._lack(outside):
-                furthest = self._plain(_neat(inside, -change, _COARSE * abs(change)))
-                known = furthest if inside != end.value and self._fits(furthest) else end
-                return self._end_between(outside, inside) or known
+                return self._end_between(outside, inside) or end
             inside = outside
         return None
 

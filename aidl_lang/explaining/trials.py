@@ -57,6 +57,8 @@ class Trials:
     lowered: Lowered
     solution: Solution
     settings: Settings
+    cut_short: set[tuple[int, ...]] = field(default_factory=set)
+    """The conflicts for which numbers were left untried, for want of time."""
     _begun: dict[tuple[int, ...], float] = field(default_factory=dict, repr=False)
     """The time that was left when the first search for a failure began."""
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
