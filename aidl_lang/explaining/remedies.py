@@ -292,7 +292,7 @@ class RemedySearch:
         return replace(self._remedy(offered or end, shown), flat_at=flat if offered else "")
 
     def _inner(self, end: _Written, change: float) -> _Written | None:
-        """Returns a number a little within a range at whose `end` all lies flat, as a triangle without height,
+        """Returns a number a little within a range at whose `end` all lies flat, as a triangle without height
         so that nothing could turn; None at any other end.
         """
         inward = math.copysign(max(_INWARD * abs(change), _INWARD_SHARE * abs(end.value)), change)
@@ -301,8 +301,8 @@ class RemedySearch:
         return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
 
     def _other_end(self, end: _Written, change: float) -> _Written | None:
-        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None if
-        all fit that may be meant.
+        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None
+        if all fit that may be meant.
         """
         inside = end.value
         for part in _BEYOND:

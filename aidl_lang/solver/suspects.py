@@ -172,7 +172,7 @@ def nearby_solution(
 def equations(
     problem: Problem, settings: Settings, constraints: Sequence[int], place: Mapping[int, float]
 ) -> list[Floats]:
-    """Returns the unit slopes (r, k) of the equations of each constraint over the unknowns of `place`, there."""
+    """Returns the unit slopes (r, k) of the equations of each constraint at `place`, over its unknowns."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.values.assign(place.items())
     there = Linearised(hierarchy, constraints, place)

@@ -131,7 +131,11 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
     for fix in (d.fix for d in checked.diagnostics if mends and d.fix is not None):
-        why = "it would make things worse" if fix.is_sure else "it changes what you wrote, so the choice is yours"
+        why = (
+            "it would make things worse"
+            if fix.is_sure
+            else "it changes what you wrote, so the choice is yours"
+        )
         say(f"{name}: not fixed: {fix.title}: {why}")
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
