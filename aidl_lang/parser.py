@@ -199,8 +199,11 @@ class _Reader:
         problem = explain(
             Trouble(self.source, self.tokens, position, self._statement_begin(position), automaton)
         )
-        self._report(problem.diagnostic)
         repair = problem.repair
+        if (left_out := problem.diagnostic.span) is not None and repair is not None and not repair.tokens:
+            inside = range(left_out.start, left_out.end)
+            self.diagnostics = [d for d in self.diagnostics if d.span is None or d.span.start not in inside]
+        self._report(problem.diagnostic)
         if repair is not None and self.repairs < self._MOST_REPAIRS:
             self.repairs += 1
             if repair.start >= position:

@@ -157,3 +157,13 @@ def test_a_search_that_may_have_failed_for_a_failure_inside_it_is_not_told() -> 
         GroupFailure(3, Failure.NOT_CONVERGED, ()),
     ]
     assert [f for f in found if not _follows(f, found, paths)] == [found[0], conflict, found[4], found[5]]
+
+
+def test_a_search_that_is_cut_short_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "solid a { b = circle(center: origin, radius: 5); constrain { b.radius == 6; b.radius <= 4 } }"
+    told = "what would fit was not sought to the end, for want of time"
+    (found,) = errors(text)
+    assert told not in found.hints
+    monkeypatch.setattr("aidl_lang.explaining.trials.SECONDS", -1.0)
+    (found,) = errors(text)
+    assert told in found.hints

@@ -269,6 +269,7 @@ class Resolver:
     def _attributes(self, attributes: Sequence[ast.Attribute], scope: SymbolScope) -> None:
         for attribute in attributes:
             name = attribute.name.text
+            other, hint = "", ""
             if word_meant(name, ATTRIBUTES) is None:
                 other, hint = ATTRIBUTES_MEANT.get(fold(name), ("", ""))
                 like = [other] if other else nearest(name, [a for a in ATTRIBUTES if a != "colour"], 2)
@@ -278,13 +279,15 @@ class Resolver:
                     f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@"),
                     attribute.name,
                     hints=() if like else (hint,),
-                    fix=complaints.respell(attribute.name, like),
+                    fix=complaints.renamed(attribute.name, other)
+                    if other
+                    else complaints.respell(attribute.name, like),
                 )
             for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():
                 value = argument.value
                 # `@orientation(front)`, even if a part has that name
                 is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))
-                if not (is_bare and word_meant(name, WORDED)):
+                if not (is_bare and word_meant(other or name, WORDED)):
                     self._unordered(scope, value)
 
     @staticmethod

@@ -32,6 +32,8 @@ _TOLERANCE = 1e-6
 """Violations below this, in the constraint's own units, are not mentioned."""
 _FINISHED = 5
 """The most fixes that are tried for whether the program then compiles to the end."""
+_LIKE = 2.0
+"""Factor up to which a dearer fix is offered in place of one that changes what says nothing new then."""
 NAMED = 3
 """The most things that a list names."""
 _SHOWN = 12
@@ -252,10 +254,17 @@ class Explanation:
         """
         cheapest = sorted(self._remedies, key=self._dearness)
         has_others = len(self.solution.failures) > 1
+        idle: tuple[Fix, Remedy] | None = None
         for found in filter(self._may_finish, cheapest[:_FINISHED]):
             fix = self._once(found)
+            if idle is not None and not self._is_like(found, idle[1]):
+                break
             if self.trials.finishes(fix.edits):
-                return fix
+                if not self.trials.idles(fix.edits):
+                    return fix
+                idle = idle or (fix, found)
+        if idle is not None:
+            return idle[0]
         if has_others and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
         for party in reversed(self.parties if self.is_proven else []):
@@ -300,6 +309,12 @@ class Explanation:
         breaks = not found.dial.is_exact and bool(twins)
         share = dear(found.dial, found.share, found.plain)
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
+
+    def _is_like(self, found: Remedy, cheaper: Remedy) -> bool:
+        """Tells whether a remedy is hardly dearer than a cheaper one."""
+        *kind, share, _ = self._dearness(found)
+        *least, lesser, _ = self._dearness(cheaper)
+        return kind == least and share <= _LIKE * lesser
 
     def _shares(self, place: Span) -> int:
         """Returns the number of other failures in which the statement at a place takes part."""
@@ -389,6 +404,11 @@ class Explanation:
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
             yield f"{hidden} more take part, which are not shown"
+        for flat in (r.flat_at for r in self._remedies if r.flat_at and r.fix is self._fix):
+            yield f"at `{flat}` all would lie flat, with no room to turn: the fix goes a little further"
+        if self.failure.conflict in self.trials.cut_short:
+            told = "other numbers were" if self._remedies else "what would fit was"
+            yield f"{told} not sought to the end, for want of time"
         gaps = dict(self.failure.gaps)
         parties = sorted(self.parties, key=lambda party: party is not self._chief)
         yield from itertools.islice(

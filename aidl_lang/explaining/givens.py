@@ -126,7 +126,9 @@ def exact_numbers(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) ->
 
 
 def _exact(dial: Dial, name: str = "") -> Dial:
-    return replace(dial, name=name, is_exact=True, is_rough=not name)
+    is_size = not name and not dial.is_rough and dial.unit != "deg"
+    sign = Sign.POSITIVE if is_size and dial.sign is Sign.NOT_NEGATIVE else dial.sign
+    return replace(dial, name=name, is_exact=True, is_rough=not name, sign=sign)
 
 
 def _is_literal(node: ast.Node) -> bool:

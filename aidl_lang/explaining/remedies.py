@@ -51,14 +51,18 @@ _FURTHER = 0.25
 """Part of a change that is added to try whether numbers beyond fit as well."""
 _SHARP = 0.03
 """Part of a change by which a number before the end of a range must fail to fit."""
-_BEYOND = (1.0, 8.0)
+_BEYOND = (1.0, 2.0, 4.0, 8.0)
 """Parts of a change that are added in search of the other end of a range."""
+_INWARD, _INWARD_SHARE = 0.125, 0.02
+"""Parts of a change and of a number by which a number lies within a range at whose end all lies flat."""
 _LITTLE = 0.02
 """Part of a number that is tried in place of 0."""
 _DIVISORS = range(2, 65)
 _DIGITS = (6, 9, 12)
-_PLAIN, _ROUGH = 3, 5
-"""Digits of a number that is easily written, and of one that is worth mentioning where any point would do."""
+_SHORT, _PLAIN, _ROUGH = 2, 3, 5
+"""Digits of an end that is hardly met by chance, of a number that is easily written, and of one that is worth
+mentioning where any point would do.
+"""
 _WHOLE = (-1.0, 1.0, -2.0, 2.0)
 """Changes that are tried of a number that must be whole."""
 
@@ -73,6 +77,7 @@ class Remedy:
     share  the relative change
     plain  whether it is a number of few digits
     counts whether it is a number of things
+    flat_at the end of the range at which all lies flat, if there is one; the fix goes further
     """
 
     dial: Dial
@@ -82,6 +87,7 @@ class Remedy:
     share: float
     plain: bool
     counts: bool = False
+    flat_at: str = ""
 
     def would_fit(self, numbers: int = 1) -> str:
         """Returns the words of a message; they name the number if several `numbers` are written at its
@@ -105,13 +111,14 @@ def dear(dial: Dial, share: float, plain: bool) -> float:
 
 def remedies(searches: Iterable[RemedySearch]) -> Iterator[Remedy]:
     """Yields remedies, at most one for each place; none for searches that find no number, or for which there
-    is no time. A first remedy of few digits ends what is sought late. Of each few searches, those start first
-    that would change least.
+    is no time, which is noted with the trials. A first remedy of few digits ends what is sought late. Of each
+    few searches, those start first that would change least.
     """
     found, is_enough = set[Span](), False
     waiting = iter(searches)
     for first in waiting:
         if first.is_late:
+            first.trials.cut_short.add(first.failure.conflict)
             return
         few = [first, *itertools.islice(waiting, _ABREAST - 1)]
         for search in sorted(few, key=lambda search: search.reach):
@@ -268,33 +275,63 @@ class RemedySearch:
 
     def _range(self, end: _Written, target: float, change: float) -> Remedy:
         """Returns the remedy for numbers that fit from an `end` onward, which was sought at a `target`."""
+        if self.failure.is_curved and not _is_plain(end.value, _SHORT):
+            end = self._end_between(end.value - _SHARP * change, end.value) or end
         end = self._ending(end, target, change)
         further = self._plain(_neat(end.value, change, _FURTHER * abs(change)))
         if not self._is_sharp(end, change) or not self._fits(further):
             return self._remedy(end, end.shown)
-        if (other := self._other_end(end.value, change)) is not None:
+        offered, flat = (self._inner(end, change), end.text) if self.failure.is_curved else (None, "")
+        if (other := self._other_end(end, change)) is end:
+            shown = end.shown
+        elif other is not None:
             least, most = sorted((end, other), key=lambda each: each.value)
-            return self._remedy(end, f"{least.shown} to {most.shown}")
-        return self._remedy(end, f"{'at least' if change > 0.0 else 'at most'} {end.shown}")
+            shown = f"{least.shown} to {most.shown}"
+        else:
+            shown = f"{'at least' if change > 0.0 else 'at most'} {end.shown}"
+        return replace(self._remedy(offered or end, shown), flat_at=flat if offered else "")
 
-    def _other_end(self, end: float, change: float) -> _Written | None:
-        """Returns the other end of the numbers that fit; None if no such end was found."""
-        inside = end
+    def _inner(self, end: _Written, change: float) -> _Written | None:
+        """Returns a number a little within a range at whose `end` all lies flat, as a triangle without height
+        so that nothing could turn; None at any other end.
+        """
+        inward = math.copysign(max(_INWARD * abs(change), _INWARD_SHARE * abs(end.value)), change)
+        inner = self._plain(_neat(end.value + inward, change, abs(inward)))
+        both = self._edits(end.text), self._edits(inner.text)
+        return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
+
+    def _other_end(self, end: _Written, change: float) -> _Written | None:
+        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None
+        if all fit that may be meant.
+        """
+        inside = end.value
         for part in _BEYOND:
-            outside = end + part * change
-            if end > 0.0 >= outside:  # what turns round is another matter
-                outside = _LITTLE * end
-            if off := self._lack(outside):
-                step = _NUDGE * (inside - outside)
-                nudged = self._lack(outside + step)
-                if nudged is None or nudged >= off:
-                    return None
-                onward = -off * step / (nudged - off)
-                written = self._fitting(self._spelled(outside + onward, end - outside))
-                written = written and self._ending(written, outside + onward, onward)
-                return written if written and self._is_sharp(written, onward) else None
+            outside = end.value + part * change
+            if end.value > 0.0 >= outside:  # what turns round is another matter
+                outside = _LITTLE * end.value
+            if self._lack(outside):
+                return self._end_between(outside, inside) or end
             inside = outside
         return None
+
+    def _end_between(self, outside: float, inside: float) -> _Written | None:
+        """Returns the end of the numbers that fit `inside`, sought from a number `outside` that does not."""
+        found, step = None, _NUDGE * (inside - outside)
+        for _ in range(_STEPS):
+            off, nudged = self._lack(outside), self._lack(outside + step)
+            if not off or nudged is None or nudged >= off:
+                break
+            # If a nudge is all that lacks, it is the end but for rounding, or lies before that.
+            onward = -off * step / (nudged - off) if nudged else 0.0
+            found = outside + onward
+            if abs(onward) <= abs(step):
+                break
+            outside = found - _SHARP * onward
+        if found is None:
+            return None
+        written = self._fitting(self._spelled(found, inside - found))
+        written = written and self._ending(written, found, step)
+        return written if written and self._is_sharp(written, step) else None
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
         """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;

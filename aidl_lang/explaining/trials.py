@@ -18,8 +18,9 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.solution import GroupFailure
-from aidl_lang.solver.suspects import nearby_solution, residual, shortfall
+from aidl_lang.solver.suspects import equations, nearby_solution, residual, shortfall
 
 SECONDS, LONGEST = 1.5, 3.0
 """Time after which no new search is begun for one failure, and time after which nothing is tried at all for a
@@ -33,6 +34,10 @@ _TOLD = GAVE_WAY | {"N0604"}
 """These codes, and that of a program solved from elsewhere."""
 _LONGEST = 0.5
 """Seconds for one solve."""
+_FLAT = 3e-3
+"""Singular values of unit rows that count as none: a search stops near the place where all lies flat."""
+_TURNS = 1e-3
+"""Change of the slope of a unit row that is none by rounding."""
 _MOVED = 1e-6
 """Moves below this, in mm or degrees, count as none."""
 
@@ -52,6 +57,8 @@ class Trials:
     lowered: Lowered
     solution: Solution
     settings: Settings
+    cut_short: set[tuple[int, ...]] = field(default_factory=set)
+    """The conflicts for which numbers were left untried, for want of time."""
     _begun: dict[tuple[int, ...], float] = field(default_factory=dict, repr=False)
     """The time that was left when the first search for a failure began."""
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
@@ -128,6 +135,29 @@ class Trials:
         there = {numbered[u]: value for u, value in place.items()}
         return residual(other.problem, self._quick, matched[member], there)
 
+    def lies_flat(self, edits: Sequence[Edit], further: Sequence[Edit], failure: GroupFailure) -> bool:
+        """Tells whether the constraints of a failure hold after edits only where several that turn with the
+        place depend on each other, as the sides of a triangle without height; after others that go `further`
+        they do not.
+        """
+        slopes: list[list[Floats]] = []
+        for each in (edits, further):
+            if (found := self._counterpart(each, failure)) is None:
+                return False
+            other, matched, numbered = found
+            members = [matched[index] for index in failure.conflict]
+            start = {numbered[u]: value for u, value in self._free(failure).items()}
+            if (place := nearby_solution(other.problem, self._quick, members, start)) is None:
+                return False
+            slopes.append(equations(other.problem, self._quick, members, place))
+        turning = [
+            stated
+            for index, a, b in zip(failure.conflict, *slopes, strict=True)
+            if (stated := self.lowered.stated[index]) is not None and np.abs(a - b).max(initial=0.0) > _TURNS
+        ]
+        flat, free = (np.linalg.matrix_rank(np.vstack(each), _FLAT) for each in slopes)
+        return bool(flat < free) and sum(not stated.is_inherent for stated in turning) > 1
+
     def _without(self, failure: GroupFailure, member: int) -> dict[int, float] | None:
         key = failure.conflict, member
         if key not in self._places:
@@ -192,6 +222,11 @@ class Trials:
         assertion.
         """
         return not has_errors(self.diagnostics(edits))
+
+    def idles(self, edits: Sequence[Edit]) -> bool:
+        """Tells whether a statement that edits change says nothing new then, which would be told next."""
+        idle = [d.span for d in self.diagnostics(edits) if d.code == "N0602" and d.span is not None]
+        return any(span.start <= edit.span.start < span.end for span in idle for edit in edits)
 
     def settles(self, edits: Sequence[Edit]) -> bool:
         """Tells whether the program after the edits solves from its first guesses, and nothing gives way."""

@@ -169,6 +169,16 @@ def nearby_solution(
     return hierarchy.save(start) if verdict.satisfied else None
 
 
+def equations(
+    problem: Problem, settings: Settings, constraints: Sequence[int], place: Mapping[int, float]
+) -> list[Floats]:
+    """Returns the unit slopes (r, k) of the equations of each constraint at `place`, over its unknowns."""
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    hierarchy.values.assign(place.items())
+    there = Linearised(hierarchy, constraints, place)
+    return [there.jacobian[(there.owner == index) & ~there.inequality] for index in constraints]
+
+
 def residual(problem: Problem, settings: Settings, constraint: int, place: Mapping[int, float]) -> float:
     """Returns the value of the row of a constraint that is furthest from zero at `place`, with its sign."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))

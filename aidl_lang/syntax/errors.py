@@ -13,6 +13,7 @@ from aidl_lang.syntax.trouble import SyntaxProblem, Trouble, replaced
 from aidl_lang.syntax.words import describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
+    foreign.prose,
     foreign.import_of_module,
     foreign.documentation_text,
     foreign.inches,

@@ -19,6 +19,46 @@ from aidl_lang.syntax.trouble import (
     statement_end,
 )
 
+# --- Prose ----------------------------------------------------------------------------------------
+
+_PROSE = re.compile(
+    r"[ \t]*(?:#{1,6} |[-*•] |\d+[.)] )?[*_`\"“]*[A-ZÀ-Þ][^{};=@<>|\n]*\Z"  # no sign of the language
+)
+_PROSE_ON = re.compile(r"[ \t]*[^\s{};=@<>|`/][^{};=@<>|\n]*\Z")
+_WORDS = re.compile(r"[^\W\d_]+(?:['’][^\W\d_]+)?[,:.!?*_`\")]* +(?=[(*_`\"]*[^\W_])")
+_FEWEST = 2
+"""Words of a line of prose with another one behind them."""
+
+
+def prose(t: Trouble) -> SyntaxProblem | None:
+    """Recognises a paragraph about the program among its statements: the fix makes it a comment."""
+    text, first = t.source.text, t.first.start
+    start = text.rfind("\n", 0, first) + 1
+    if text[start:first].strip():
+        return None
+    line = text[start : line_end(text, first)]
+    if not _PROSE.match(line) or len(_WORDS.findall(line)) < _FEWEST:
+        return None
+    starts, end = [start], start + len(line)
+    while _PROSE_ON.match(line := text[end + 1 : line_end(text, end + 1)]) and end < len(text):
+        starts.append(end + 1)
+        end += 1 + len(line)
+    stop = next(
+        k for k in range(t.begin, len(t.tokens)) if t.tokens[k].start >= end or t.tokens[k].kind == END
+    )
+    starts[0] = first
+    edits = tuple(Edit(Span(t.source, at, at), "// ") for at in starts)
+    return SyntaxProblem(
+        Diagnostic(
+            "E0108",
+            "this is prose, and no part of the program",
+            Span(t.source, first, end),
+            fix=Fix("make it a comment", edits, is_sure=True),
+        ),
+        TokenRepair(t.begin, stop),
+    )
+
+
 # --- Loops and blocks -----------------------------------------------------------------------------
 
 _LOOP = re.compile(

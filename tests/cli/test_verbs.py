@@ -106,6 +106,17 @@ def test_check_fix_tells_what_solving_finds_in_what_it_mended(aidl: Aidl) -> Non
     assert quick.err.endswith("-: no mistakes found; nothing was solved\n")
 
 
+def test_check_fix_says_why_a_fix_was_left(aidl: Aidl) -> None:
+    program = "solid a { b = circle(center: origin, radius: 5); constrain { b.radius == 6; b.radius <= 4 } }"
+    result = aidl("check", "--fix", "-", stdin=program)
+    assert (result.code, result.out) == (1, program)
+    assert (
+        "-: not fixed: write `6`: it changes what you wrote, so the choice is yours\n-: 1 error\n"
+        in result.err
+    )
+    assert "not fixed" not in aidl("check", "-", stdin=program).err
+
+
 def test_check_fix_leaves_a_good_program_alone(aidl: Aidl, folder: Path) -> None:
     before = (folder / "good.aidl").stat().st_mtime_ns
     assert aidl("check", "--fix", "good.aidl").code == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -35,12 +37,16 @@ def test_ends(of: Knob, expected: list[object]) -> None:
 def found(of: Knob, end: float, threshold: float) -> tuple[float, float, list[float]]:
     """The limit of a param that works on this side of a threshold, and the values that were tried."""
     sign = 1 if end > of.value else -1
-    search, asked = limit(of, end), []
+    return searched(of, end, lambda value: sign * value <= sign * threshold)
+
+
+def searched(of: Knob, end: float, works: Callable[[float], bool]) -> tuple[float, float, list[float]]:
+    search, asked = limit(of, end), list[float]()
     try:
         value = next(search)
         while True:
             asked.append(value)
-            value = search.send(sign * value <= sign * threshold)
+            value = search.send(works(value))
     except StopIteration as done:
         return *done.value, asked
 
@@ -57,7 +63,16 @@ def test_limit_is_between_what_works_and_what_does_not(
     assert works == value or (works in asked and inside(works))
     assert beyond == end or (beyond in asked and not inside(beyond))
     assert abs(beyond - works) <= 2e-3 * way
-    assert len(asked) <= 24
+    assert len(asked) <= 27
+
+
+def test_what_fails_on_the_way_to_a_limit_is_the_limit() -> None:
+    of = knob(40.0, 40.0, 200.0)
+    works, beyond, asked = searched(of, 200.0, lambda v: v <= 150 and not 90 <= v <= 100)
+    assert (works, beyond) == (89.99, 90)
+    assert {v for v in asked if v < works} >= {
+        round(40 + share * (works - 40), 4) for share in (0.25, 0.5, 0.75)
+    }
     assert all(float(f"{v:.12g}") == v for v in asked)
 
 

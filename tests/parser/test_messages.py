@@ -122,6 +122,10 @@ def test_message(text: str, code: str, at: tuple[int, int], message: str | None)
         ("param w 80", "param w = 80"),
         ("hole { todo }", "hole hole_1 { todo }"),
         ("a == b\n-c == d", "a == b;\nconstrain -c == d"),
+        (
+            "Here is a plate.\nIts width (60 mm) can\nbe changed.\nlet a = 3",
+            "// Here is a plate.\n// Its width (60 mm) can\n// be changed.\nlet a = 3",
+        ),
         ("let step = 3\nlet a = step", "let step_1 = 3\nlet a = step_1"),
     ],
 )

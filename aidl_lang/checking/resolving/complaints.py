@@ -293,5 +293,10 @@ def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
     return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),), is_sure)
 
 
+def renamed(node: ast.Node, name: str) -> Fix:
+    """Returns the fix that writes a name for one that means the same elsewhere."""
+    return Fix(f"write `{name}`", (Edit(node.span, name),), is_sure=True)
+
+
 def list_of(start: str, names: Sequence[str], mark: str = "") -> str:
     return start + (first_few(ticked(names, mark), 8, ", …") or "nothing")

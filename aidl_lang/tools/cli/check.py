@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
             is_well = is_well and checked.sweep.ok
             swept.append(ends.data(name, checked.sweep))
         if not arguments.json:
-            _tell(name, checked, asks_for_ends=arguments.ends)
+            _tell(name, checked, mends=arguments.fix, asks_for_ends=arguments.ends)
     if arguments.json:
         import json
 
@@ -124,12 +124,19 @@ def _found(
     return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
 
 
-def _tell(name: str, checked: _Checked, *, asks_for_ends: bool) -> None:
+def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> None:
     from aidl_lang.common.render import summary
 
     for title in checked.fixes:
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
+    for fix in (d.fix for d in checked.diagnostics if mends and d.fix is not None):
+        why = (
+            "it would make things worse"
+            if fix.is_sure
+            else "it changes what you wrote, so the choice is yours"
+        )
+        say(f"{name}: not fixed: {fix.title}: {why}")
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
         untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""

@@ -14,6 +14,8 @@ _SLACK = 1e-9
 _FINEST = 1e-3
 """Accuracy of a limit, as a part of the way to the end."""
 _COARSEST = 0.125
+_SHARES = (0.5, 0.25, 0.75)
+"""Places on the way to a limit at which it is tried whether all is well up to there."""
 
 
 def ends(knob: Knob) -> list[Value]:
@@ -54,8 +56,20 @@ def rounded(value: float) -> float:
 
 def limit(knob: Knob, end: float) -> Generator[float, bool, tuple[float, float]]:
     """Yields values between the written one, which works, and an end that does not, and is sent whether they
-    do. Returns the last that works and the first that does not, a small step further.
+    do. Returns the last that works and the first that does not, a small step further; some on the way there
+    were tried and work as well.
     """
+    works, fails = yield from _halved(knob, end)
+    known = {float(knob.value), works}
+    while between := [value for value in _spread(knob, works) if value not in known]:
+        known.add(between[0])
+        if not (yield between[0]):
+            works, fails = yield from _halved(knob, between[0])
+            known.add(works)
+    return works, fails
+
+
+def _halved(knob: Knob, end: float) -> Generator[float, bool, tuple[float, float]]:
     works, fails = float(knob.value), end
     for step in _steps(knob, end):
         while (middle := _between(works, fails, step, knob)) is not None:
@@ -64,6 +78,13 @@ def limit(knob: Knob, end: float) -> Generator[float, bool, tuple[float, float]]
             else:
                 fails = middle
     return works, fails
+
+
+def _spread(knob: Knob, works: float) -> list[float]:
+    """Returns values at equal distances between the written one and another that works."""
+    start = float(knob.value)
+    values = (start + share * (works - start) for share in _SHARES)
+    return [float(round(value)) if is_whole(knob) else allowed(knob, value) for value in values]
 
 
 def _steps(knob: Knob, end: float) -> Iterator[float]:
