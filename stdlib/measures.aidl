@@ -89,7 +89,7 @@ fn gap(a: box, b: box) =
 /// }
 /// ```
 fn angle(a: line, b: line) = b.angle - a.angle
-fn angle(l: line) = l.angle
+fn angle(l) = l.angle
 fn angle(a: point, corner: point, b: point) = abs(corner_angle(a, corner, b))
 constraint angle(a: line, b: line, value: angle) {
     angle(a, b) == nearest(angle(a, b), [value, -value, 180deg - value, value - 180deg])
@@ -168,6 +168,7 @@ alias y_distance = vertical_distance
 alias distance_y = vertical_distance
 alias angle_between = angle
 alias set_angle = angle
+alias orientation = angle
 alias rotation = angle
 alias set_rotation = angle
 alias tilt = angle

@@ -14,7 +14,7 @@ from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import Options
-from aidl_lang.parser import parse
+from aidl_lang.parser import DEFAULT_LIMITS, parse
 from aidl_lang.syntax import tables
 from tests.compiled import EXAMPLES, example
 from tests.documents import ROOT, Block, programs
@@ -32,6 +32,7 @@ def test_program_in_documentation(block: Block) -> None:
         assert not compiled.ok, f"{block.place} is said to show a mistake, but compiles"
     else:
         assert compiled.ok, f"{block.place}: {compiled.status}\n{errors}"
+        assert [render(d) for d in compiled.diagnostics if d.severity is Severity.WARNING] == []
 
 
 @pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note == "fragment"])
@@ -73,6 +74,28 @@ def test_sizes_on_the_page_of_measurements_are_those_of_today() -> None:
         len(tables.built()) / 1000,
     ]
     assert [*map(int, said.groups()), int(tables_said[1])] == pytest.approx(sizes, rel=0.1)
+
+
+def test_the_limits_on_the_page_of_grammars_are_those_of_the_parser() -> None:
+    page = (ROOT / "docs" / "grammars.md").read_text("utf-8")
+    said = re.search(r"(\d+) levels of nesting \(a structure in a structure is (\w+)\), (\w+) million", page)
+    assert said
+    assert int(said[1]) == DEFAULT_LIMITS.max_nesting
+    assert (said[3], DEFAULT_LIMITS.max_characters) == ("two", 2_000_000)
+    assert said[2] == "two"
+
+    def codes(structures: int) -> list[str]:
+        text = "assembly a { " * structures + "}" * structures
+        return [d.code for d in parse(SourceFile("deep.aidl", text)).diagnostics if d.is_error]
+
+    most = next(n for n in range(1, 200) if codes(n)) - 1
+    assert most == pytest.approx(DEFAULT_LIMITS.max_nesting / 2, abs=1)
+
+
+def test_the_page_on_the_solver_names_all_its_files() -> None:
+    page = (ROOT / "docs" / "solver.md").read_text("utf-8")
+    files = {path.name for path in (ROOT / "aidl_lang" / "solver").glob("*.py")} - {"__init__.py"}
+    assert set(re.findall(r"`(\w+\.py)`", page)) == files
 
 
 def test_blocks_have_known_notes() -> None:

@@ -166,10 +166,14 @@ def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env
     return found if found is not None else finish_size(it, value, name, node, env)
 
 
+_TURNED = "how a structure is turned is its `rotation`: `part.rotation == 30deg`"
+
+
 def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
     if it.place(node) is not node.span:
         # The library's expression would mean nothing to an author.
-        it.refuse(node, f"{kind_of(value)} has no `{name}`")
+        hints = [_TURNED] if isinstance(value, Structure) and name == "angle" else []
+        it.refuse(node, f"{kind_of(value)} has no `{name}`", hints)
         return
     known = member_names(value)
     like = nearest(name, known)

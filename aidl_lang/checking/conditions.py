@@ -53,9 +53,11 @@ def check_item(infer: Inference, node: ast.Expression) -> None:
     if (name := operation(infer, node)) is not None:
         text, fix = shown(node), None
         hints = [f"`{text}` is a statement of its own, outside `constrain`"]
-        if name == "rotate" and (said := _turned(infer, node)) is not None:
-            fix = Fix(f"write `{said}`", (Edit(node.span, said),), is_sure=True)
-            hints = ["how a thing is turned is an equation too"]
+        if name == "rotate":
+            said = _turned(infer, node)
+            fix = Fix(f"write `{said}`", (Edit(node.span, said),), is_sure=True) if said else None
+            example = "" if said else ": `a.angle == 30deg`, for a structure `a.rotation == 30deg`"
+            hints = [f"how a thing is turned is an equation too{example}"]
         elif name in EDITS:
             hints = [
                 "where a thing has to be says a relation: `a.left == b.right`, `a.above(b)`, "
@@ -74,9 +76,11 @@ def _turned(infer: Inference, node: ast.Expression) -> str | None:
     angle.
     """
     given = arguments(infer, node) if isinstance(node, ast.Call) else []
-    if len(given) != 2:
+    if len(given) not in (2, 3):
         return None
-    thing, angle = given
+    thing, angle, *about = given
+    if about and shown(about[0]) != f"{shown(thing)}.center":
+        return None
     fact, field = infer.fact(thing), "angle"
     if isinstance(fact.type, StructureType):
         field = "rotation"

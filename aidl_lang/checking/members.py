@@ -217,6 +217,13 @@ def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[
             hints=[f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"],
             fix=Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),)),
         )
+    if "rotation" in known and fold(name) in ("angle", "orientation", "tilt", "theta", "rotate"):
+        return check.report(
+            "E0202",
+            f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`",
+            node.name,
+            fix=Fix("write `rotation`", (Edit(node.name.span, "rotation"),), is_sure=True),
+        )
     return None
 
 

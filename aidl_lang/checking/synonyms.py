@@ -88,7 +88,7 @@ height: size font_size text_size letter_height cap_height
 text: string label content message caption
 line_spacing: leading line_height
 about: axis across mirror_line line
-value: v amount equals distance length angle
+value: v amount equals distance length angle theta degrees deg
 clockwise: cw
 ccw: counterclockwise anticlockwise
 inside: internal
@@ -108,7 +108,7 @@ end: p2 to end_point stop last
 p1: control1 c1
 p2: control2 c2
 length: len
-angle: rot rotation theta
+angle: rot rotation theta rotate orientation tilt
 rx: x_radius radius_x
 ry: y_radius radius_y
 sweep: sweep_angle angle

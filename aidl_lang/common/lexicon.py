@@ -26,8 +26,8 @@ diamond difference different dir direction disc disk dist distance distances dis
 donut dot double doughnut down draw drawing drop dx dy each east eccentric edge edges egg element elevation
 ellipse else encloses end ending ends engraving ensure entering enumerate equal equally equals equidistant
 equilateral error even evenly every export extent external extrude eye eyes face faces false far farthest
-feet fewer fill filldraw fillet finger fingers first fits fix fixed flange flat flats flex floor flush fn
-folder font foot for foreach forward four frame frames free from front ft function fuse gap gaps gear gears
+feet fewer fill filldraw filled fillet finger fingers first fits fix fixed flange flat flats flex floor flush
+fn folder font foot for foreach forward four frame frames free from front ft function fuse gap gaps gear gears
 geometry get glyphs greater grid groove ground grounded group guess guide half halfway halign handle handles
 has have head headed heading heart height heights hex hexagon high higher hinge hline holder hole holes hook
 hooks horizontal horizontally house hub hubs hull hypot id if image images import in incenter include index

@@ -73,6 +73,7 @@ convex | concave
 concentric | eccentric excentric exzentrisch
 contains containing | contained
 encloses | enclosed
+surrounds surrounding | surrounded
 clockwise cw | counterclockwise anticlockwise ccw
 internal | external
 union add | difference subtract
@@ -86,6 +87,11 @@ positive | negative
 """Words that mean the reverse of those on the other side of the bar, or its counterpart."""
 _TURNING = ("no", "not", "non", "never", "without", "by")
 """Words that reverse the meaning of the rest."""
+_REVERSING = (
+    *("un", "de", "dis", "mis", "anti", "counter", "off", "none"),
+    *("opposite", "reverse", "reversed", "inverse", "inverted"),
+)
+"""Words that make another thing of a name, wherever they stand in it."""
 _PART_OF_A_NAME = 4
 """Letters that a word must have to be recognised inside a longer one: `alignleft`."""
 
@@ -95,6 +101,8 @@ _DENYING = (
     *("not", "off", "out", "un"),
 )
 """Syllables that reverse a word when they stand before it."""
+_DENYING_ALL = tuple(x for x in _DENYING if x not in ("a", "an", "in"))
+"""Those of them with which few words begin by chance."""
 
 
 def are_opposite(a: str, b: str) -> bool:
@@ -103,7 +111,8 @@ def are_opposite(a: str, b: str) -> bool:
     """
     words, others = {fold(a), *_words(a)}, {fold(b), *_words(b)}
     if any(_says(a, word) != _says(b, word) for word in _TURNING) or any(
-        _denies(x, y) or _denies(y, x) for x in words - others for y in others - words
+        _denies(x, y) or _denies(y, x)
+        for x, y in [(fold(a), fold(b)), *((x, y) for x in words - others for y in others - words)]
     ):
         return True
     return any(
@@ -112,6 +121,32 @@ def are_opposite(a: str, b: str) -> bool:
         for pair in _OPPOSITES
         for here, there in (pair, pair[::-1])
     )
+
+
+def _loses_sense(name: str, other: str) -> bool:
+    """Tells whether another name leaves out what reverses a name, or says which of two reverses is meant:
+    `offset_in` is no `offset`, `touchless` no `touches`, and the `n` of `n_overlap` may be a `no`.
+    """
+    words, others = _words(name), _words(other)
+    if any(
+        (word in _REVERSING and word not in others)
+        or (len(word) > _PART_OF_A_NAME + 1 and word.endswith("less") and not other.endswith("less"))
+        or (word not in WORDS and any(_is_denied(word, before, others[0]) for before in _DENYING_ALL))
+        for word in words
+    ):
+        return True
+    first = words[0]
+    has_more = len(words) > len(others) and first not in others and (first not in WORDS or first == "on")
+    if has_more and any(_distance(first, word) <= 1 for word in ("no", "not", "non")):
+        return True
+    sides = [{word for side in pair for word in side if len(word) > 1} for pair in _OPPOSITES]
+    return any(not both.isdisjoint(words) and not any(_says(other, w) for w in both) for both in sides)
+
+
+def _is_denied(word: str, before: str, other: str) -> bool:
+    """Tells whether a word is a known one behind a syllable that reverses it, which another has not."""
+    rest = word.removeprefix(before)
+    return rest != word and len(rest) >= _PART_OF_A_NAME and rest in WORDS and not other.startswith(before)
 
 
 def _denies(a: str, b: str) -> bool:
@@ -188,6 +223,13 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
     matches = [match for match in found if _may_be_meant(name, folded[match])]
     matches.sort(key=lambda match: _distance(wanted, match))
+    best = [folded[match] for match in matches[:2]]
+    if (
+        len(best) == 2
+        and are_opposite(*best)
+        and len({_distance(wanted, match) for match in matches[:2]}) == 1
+    ):
+        return []  # `align_center_z`
     if not matches and len(wanted) >= _PART_OF_A_NAME:  # an abbreviation: `perp`
         longer = (key for key in folded if key.startswith(wanted) and not are_opposite(name, folded[key]))
         matches = sorted(longer, key=len)
@@ -198,7 +240,7 @@ def _may_be_meant(name: str, other: str) -> bool:
     """Tells whether a name is near enough to another, and similar enough in meaning, to ask if that was
     meant.
     """
-    if are_opposite(name, other) or means_otherwise(name, other):
+    if are_opposite(name, other) or means_otherwise(name, other) or _loses_sense(name, other):
         return False
     wanted, match = fold(name), fold(other)
     if wanted in match or wanted.startswith(match):

@@ -154,7 +154,7 @@ class Explanation:
     def diagnostic(self) -> Diagnostic:
         code, headline = self._headline()
         labels = [
-            Label(u.holder.span, f"{u.description} would have to become 0")
+            Label(u.holder.span, f"{u.description} would have to become 0 or less")
             for u in self.sizes
             if u.holder.span is not None
         ]

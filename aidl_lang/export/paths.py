@@ -10,6 +10,9 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, 
 from aidl_lang.geometry.evaluate import ends, point
 from aidl_lang.geometry.region import Face, Loop
 
+_HALF = 1e-8
+"""Radians by which a half turn may be off after solving; to take it for the other half moves nothing."""
+
 
 def xy(p: Vec) -> str:
     return f"{fixed(p[0])} {fixed(-p[1])}"
@@ -76,4 +79,7 @@ def _segment(piece: Piece) -> str:
     if abs(piece.sweep) > 1.9 * math.pi:
         # Nearly full turns lose their direction in rounding: go by way of the middle.
         return f"A{_radii(piece)} 0 {flag} {xy(point(piece, 0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
-    return f"A{_radii(piece)} {int(abs(piece.sweep) > math.pi)} {flag} {xy(piece.end)}"
+    is_large = (
+        abs(piece.sweep) > math.pi + _HALF
+    )  # of two equal halves no machine says otherwise than another
+    return f"A{_radii(piece)} {int(is_large)} {flag} {xy(piece.end)}"

@@ -55,7 +55,9 @@ class Part:
     pieces, holes   connected areas, and holes in them
     bodies     how many there are in it; 0 for what is no body
     wall, gap  the thinnest wall and the narrowest gap (see `geometry.walls`); of several bodies the least
-    volume, mass    None where a thickness or a density is not known; of several bodies the sum
+    quantity   how many pieces are made of a body, of which the measures tell one
+    volume, mass    None where a thickness or a density is not known; of several bodies the sum, with all
+               the pieces that are made of each
     """
 
     path: str
@@ -75,6 +77,7 @@ class Part:
     thickness: float | None = None
     volume: float | None = None
     mass: float | None = None
+    quantity: int = 1
 
     def to_dict(self) -> dict[str, object]:
         """Returns the form in JSON."""
@@ -107,6 +110,7 @@ class Part:
             "density": self.density,
             "volume": self.volume,
             "mass": self.mass,
+            "quantity": self.quantity,
         }
 
 
@@ -244,8 +248,8 @@ class _Surveyor:
             box=together.box if bodies else self.drawing.box,
             wall=min((p.wall for p in parts if p.wall), key=lambda w: w.length, default=None),
             gap=min((p.gap for p in parts if p.gap), key=lambda w: w.length, default=None),
-            volume=_total([p.volume for p in parts]),
-            mass=_total([p.mass for p in parts]),
+            volume=_total([p.volume and p.volume * p.quantity for p in parts]),
+            mass=_total([p.mass and p.mass * p.quantity for p in parts]),
         )
 
     def _with_mass(self, part: Part, body: Body) -> Part:
@@ -256,7 +260,14 @@ class _Surveyor:
             self._unknown.setdefault(material, part.path)
         mass = None if volume is None or known is None else volume * known * 1e-6  # kg/m³ is 1e-6 g/mm³
         return replace(
-            part, bodies=1, material=material, density=known, thickness=thickness, volume=volume, mass=mass
+            part,
+            bodies=1,
+            material=material,
+            density=known,
+            thickness=thickness,
+            volume=volume,
+            mass=mass,
+            quantity=body.style.quantity,
         )
 
     def notes(self) -> Iterator[Diagnostic]:

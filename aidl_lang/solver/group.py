@@ -114,7 +114,11 @@ class Group:
         failure = self.hierarchy.failures[-1]
         own = [index for index in failure.conflict if index in self.hard]
         known = failure.minimal and own and not self.hierarchy.clock.expired
-        return max(own) if known and len(self.hierarchy.failures) <= MOST_FAILURES else None
+        if not known or len(self.hierarchy.failures) > MOST_FAILURES:
+            return None
+        constraints = self.hierarchy.problem.constraints
+        # What names nothing comes with the nature of a thing: a radius is not negative, even where all fails.
+        return max(own, key=lambda i: (bool(constraints[i].whole or constraints[i].inside), i))
 
     # -- stages
 

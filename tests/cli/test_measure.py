@@ -286,3 +286,32 @@ def test_the_table_is_plausible() -> None:
     assert all(name == name.casefold().strip() for name in densities())
     assert all(10 < value < 20_000 for value in densities().values())
     assert similar("alumnium sheet")[0] == "aluminium"
+
+
+LEGS = """\
+@material("oak") @thickness(18mm)
+assembly table {
+    @quantity(4) solid leg { bar = rectangle(center: origin, width: 50, height: 400) }
+    solid top { bar = rectangle(center: (0, 210), width: 500, height: 20) }
+}
+"""
+
+
+def test_all_pieces_of_a_part_weigh(aidl: Aidl, folder: Path) -> None:
+    (folder / "table.aidl").write_text(LEGS)
+    text = aidl("measure", "table.aidl").out
+    assert "  volume     1.62e+06 mm³\n  mass       1.1664 kg\n" in text
+    assert (
+        "mass g  quantity\ntable.leg     20000           900  50 × 400      0       50   259.2         4\n"
+        in text
+    )
+    assert "  quantity   4 pieces, of which this is one\n" in aidl("measure", "table.aidl", "leg").out
+    whole, leg = (aidl_lang.compile(LEGS).measure(*path) for path in ([], ["leg"]))
+    assert (whole.mass, leg.mass, leg.quantity) == (pytest.approx(1166.4), pytest.approx(259.2), 4)
+
+
+def test_a_variant_weighs_with_all_its_pieces() -> None:
+    one = '@quantity(3) @material("oak") @thickness(10mm) solid s { param w = 20 in 10..30; '
+    one += "r = rectangle(center: origin, width: w, height: 10) }"
+    (variant,) = aidl_lang.sweep(one, {"w": [20]}, jobs=1)
+    assert variant.measures["mass"] == pytest.approx(3 * 20 * 10 * 10 * 0.72e-3)

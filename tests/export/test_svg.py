@@ -133,6 +133,12 @@ def test_path_commands():
     )
 
 
+@pytest.mark.parametrize("off", [-1e-9, -1e-13, 0.0, 1e-13, 1e-9])
+def test_a_half_circle_has_one_flag_however_its_last_digits_come_out(off: float) -> None:
+    assert open_path([arc((0, 0), 2, 0, 180 + off)]) == "M2 0A2 2 0 0 0 -2 0"
+    assert open_path([arc((0, 0), 2, 0, 180.001)]).startswith("M2 0A2 2 0 1 0 -2 ")
+
+
 def test_plans_are_drawn_when_asked_for():
     plan = structure("assembly", "house", structure("solid", "kitchen", box=Box(0, 0, 40, 30)))
     assert texts(written(plan)) == []

@@ -66,6 +66,18 @@ def test_light_and_shade_leave_no_veil_over_the_lines_below(name: str) -> None:
     assert "fill-opacity" not in reduced
 
 
+@pytest.mark.parametrize("name", REDUCED)
+def test_what_is_shaded_hides_what_is_below_it(name: str) -> None:
+    """Shade is left out, and the fill under it stays: else the lines below would show through a tank."""
+    tank = "drawing d {{ {} solid tank {{ r = rectangle(center: fixed((0, 0)), width: 20, height: 30) }} }}"
+    shown = [
+        compiled(tank.format(shade)).export(".svg", Options(theme=name)).decode()
+        for shade in ("", "@shade(round)", '@shade("navy")')
+    ]
+    assert shown[0] == shown[1] == shown[2]
+    assert f'fill="{REDUCED[name].fill}" fill-rule="evenodd" stroke="{REDUCED[name].line}"' in shown[0]
+
+
 def test_the_theme_of_a_cutter_is_what_a_cutter_follows() -> None:
     assert svg(theme="cutter") == svg(cut=True)
 

@@ -8,6 +8,7 @@ import re
 import pytest
 
 from aidl_lang.checking import library
+from aidl_lang.common.names import nearest
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import check
 
@@ -18,7 +19,9 @@ antiparallel aparallel nonperpendicular unperpendicular nontangent untangent det
 nontouching nottouching NotTouching noTouch untouched unequal inequal nonequal notequal NotEqual disequal
 misaligned unaligned disaligned nonaligned misalign_left unalign_left MisalignLeft nonconcentric
 unconcentric noncoincident unfix uncoincident discoincident incoincident unlock anticlockwise nonhorizontal
-unhorizontal nonvertical unvertical
+unhorizontal nonvertical unvertical touchless meshless un_coincide in_collinear un_right_of
+parallel_inverse tangent_reversed equal_opposite excenter_of dis_tangent n_overlap on_overlap nn_overlapping
+surrounded
 """
 """Names that deny what one in the library says."""
 FOREIGN = """
@@ -85,6 +88,19 @@ def misspelt() -> list[tuple[str, str]]:
             changed = (name[k + 1] + rest, 2 * name[k] + name[k + 1] + rest, name[k + 1] + name[k] + rest)
             found.append((name[:k] + chance.choice((*changed, f"e{name[k + 1]}{rest}")), name))
     return [(slip, name) for slip, name in dict(found).items() if re.fullmatch(r"[a-z]\w*[a-z]", slip)]
+
+
+def test_a_slip_that_may_be_for_either_of_two_reverses() -> None:
+    assert not any(offered(["align_center_z", "align_centers_", "equal_center_j"]).values())
+
+
+@pytest.mark.parametrize("name", ["offset_in", "offset_out", "turned_right", "max_distance", "inner_ring_"])
+def test_a_side_is_not_left_out(name: str) -> None:
+    assert nearest(name, ["offset", "turned", "x_distance", "ring"]) == []
+
+
+def test_what_is_no_condition_is_not_offered_as_one() -> None:
+    assert offered(["squrt", "floo"]) == {"squrt": "", "floo": ""}
 
 
 def test_a_slip() -> None:

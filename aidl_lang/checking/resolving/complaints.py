@@ -105,7 +105,7 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         return
     is_condition = resolver.condition is node
     like = nearest(name, scope.callable_names(), 2)
-    if is_condition and not (like and is_like(name, like[0])):
+    if is_condition and not (like and is_like(name, like[0]) and not _is_built_in(scope, like[0])):
         like = nearest(name, [n for n in scope.callable_names() if _may_hold(scope, n)], 2)
     hint = _RELATIONS if is_condition else "define it with `fn`, `shape` or as a template"
     is_meant = bool(like) and not _is_spelled_right(name, like[0], scope)
@@ -142,10 +142,18 @@ _RELATIONS = (
 
 
 def _may_hold(scope: SymbolScope, name: str) -> bool:
-    """Tells whether a callable may be a condition: shapes and templates are none."""
+    """Tells whether a callable may be a condition: shapes and templates are none, nor is `sin`."""
     found = scope.called(name)
     made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
-    return found is not None and all(kind_of(s) not in made for s in found[1])
+    return (
+        found is not None and all(kind_of(s) not in made for s in found[1]) and not _is_built_in(scope, name)
+    )
+
+
+def _is_built_in(scope: SymbolScope, name: str) -> bool:
+    """Tells whether a callable is built in and holds of nothing."""
+    found = scope.called(name)
+    return found is not None and found[1][0].node is None and name not in ("fixed", "overlaps")
 
 
 def _as_template(node: ast.Structure) -> Fix | None:

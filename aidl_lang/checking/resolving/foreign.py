@@ -65,6 +65,11 @@ _CALLS: Mapping[str, str] = {
             "`a.width <= b.width`; places by `above` and `below`",
         ),
         (
+            "orient oriented rotated rotate_by rotate_to turn rotation_angle fixed_angle angle_constraint "
+            "incline inclined inclination slope slant slanted skew skewed spin pivot",
+            "how a thing is turned is an equation: `a.angle == 30deg`, for a structure `a.rotation == 30deg`",
+        ),
+        (
             "connect connects connected attach attaches attached join joins joined weld welded glue glued "
             "attached_to attach_to connected_to connect_to joined_to snap snapped mate mated "
             "fasten fastened link linked bond meet meets hinge hinged pinned",

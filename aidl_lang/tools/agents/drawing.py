@@ -234,4 +234,5 @@ def measured(part: Part) -> str:
     ]
     facts += [f"{name} {short(w.length)} mm" for name, w in (("wall", part.wall), ("gap", part.gap)) if w]
     facts += [f"mass {short(part.mass)} g"] if part.mass is not None else []
+    facts += [f"made {part.quantity} times"] if part.quantity > 1 else []
     return f"{part.path}: {', '.join(facts)}"

@@ -133,6 +133,8 @@ def _block(part: Part) -> Iterator[str]:
     if part.material is not None:
         known = f"{_number(part.density)} kg/m³" if part.density else "density not known"
         rows.append(("material", f"{part.material}, {known}"))
+    if part.quantity > 1:
+        rows.append(("quantity", f"{part.quantity} pieces, of which this is one"))
     if part.volume is not None:
         rows.append(("volume", f"{_number(part.volume)} mm³"))
     if part.mass is not None:
@@ -150,7 +152,17 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
     """Yields one line for each body."""
-    heads = ("body", "area mm²", "perimeter mm", "size mm", "holes", "wall mm", "gap mm", "mass g")
+    heads = (
+        "body",
+        "area mm²",
+        "perimeter mm",
+        "size mm",
+        "holes",
+        "wall mm",
+        "gap mm",
+        "mass g",
+        "quantity",
+    )
     rows = [heads]
     for p in parts:
         left, bottom, right, top = p.box
@@ -164,6 +176,7 @@ def _table(parts: Sequence[Part]) -> Iterator[str]:
                 _number(p.wall.length) if p.wall else _NOTHING,
                 _number(p.gap.length) if p.gap else _NOTHING,
                 _number(p.mass) if p.mass is not None else _NOTHING,
+                str(p.quantity) if any(each.quantity > 1 for each in parts) else _NOTHING,
             )
         )
     shown = [k for k in range(len(heads)) if any(row[k] != _NOTHING for row in rows[1:])]

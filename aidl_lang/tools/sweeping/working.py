@@ -137,8 +137,8 @@ def _measured(whole: Part) -> Measures:
         "holes": whole.holes,
         "wall": whole.wall.length if whole.wall else None,
         "gap": whole.gap.length if whole.gap else None,
-        "volume": whole.volume,
-        "mass": whole.mass,
+        "volume": whole.volume and whole.volume * whole.quantity,
+        "mass": whole.mass and whole.mass * whole.quantity,
     }
     return {name: significant(value) if isinstance(value, float) else value for name, value in found.items()}
 

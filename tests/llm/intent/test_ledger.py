@@ -250,6 +250,23 @@ def test_a_wrong_statement_may_be_replaced() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("now", "missing"),
+    [
+        (" rotated 20deg {", 0),
+        (" { block = rectangle(width: 50, height: 18, angle: 20deg) }", 0),
+        (" { block = rectangle(width: 50, height: 18) }", 1),
+    ],
+)
+def test_a_turn_in_wrong_words_may_be_one_of_what_is_inside(now: str, missing: int) -> None:
+    plain = (
+        "assembly a { solid foot { block = rectangle(width: 50, height: 18) } constrain orient(foot, 20) }"
+    )
+    other = plain.partition(" constrain")[0].replace(" {", now, 2).replace(now, " {", 1) + " }"
+    mended = {" rotated 20deg {": other}.get(now, f"assembly a {{ solid foot{now} }}")
+    assert len(told(plain, mended).missing) == missing
+
+
 def test_what_was_offered_to_go_may_go() -> None:
     twice = changed((MIDDLE, f"{MIDDLE}\n        foot.center_x == face.center_x"))
     notes = [d for d in compiled(twice).diagnostics if d.code == "N0602"]

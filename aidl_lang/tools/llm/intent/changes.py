@@ -156,8 +156,8 @@ class _Statements:
         for strength, weaker in _STRENGTHS:
             self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.key])
             self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.shape])
-        self._phase(Fate.REWRITTEN, _not_weaker, lambda one: one.things, _says_instead)
-        self._phase(Fate.WEAKENED, _weaker, lambda one: one.things, _says_instead)
+        self._phase(Fate.REWRITTEN, _not_weaker, _about, _says_instead)
+        self._phase(Fate.WEAKENED, _weaker, _about, _says_instead)
 
     def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
         """Pairs items that share a mark, and fit."""
@@ -204,6 +204,13 @@ def _not_weaker(read: _Read, other: Item) -> bool:
 _STRENGTHS = ((_as_strong, None), (_weaker, Fate.WEAKENED), (_stronger, None))
 
 
+def _about(one: Item | _Read) -> Iterable[Path]:
+    """Yields the things that an item speaks of; a turn may be meant for all that holds the thing turned."""
+    yield from one.things
+    if isinstance(one, Item) and one.kind is Kind.ROTATION:
+        yield from {thing[:n] for thing in one.things for n in range(1, len(thing))}
+
+
 def _says_instead(read: _Read, other: Item) -> bool:
     """True if a new statement refers to the same things, from the same structure or one around it. A
     statement that was wrong may be replaced by one about any of them; a turn is replaced by a turn.
@@ -213,6 +220,8 @@ def _says_instead(read: _Read, other: Item) -> bool:
     if read.home[: len(other.home)] != other.home and not other.thing:
         return False
     if read.item.wrong:
+        if other.kind is Kind.ROTATION and any(o[: len(t)] == t for t in read.things for o in other.things):
+            return True  # what is in a structure was turned in its place
         return bool(read.things & other.things) and other.kind is not Kind.ASSERT
     if read.item.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.item.kind:
         return False

@@ -561,6 +561,7 @@ export const calls = {
   "on_the_left_of": "call.constraint",
   "on_the_right_of": "call.constraint",
   "on_top": "call.constraint",
+  "orientation": "call.function",
   "orthogonal": "call.constraint",
   "orthogonal_to": "call.constraint",
   "outline_distance": "call.function",

@@ -123,7 +123,7 @@
     "mesh_angle" "mix" "lighter" "darker" "hsl" "polar" "norm" "dot" "cross" "unit" "lerp" "turned"
     "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between" "arccos"
     "arcsin" "arctan" "arctan2" "at_share" "close_mirrored" "dist" "distance_x" "distance_y" "fix"
-    "ground" "grounded" "horizontal_axis" "lock" "outline_distance" "place_in" "places_in"
+    "ground" "grounded" "horizontal_axis" "lock" "orientation" "outline_distance" "place_in" "places_in"
     "point_between" "point_in" "rotation" "set_angle" "set_rotation" "stroke" "tilt" "tilted" "translate"
     "vec" "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
