@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from aidl_dev.reference.pages import image
+from aidl_dev.reference.site import texts
 from aidl_lang import pipeline
 from aidl_lang.checking import builtins, library
 from aidl_lang.common.diagnostics import Severity
@@ -22,9 +24,7 @@ from aidl_lang.syntax.kinds import KINDS
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.tools.reference.collect import Entry, doc, reference
 from aidl_lang.tools.reference.guide import full_guide, guide, template
-from aidl_lang.tools.reference.pages import image
 from aidl_lang.tools.reference.signatures import exactness, held, parts, short, short_forms, split_items
-from aidl_lang.tools.reference.site import texts
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())

@@ -75,7 +75,7 @@ def guide_with(topics: Sequence[str]) -> str:
     for name in topics:
         blocks.append(f"## {known[name].title}")
         for entry in reference().of_topic(name):
-            blocks += [block for block in entry_blocks(entry, "###") if not block.startswith("<img")]
+            blocks += entry_blocks(entry, "###")
     return "\n\n".join(blocks) + "\n"
 
 
