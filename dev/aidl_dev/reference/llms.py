@@ -53,7 +53,9 @@ def _page(path: Path, root: Path) -> str:
     title, *rest = path.read_text("utf-8").split("\n\n")
     prose = next((p for p in rest if p[:1].isalnum()), "")
     about = doc(prose).line.rstrip(".")
-    return f"- [{title.removeprefix('#').strip()}]({path.relative_to(root).as_posix()})" + (f": {about}" if about else "")
+    return f"- [{title.removeprefix('#').strip()}]({path.relative_to(root).as_posix()})" + (
+        f": {about}" if about else ""
+    )
 
 
 def _example(path: Path) -> str:
