@@ -4,9 +4,9 @@ virtualenv of its own, with a home in which there is nothing.
     .venv/bin/python .ci/wheel.py [--keep FOLDER]
 
 First without any extra, then with each of them, from the source archive, then with `aidl-eval` beside it.
-Every command must end with the code that is expected of it, say what is expected, and show no traceback; none may
-write into the installation, or keep anything of AIDL's in the home. Prints the seconds of each, and those of
-the processor.
+Every command must end with the code that is expected of it, say what is expected, and show no traceback; none
+may write into the installation, or keep anything of AIDL's in the home. Prints the seconds of each, and those
+of the processor.
 """
 
 from __future__ import annotations

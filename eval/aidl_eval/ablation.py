@@ -6,18 +6,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from aidl_lang import pipeline
+from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.expression import Evaluator
 from aidl_lang.building.lower import Lowered, lower, seen
 from aidl_lang.building.model import Model, Structure
-from aidl_lang.common.diagnostics import has_errors
-from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Problem, solve
@@ -41,7 +38,7 @@ _SECONDS = 120.0
 """The most for one solve: six times the usual, so that no slow way is cut off near its end."""
 
 
-@record()
+@dataclass(frozen=True)
 class Way:
     """A way to solve; whether boxes are `whole` is a matter of the problem, which is built anew for it."""
 
@@ -64,7 +61,7 @@ WAYS = {
 """All ways by name. To solve all of a depth at once is left out but in `full` and where boxes are whole."""
 
 
-@record()
+@dataclass(frozen=True)
 class Solved:
     """The solve of one program in one way.
 
@@ -117,7 +114,7 @@ def compare(source: SourceFile, world: World | None = None, thing: str = "") -> 
     """Yields the solves of a program in every way; for a wrong program one with the status `wrong`."""
     names = source.name, thing or source.name
     program, found = pipeline.front(source, world, _SETTINGS)
-    meant = None if has_errors(found) else _built(program)
+    meant = None if any(d.is_error for d in found) else _built(program)
     if meant is None:
         yield Solved(*names, FULL, WRONG)
         return
@@ -133,7 +130,7 @@ def compare(source: SourceFile, world: World | None = None, thing: str = "") -> 
             yield _measured(solved, meant, values)
 
 
-@record()
+@dataclass(frozen=True)
 class _Built:
     model: Model
     lowered: Lowered
@@ -155,7 +152,7 @@ class _Built:
 def _built(program: Program, whole_boxes: bool = False) -> _Built | None:
     """Returns what a program builds; None if it is wrong."""
     built = interpret(program, {}, _SETTINGS.building, whole_boxes=whole_boxes)
-    return None if has_errors(built.diagnostics) else _Built(built.model, lower(built.model))
+    return None if any(d.is_error for d in built.diagnostics) else _Built(built.model, lower(built.model))
 
 
 def _solve(built: _Built, way: Way) -> tuple[str, float, Floats, int]:

@@ -13,14 +13,13 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from aidl_eval.store import Store, digest, neutral_path, picture_path
-from aidl_lang.common.records import record
 
 MODEL = "ViT-B-32-quickgelu"
 PRETRAINED = "openai"
@@ -30,7 +29,7 @@ Scorer = Callable[[bytes, str], float]
 """A function from a PNG and a text to a score."""
 
 
-@record()
+@dataclass(frozen=True)
 class Scores:
     """Scores by the key of the job; `reason` tells why there are none."""
 

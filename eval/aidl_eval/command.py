@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from aidl_eval.requirements import Prompt
     from aidl_eval.run import Done
     from aidl_eval.store import Store
-    from aidl_lang.common.source import SourceFile
+    from aidl_lang import SourceFile
     from aidl_lang.common.world import World
     from aidl_lang.tools.llm.messages import Provider
 

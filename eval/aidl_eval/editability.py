@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 
 from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.rendering import RenderedLanguage, as_written
 from aidl_eval.requirements import Prompt, Status, examine_regions
-from aidl_lang import pipeline
+from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.model import Knob
-from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.ends.values import Value, allowed, rounded
 from aidl_lang.tools.llm.aidl import Aidl
@@ -34,7 +33,7 @@ class EditOutcome(StrEnum):
     EMPTY = "empty"  # nothing is drawn any more
 
 
-@record()
+@dataclass(frozen=True)
 class Edit:
     knob: str
     value: Value
@@ -43,7 +42,7 @@ class Edit:
     """The program still is valid, and draws what meets each requirement on geometry that was met before."""
 
 
-@record()
+@dataclass(frozen=True)
 class Edits:
     """`narrowed` counts edits cut short by a range or a step, `skipped` the knobs without an edit."""
 

@@ -7,6 +7,7 @@ import os
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from io import FileIO
 from itertools import groupby
@@ -15,7 +16,6 @@ from typing import Any
 
 from aidl_eval.plan import VARIANTS
 from aidl_eval.store import Record, StoreError, digest, neutral_path, picture_path
-from aidl_lang.common.records import record
 
 STUDY = "study.jsonl"
 STYLES = {"neutral": neutral_path, "own": picture_path}
@@ -29,7 +29,7 @@ _LONGEST = 1 << 16
 _DATE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", re.ASCII)
 
 
-@record()
+@dataclass(frozen=True)
 class Sheet:
     """The pictures of one prompt and run. `id` changes with the programs that are drawn."""
 
@@ -47,7 +47,7 @@ class Sheet:
         return len(self.drawn) >= FEWEST
 
 
-@record()
+@dataclass(frozen=True)
 class Answer:
     """What one rater says of a sheet: languages from best to worst, those of one group alike; None where the
     rater could not tell. `shown` has them in the order on the screen.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from aidl_eval import editability, pictures, shapes
 from aidl_eval.editability import Edits
@@ -12,14 +12,13 @@ from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.rendering import RenderedLanguage, as_written
 from aidl_eval.requirements import Prompt, Result, examine, examine_regions
 from aidl_eval.whole import pieces
-from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
+from aidl_lang import SourceFile
 from aidl_lang.export import Options
 from aidl_lang.tools.llm.aidl import counted
 from aidl_lang.tools.llm.language import Language
 
 
-@record()
+@dataclass(frozen=True)
 class DrawnProgram:
     """`png` is in the language's own style, `neutral` in the one style of all; `numbers` holds what is
     counted in the program.

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -19,7 +19,6 @@ from aidl_eval.regions import Part, Regions, of_outlines
 from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered, RenderedConversation
 from aidl_eval.sandbox import fence
 from aidl_lang.common.colors import hexadecimal
-from aidl_lang.common.records import record
 
 COMMAND = "openscad"
 _MOST = 48
@@ -39,7 +38,7 @@ _MODULE = re.compile(r"\bmodule\s+\w+")
 _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*\Z")
 
 
-@record()
+@dataclass(frozen=True)
 class OpenScad:
     name: str = "openscad"
     suffix: str = ".scad"
@@ -164,7 +163,7 @@ def _parted(program: str, knobs: Mapping[str, float]) -> Rendered:
     return replace(whole, regions=Regions(tuple(found)))
 
 
-@record()
+@dataclass(frozen=True)
 class Piece:
     """A subtree that stands beside others; `text` draws it alone."""
 
@@ -183,7 +182,7 @@ def parts(tree: str) -> list[Piece]:
     return [Piece(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
 
 
-@record()
+@dataclass(frozen=True)
 class _Node:
     """Lines of a tree that belong together, within opening and closing ones of moves around it."""
 

@@ -10,7 +10,6 @@ from aidl_eval.python_cad import PythonCad
 from aidl_eval.requirements import Prompt
 from aidl_eval.svg import Svg
 from aidl_lang.checking.variants import Variant
-from aidl_lang.common.records import record
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.generation import Settings
 from aidl_lang.tools.llm.language import Language, Wrapped
@@ -25,7 +24,7 @@ VARIANTS: dict[str, Language] = {
 """All languages by name. To add one, see `rendering.RenderedLanguage`."""
 
 
-@record()
+@dataclass(frozen=True)
 class Switches:
     """The help that a conversation has. Without a guide a model is told the name of the language alone."""
 
@@ -35,7 +34,6 @@ class Switches:
     plans: bool = True
 
 
-@record()
 class Guideless(Wrapped):
     """A language without its guide."""
 
@@ -67,7 +65,7 @@ class Job:
         return f"{self.prompt}/{self.variant}/{self.run}"
 
 
-@record()
+@dataclass(frozen=True)
 class Plan:
     """`settings.sampling.seed` is that of the first run; each further one counts up from it."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 from aidl_eval.agreement import alpha
@@ -11,12 +12,11 @@ from aidl_eval.judgements import Answer, Answers, Sheet, sheets
 from aidl_eval.statistics import Case, by_prompt
 from aidl_eval.store import Record, Store
 from aidl_lang.common.csv_text import csv_text
-from aidl_lang.common.records import record
 
 Numbers = list[tuple[str, float | None]]
 
 
-@record(frozen=False)
+@dataclass
 class Study:
     """The answers that count: of each rater the last on each sheet. `outdated` ones were given on sheets that
     are no longer there as they were.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from aidl_eval import rendering, sandboxed
 from aidl_eval.rendering import Rendered, RenderedConversation
-from aidl_lang.common.records import record
 
 
-@record()
+@dataclass(frozen=True)
 class PythonCad:
     """A language whose programs are Python that imports one library and shows what it draws."""
 

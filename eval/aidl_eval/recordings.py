@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from datetime import date
 from difflib import get_close_matches
 from pathlib import Path
@@ -18,9 +18,7 @@ from typing import Any, NoReturn
 
 from aidl_eval.plan import VARIANTS, Job, Plan
 from aidl_eval.requirements import Prompt
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
+from aidl_lang import Diagnostic, SourceFile
 from aidl_lang.tools.llm.generation import Settings
 from aidl_lang.tools.llm.messages import (
     ConversationOver,
@@ -48,7 +46,7 @@ class RecordingError(Exception):
         self.diagnostic = Diagnostic(code, message, hints=hints)
 
 
-@record()
+@dataclass(frozen=True)
 class Recorded:
     """One conversation; `guide` tells what the model had read, `note` what readers of figures must know."""
 
@@ -228,7 +226,7 @@ class _Reader:
 # --- replaying --------------------------------------------------------------------------------------
 
 
-@record()
+@dataclass(frozen=True)
 class Replay:
     """Takes the place of a provider. It keeps no state, so that threads may share it."""
 
@@ -240,7 +238,7 @@ class Replay:
         return Speaker(self.name, self.conversations[job])
 
 
-@record()
+@dataclass(frozen=True)
 class Speaker:
     """A provider of the replies of one conversation, in order."""
 
@@ -259,7 +257,7 @@ class Speaker:
         return reply
 
 
-@record()
+@dataclass(frozen=True)
 class RecordedPlan(Plan):
     """The plan whose jobs are the conversations of a recording, in their order."""
 

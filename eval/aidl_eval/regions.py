@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from aidl_eval import shapes
 from aidl_eval.things import covered, drawn
-from aidl_lang.common.records import record
 from aidl_lang.geometry.boolean import common
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
@@ -25,7 +24,7 @@ FINE = 2e-4
 """Distance of chords from curves, as a share of the drawing's size."""
 
 
-@record()
+@dataclass(frozen=True)
 class Part:
     """An area that is drawn as one; `color` is a CSS colour, None where the program names none."""
 
@@ -33,7 +32,7 @@ class Part:
     color: str | None = None
 
 
-@record()
+@dataclass(frozen=True)
 class Regions:
     """Parts from back to front, and curves drawn as lines, which lie above them all."""
 

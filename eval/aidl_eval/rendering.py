@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from aidl_eval.regions import Regions
-from aidl_lang.common.records import record
 from aidl_lang.tools.llm.language import Language, Verdict
 
 SECONDS = 30
@@ -30,7 +29,7 @@ _SHOWN = 8
 """Most messages that the model is shown."""
 
 
-@record()
+@dataclass(frozen=True)
 class Rendered:
     """The result of a program: what it draws, and messages, errors first."""
 
@@ -81,7 +80,7 @@ def as_written(language: RenderedLanguage, program: str, parted: bool = True) ->
     return rendered
 
 
-@record(frozen=False)
+@dataclass
 class RenderedConversation:
     """Judges each program by itself; a remark is made once."""
 

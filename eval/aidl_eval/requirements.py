@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
@@ -19,14 +20,11 @@ from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.roles import Role, bind
 from aidl_eval.things import Thing, origins
 from aidl_eval.whole import MEASURES
-from aidl_lang import parser
+from aidl_lang import SourceFile, parser
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Assertion, Condition, Measurement, Model, Structure
 from aidl_lang.building.values import TextVal
-from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.prose import first_few
-from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile
 from aidl_lang.explaining.outcome import assertion_note, measured
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.drawing import Drawing
@@ -52,7 +50,7 @@ class Status(StrEnum):
     UNMEASURABLE = "unmeasurable"  # counts as failed
 
 
-@record()
+@dataclass(frozen=True)
 class Requirement:
     """`text` describes it, `condition` is checked; `roles` are those in it."""
 
@@ -68,7 +66,7 @@ class Requirement:
         return not self.roles
 
 
-@record()
+@dataclass(frozen=True)
 class Prompt:
     """`text` is the request to the model."""
 
@@ -81,7 +79,7 @@ class Prompt:
     source: SourceFile
 
 
-@record()
+@dataclass(frozen=True)
 class Result:
     text: str
     status: Status
@@ -131,7 +129,7 @@ def read(source: SourceFile) -> Prompt:
 def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.Module]:
     """Returns the model of a prompt with so many of each role, and its statements."""
     program, found = front(source)
-    if not has_errors(found):
+    if not any(d.is_error for d in found):
         built = interpret(program, counts)
         found = [*found, *built.diagnostics]
     if errors := [d for d in found if d.is_error]:
@@ -186,11 +184,8 @@ def _all(prompt: Prompt, why: str) -> tuple[Result, ...]:
     return tuple(Result(r.text, Status.UNMEASURABLE, why, r.is_geometric) for r in prompt.requirements)
 
 
-@record()
 class _MissingError(Exception):
-    """Raised if a part lacks something that a requirement measures."""
-
-    why: str
+    """Raised if a part lacks something that a requirement measures; the message tells what."""
 
 
 def examine_regions(prompt: Prompt, drawn: Regions) -> tuple[Result, ...]:
@@ -230,7 +225,7 @@ def _box_values(placeholder: Structure, box: Box | None) -> Iterator[tuple[Unkno
         yield side.payload, value
 
 
-@record()
+@dataclass(frozen=True)
 class _Judge:
     """Says what holds, given the values of a prompt's unknowns."""
 
@@ -243,7 +238,7 @@ class _Judge:
         try:
             failures = [self._failure(a) for a in self.assertions.get(requirement.start, ())]
         except _MissingError as missing:
-            return Result(requirement.text, Status.UNMEASURABLE, missing.why, known)
+            return Result(requirement.text, Status.UNMEASURABLE, str(missing), known)
         if failed := next(filter(None, failures), None):
             return Result(requirement.text, Status.FAILED, failed + told, known)
         return Result(requirement.text, Status.MET, "", known)

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain
 from typing import TypeAlias
 
 from aidl_eval.things import Group, Origins, Part, Thing, drawn, names, outlines
 from aidl_eval.whole import NEAR
-from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -50,7 +49,7 @@ _MANY = 200
 """Most parts of a name that are looked at."""
 
 
-@record()
+@dataclass(frozen=True)
 class Role:
     """`words` are its possible names, in the singular: groups of equal rank, the best first; `others` are
     names to exclude (`steering wheel`); `of` are the names of its parts, if nothing has its own. `many` if
@@ -164,7 +163,7 @@ class _Program:
         return thing.buried(self.drawing.regions.get(structure.path), self.drawing)
 
 
-@record()
+@dataclass(frozen=True)
 class _Search:
     """Searches the parts named by the words of a role."""
 

@@ -6,15 +6,14 @@ import queue
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from dataclasses import asdict, field
+from dataclasses import asdict, dataclass, field
 
 from aidl_eval import measures, store
 from aidl_eval.plan import Job, Plan
 from aidl_eval.recordings import Replay
 from aidl_eval.store import Record, Store
 from aidl_eval.worker import SECONDS, Broken, Remote, Worker
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.records import record
+from aidl_lang import Diagnostic
 from aidl_lang.tools.llm.generation import Task, generate
 from aidl_lang.tools.llm.messages import Provider
 
@@ -22,7 +21,7 @@ PATIENCE = 5
 """Consecutive failures to reach the model after which no more requests are made."""
 
 
-@record()
+@dataclass(frozen=True)
 class Done:
     """A finished job, with its number of how many."""
 
@@ -33,7 +32,7 @@ class Done:
     failure: Diagnostic | None = None
 
 
-@record()
+@dataclass(frozen=True)
 class RunSummary:
     """Counts of a run. `left` jobs were not begun, or failed to reach the model."""
 
@@ -43,7 +42,7 @@ class RunSummary:
     failure: Diagnostic | None
 
 
-@record()
+@dataclass(frozen=True)
 class _Result:
     job: Job
     record: Record
@@ -53,7 +52,7 @@ class _Result:
     bug: BaseException | None = None
 
 
-@record(frozen=False)
+@dataclass
 class _Crew:
     """The data that threads share."""
 

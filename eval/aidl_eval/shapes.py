@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Polygon, Section, fill
@@ -30,7 +30,7 @@ def without(outlines: Sequence[Polygon], others: Sequence[Polygon]) -> Region:
     return _region(fill(outlines, "NonZero") - fill(others, "NonZero"))
 
 
-@record()
+@dataclass(frozen=True)
 class Stroke:
     """How wide a line is drawn, and how it ends and turns: words and numbers of SVG."""
 

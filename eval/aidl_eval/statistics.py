@@ -6,12 +6,11 @@ Runs of one prompt are not independent of each other, so prompts are what is dra
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-
-from aidl_lang.common.records import record
 
 RESAMPLES = 10_000
 """Of each interval, and the most sign patterns of a test: up to 13 prompts all of them are tried."""
@@ -22,7 +21,7 @@ Interval = tuple[float, float]
 Floats = NDArray[np.float64]
 
 
-@record()
+@dataclass(frozen=True)
 class Case:
     """The share of one conversation in a figure: the figure is the sum of `value` over that of `weight`."""
 
@@ -31,7 +30,7 @@ class Case:
     weight: float = 1.0
 
 
-@record()
+@dataclass(frozen=True)
 class Comparison:
     """The difference of a figure between two languages, over the prompts that both have; each counts once."""
 

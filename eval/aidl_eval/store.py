@@ -15,12 +15,11 @@ from typing import Any
 from aidl_eval.plan import VARIANTS, Job, Plan
 from aidl_eval.recordings import GUIDE, RecordedPlan
 from aidl_eval.requirements import Prompt
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang import Diagnostic, __version__
 from aidl_lang.common.replacing import replace
 from aidl_lang.tools.llm.generation import Attempt, Generation
 from aidl_lang.tools.llm.language import Verdict
 from aidl_lang.tools.llm.messages import Usage
-from aidl_lang.version import __version__
 
 Record = dict[str, Any]
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from statistics import fmean, variance
 from typing import Any
@@ -26,14 +26,13 @@ from aidl_eval.statistics import (
     holm,
     interval,
 )
-from aidl_lang.common.records import record
 
 Record = Mapping[str, Any]
 _Z = 1.959963984540054
 """Quantile of the normal distribution: 95 % lie within."""
 
 
-@record()
+@dataclass(frozen=True)
 class Share:
     """A proportion: `part` of `count`. `cases` are the conversations; where each may have `several` of the
     things counted, these are not independent.
@@ -72,7 +71,7 @@ class Share:
         return max(0.0, middle - half), min(1.0, middle + half)
 
 
-@record()
+@dataclass(frozen=True)
 class Mean:
     """A mean of numbers with their sample variance (by n - 1); without any, the reason, if known, why nothing
     was measured.
@@ -100,7 +99,7 @@ class Mean:
         return interval(self.cases)
 
 
-@record()
+@dataclass(frozen=True)
 class Total:
     """A sum; `count` is the number of cases with a known value."""
 
@@ -111,7 +110,7 @@ class Total:
 Figure = Share | Mean | Total
 
 
-@record()
+@dataclass(frozen=True)
 class Row:
     """The figures of some records; `prompt` is None for all of a variant."""
 
@@ -194,7 +193,7 @@ def rows(
     return found
 
 
-@record()
+@dataclass(frozen=True)
 class Pair:
     """What two languages differ by in a figure."""
 

@@ -6,6 +6,7 @@ import io
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -18,7 +19,6 @@ from aidl_eval.regions import Part, Regions
 from aidl_eval.rendering import NOTHING, Rendered, RenderedConversation
 from aidl_eval.shapes import Stroke
 from aidl_lang.common.colors import hexadecimal
-from aidl_lang.common.records import record
 from aidl_lang.geometry.sections import Polygon
 
 _LONGEST = 2_000_000
@@ -31,7 +31,7 @@ _AROUND, _CHORDS = 96, 24
 _UNREAD = ("text", "image", "mask", "clipPath", "filter", "pattern", "foreignObject", "script", "animate")
 
 
-@record()
+@dataclass(frozen=True)
 class Svg:
     name: str = "svg"
     suffix: str = ".svg"

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TypeAlias
 
+from aidl_lang import Span
 from aidl_lang.common.prose import first_few
-from aidl_lang.common.records import record
-from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import Bounds, bounds
@@ -32,7 +31,7 @@ _SAME = 1e-6
 """Relative difference up to which lengths are equal."""
 
 
-@record()
+@dataclass(frozen=True)
 class Thing:
     """Parts in groups: those in one group are drawn as one, and groups only lie together.
 
@@ -193,7 +192,7 @@ def drawn(structure: SolvedStructure) -> tuple[SolvedGeometry, ...]:
     return tuple(g for g in structure.drawn if not g.construction and g.type != "point")
 
 
-@record()
+@dataclass(frozen=True)
 class Outline:
     """Geometry that is drawn, or an operand of such an outline, of which it still is a part or an opening.
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
-from aidl_lang.common.records import record
 from aidl_lang.tools.llm.messages import Message, Provider, Reply, Sampling
 
 
-@record()
+@dataclass(frozen=True)
 class Timed:
     """A provider whose replies carry their seconds and their day (UTC). Repeats and pauses count."""
 

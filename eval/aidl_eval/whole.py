@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from aidl_eval.regions import Regions
-from aidl_lang.common.records import record
 from aidl_lang.geometry.boolean import common, overlap_area
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.distance import region_distance
@@ -156,7 +156,7 @@ def width_at(drawn: Regions, share: float) -> float:
     return (high - low) / (right - left)
 
 
-@record()
+@dataclass(frozen=True)
 class _Outline:
     width: float
     height: float

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import CancelledError
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import Any, TypeVar, cast
 
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.processes import Guarded, Limit
-from aidl_lang.common.records import record
 from aidl_lang.tools.llm.language import Conversation, Language, Verdict, Wrapped
 
 T = TypeVar("T")
@@ -60,11 +59,12 @@ _WHY = {
 }
 
 
-@record()
 class Remote(Wrapped):
     """A language whose programs are judged by a worker."""
 
-    worker: Worker
+    def __init__(self, language: Language, worker: Worker) -> None:
+        super().__init__(language)
+        self.worker = worker
 
     def reads(self, text: str) -> bool:
         try:
@@ -79,7 +79,7 @@ class Remote(Wrapped):
 _numbers = count()
 
 
-@record(frozen=False)
+@dataclass
 class RemoteConversation:
     """A conversation in a worker; after a crash, a new worker judges its earlier programs again."""
 
@@ -120,7 +120,7 @@ def _unjudged(program: str, reason: str) -> Verdict:
     return Verdict(False, "broken", feedback, program, codes=("broken",), weight=(_LAST,))
 
 
-@record(frozen=False)
+@dataclass
 class _Open:
     number: int
     conversation: Conversation

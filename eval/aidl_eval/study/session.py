@@ -6,7 +6,7 @@ import hashlib
 import io
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
@@ -16,7 +16,6 @@ from PIL import Image
 
 from aidl_eval.judgements import FEWEST, STYLES, Answer, Answers, Sheet, now, sheets
 from aidl_eval.store import Store, StoreError
-from aidl_lang.common.records import record
 
 Groups = tuple[tuple[int, ...], ...]
 _LARGEST = 4096
@@ -27,7 +26,7 @@ class RefusedError(Exception):
     """Raised for an answer that cannot be taken; the message is for the rater."""
 
 
-@record(frozen=False)
+@dataclass
 class Session:
     """The sheets of a folder and the answers to them."""
 
