@@ -21,7 +21,12 @@ from tests.documents import ROOT, Block, programs
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "eval").glob("*.md"))]
 # Pages on diagnostics and those made from the library have tests of their own.
-BLOCKS = [b for page in PAGES if page.parent.name not in ("diagnostics", "reference") for b in programs(page)]
+BLOCKS = [
+    b
+    for page in PAGES
+    if page.parent.name not in ("diagnostics", "guides", "reference")
+    for b in programs(page)
+]
 
 
 @pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note in ("", "error")])

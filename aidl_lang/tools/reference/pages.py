@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from aidl_lang.checking import library
 from aidl_lang.tools.reference.collect import Entry
-from aidl_lang.tools.reference.signatures import exactness, held, parts, short_forms
+from aidl_lang.tools.reference.signatures import exactness, held, parts
 
 _MEANT = {"exactly": "met exactly", "at least": "what there is at least", "at most": "what there is at most"}
 
@@ -84,7 +84,3 @@ def held_of(entry: Entry) -> list[str]:
 def exactness_of(entry: Entry) -> dict[str, str]:
     callables = library.load().callables
     return {name: word for node in entry.nodes for name, word in exactness(node, callables).items()}
-
-
-def short_calls(entry: Entry) -> list[str]:
-    return short_forms([o.form for o in entry.overloads], entry.nodes)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from aidl_dev.reference.llms import headline
 from aidl_dev.reference.pages import page_of
-from aidl_lang.tools.reference.collect import headline
 from aidl_lang.tools.reference.pages import picture_of
 
 FOLDER = "examples/gallery"

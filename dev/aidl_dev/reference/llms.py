@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from pathlib import Path
 
-from aidl_lang.tools.reference.collect import doc, headline, reference
+from aidl_lang.tools.reference.collect import doc, reference
 
 _HEAD = """\
 # AIDL
@@ -56,6 +57,12 @@ def _page(path: Path, root: Path) -> str:
     return f"- [{title.removeprefix('#').strip()}]({path.relative_to(root).as_posix()})" + (
         f": {about}" if about else ""
     )
+
+
+def headline(program: str) -> str:
+    """Returns the first sentence of the comment that a program begins with."""
+    comment = takewhile(lambda line: line.startswith("//"), program.splitlines())
+    return doc("\n".join(line.lstrip("/ ") for line in comment)).line
 
 
 def _example(path: Path) -> str:

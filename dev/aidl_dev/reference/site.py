@@ -7,10 +7,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from aidl_dev.reference import coverage, gallery
+from aidl_dev.reference.guide import GENERATED, guide
 from aidl_dev.reference.llms import llms
 from aidl_dev.reference.pages import MARK, pages, pictures
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.reference.guide import guide
 
 _FOLDER = "docs/reference"
 COVERAGE = f"{_FOLDER}/coverage.md"
@@ -21,7 +21,8 @@ def texts(root: Path) -> dict[str, str]:
     minutes.
     """
     found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
-    return {**found, gallery.PAGE: gallery.page(root), "docs/guide.md": guide(), "llms.txt": llms(root)}
+    found |= {path: guide(variant) for variant, path in GENERATED.items()}
+    return {**found, gallery.PAGE: gallery.page(root), "llms.txt": llms(root)}
 
 
 def drawn(root: Path) -> dict[str, bytes]:
