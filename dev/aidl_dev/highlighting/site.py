@@ -1,5 +1,5 @@
-"""The generated files for editors in a checkout: grammars, lists of words, snippets, and expectations of
-tests.
+"""The generated files for editors and decoders in a checkout: grammars, lists of words, snippets, and
+expectations of tests.
 """
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from aidl_dev.grammars import formats
 from aidl_dev.highlighting.codemirror import words
 from aidl_dev.highlighting.scopes import SCOPES
 from aidl_dev.highlighting.textmate import grammar, markdown
@@ -26,6 +27,7 @@ def texts(root: Path) -> dict[str, str]:
         "editors/codemirror/src/words.ts": words(),
         "aidl_lang/tools/preview/pane/words.js": words(typed=False),
         **queries(),
+        **formats.texts(),
         SAMPLES: _samples(root),
     }
 

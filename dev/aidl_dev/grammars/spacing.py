@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from aidl_lang.tools.grammars.notation import (
+from aidl_dev.grammars.notation import (
     EMPTY,
     Alt,
     Name,

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from aidl_lang.common.records import record
+from aidl_dev.grammars.notation import EMPTY, Name, Node, Repeat, Text, alt, optional, seq
 from aidl_lang.common.resources import resource
-from aidl_lang.tools.grammars.notation import EMPTY, Name, Node, Repeat, Text, alt, optional, seq
 
 _TOKEN = re.compile(
     r"""\s+ | //[^\n]*
@@ -23,23 +22,11 @@ _TOKEN = re.compile(
 _COUNTS: dict[str, tuple[int, int | None]] = {"?": (0, 1), "*": (0, None), "+": (1, None)}
 
 
-@record()
-class Source:
-    """The contents of `grammar/aidl.lark`: rules as trees, and the names of its terminals."""
-
-    text: str
-    rules: dict[str, Node]
-    terminals: tuple[str, ...]
-
-
 @cache
-def read_source() -> Source:
-    text = resource("grammar/aidl.lark").read_text(encoding="utf-8")
-    definitions = _definitions(text)
-    rules = {
-        name: _Reader(tokens).alternatives() for name, tokens in definitions.items() if not name[:1].isupper()
-    }
-    return Source(text, rules, tuple(name for name in definitions if name[:1].isupper()))
+def read_rules() -> dict[str, Node]:
+    """Returns the rules of `grammar/aidl.lark` as trees."""
+    definitions = _definitions(resource("grammar/aidl.lark").read_text("utf-8"))
+    return {name: _Reader(found).alternatives() for name, found in definitions.items() if name.islower()}
 
 
 def _definitions(text: str) -> dict[str, list[tuple[str, str]]]:

@@ -7,7 +7,7 @@ repetition, and alternatives that begin with the same rule share it.
 
 from __future__ import annotations
 
-from aidl_lang.tools.grammars.notation import (
+from aidl_dev.grammars.notation import (
     EMPTY,
     Alt,
     Name,

@@ -3,46 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
-from aidl_lang.common.records import record
 
-
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Text:
     """A fixed text."""
 
     text: str
 
 
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Chars:
     r"""One character: the inside of a class such as `A-Za-z_`; `\n`, `\t`, `\r`, `\\` are escaped."""
 
     members: str
 
 
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Name:
     """A rule or a terminal, by its name."""
 
     name: str
 
 
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Seq:
     """Items one after the other; without items, the empty text."""
 
     items: tuple[Node, ...] = ()
 
 
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Alt:
     """One of several."""
 
     items: tuple[Node, ...]
 
 
-@record(slots=True)
+@dataclass(frozen=True, slots=True)
 class Repeat:
     """From `low` to `high` times; `high` is None without a limit."""
 

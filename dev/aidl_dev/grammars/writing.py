@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from aidl_lang.common.records import record
-from aidl_lang.tools.grammars.notation import Alt, Chars, Name, Node, Repeat, Rules, Seq, Text
+from aidl_dev.grammars.notation import Alt, Chars, Name, Node, Repeat, Rules, Seq, Text
 
 _SHORT = 80  # alternatives up to this length share a line
 _SIGNS = {(0, 1): "?", (0, None): "*", (1, None): "+"}
 
 
-@record()
+@dataclass(frozen=True)
 class Notation:
     """The notation of one format. `counted` writes the bounds of a repetition."""
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from aidl_lang.syntax.kinds import KINDS
-from aidl_lang.tools.grammars.descent import from_left_to_right
-from aidl_lang.tools.grammars.notation import (
+from aidl_dev.grammars.descent import from_left_to_right
+from aidl_dev.grammars.notation import (
     Chars,
     Name,
     Node,
@@ -17,10 +16,11 @@ from aidl_lang.tools.grammars.notation import (
     reachable,
     seq,
 )
-from aidl_lang.tools.grammars.reader import read_source
-from aidl_lang.tools.grammars.spacing import spaced
-from aidl_lang.tools.grammars.terminals import SPACING, bounded_terminals, reading_terminals
-from aidl_lang.tools.grammars.writing import GBNF, LARK, W3C
+from aidl_dev.grammars.reader import read_rules
+from aidl_dev.grammars.spacing import spaced
+from aidl_dev.grammars.terminals import SPACING, bounded_terminals, reading_terminals
+from aidl_dev.grammars.writing import GBNF, LARK, W3C
+from aidl_lang.syntax.kinds import KINDS
 
 # Lines without three backticks, and the opening of a block.
 _TICKS = optional(alt(Text("`"), Text("``")))
@@ -28,20 +28,27 @@ _LINES = optional(seq(Repeat(seq(_TICKS, Chars("^`")), 0, None), _TICKS, Chars("
 _OPENING = seq(_LINES, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
 
 
-def as_it_is() -> str:
-    return read_source().text
+FOLDER = "aidl_lang/tools/grammars"
+
+
+def texts() -> dict[str, str]:
+    """Returns every export by its path in a checkout."""
+    found = {"ebnf": for_readers()}
+    for format in ("llguidance", "gbnf"):
+        found |= {format: for_decoding(format, False), f"{format}-fenced": for_decoding(format, True)}
+    return {f"{FOLDER}/{name}.txt": text for name, text in found.items()}
 
 
 def for_readers() -> str:
     """Returns W3C EBNF: the rules of the source, without white space."""
-    return W3C.definitions(read_source().rules) + "\n" + W3C.definitions(reading_terminals())
+    return W3C.definitions(read_rules()) + "\n" + W3C.definitions(reading_terminals())
 
 
 def for_decoding(format: str, fenced: bool) -> str:
     """Returns a grammar with bounded terminals, white space in the rules, and only existing kinds of
     structures.
     """
-    rules = spaced(_with_kinds(read_source().rules), "module") | SPACING
+    rules = spaced(_with_kinds(read_rules()), "module") | SPACING
     program = seq(optional(Name("heading")), Name("module"))
     if fenced:
         rules["start"] = seq(Name("OPENING"), program, Name("new_line"), Text("```"), optional(Name("SPACE")))

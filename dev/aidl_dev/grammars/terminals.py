@@ -11,8 +11,8 @@ from __future__ import annotations
 import string
 from collections.abc import Iterable
 
+from aidl_dev.grammars.notation import Alt, Chars, Name, Node, Repeat, Text, alt, optional, seq
 from aidl_lang.syntax.tables import load_tables
-from aidl_lang.tools.grammars.notation import Alt, Chars, Name, Node, Repeat, Text, alt, optional, seq
 
 UNITS = ("mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°")
 
