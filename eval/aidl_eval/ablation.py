@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from aidl_eval.statistics import Floats
 from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.expression import Evaluator
 from aidl_lang.building.lower import Lowered, lower, seen
@@ -19,7 +20,6 @@ from aidl_lang.common.world import World
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Problem, solve
 from aidl_lang.solver.array_program import Schedule
-from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import violations
 from aidl_lang.solver.settings import Stages
 from aidl_lang.typecheck import Program

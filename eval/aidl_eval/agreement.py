@@ -7,9 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from aidl_eval.statistics import Floats
+
 Metric = Callable[[Floats, Floats], Floats]
 """The squared differences of all pairs of values, from the values in order and how often each was given."""
 

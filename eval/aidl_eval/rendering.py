@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from aidl_eval.regions import Regions
-from aidl_lang.tools.llm.language import Language, Verdict
+from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 
 SECONDS = 30
 """Seconds that a program may run."""
@@ -61,6 +61,34 @@ class RenderedLanguage(Language, Protocol):
         """Runs a program once for each edit, with these values for some of its knobs. Unless `parted`, it may
         hand over all that is drawn as one part.
         """
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A language that does all as another does, but for what a subclass changes."""
+
+    language: Language
+
+    @property
+    def name(self) -> str:
+        return self.language.name
+
+    @property
+    def suffix(self) -> str:
+        return self.language.suffix
+
+    @property
+    def fences(self) -> tuple[str, ...]:
+        return self.language.fences
+
+    def guide(self) -> str:
+        return self.language.guide()
+
+    def reads(self, text: str) -> bool:
+        return self.language.reads(text)
+
+    def conversation(self, before: str | None = None) -> Conversation:
+        return self.language.conversation(before)
 
 
 _last: list[tuple[RenderedLanguage, str, Rendered]] = []

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import Any, TypeVar, cast
 
+from aidl_eval.rendering import Wrapped
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.processes import Guarded, Limit
-from aidl_lang.tools.llm.language import Conversation, Language, Verdict, Wrapped
+from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 
 T = TypeVar("T")
 
@@ -59,12 +60,11 @@ _WHY = {
 }
 
 
+@dataclass(frozen=True)
 class Remote(Wrapped):
     """A language whose programs are judged by a worker."""
 
-    def __init__(self, language: Language, worker: Worker) -> None:
-        super().__init__(language)
-        self.worker = worker
+    worker: Worker
 
     def reads(self, text: str) -> bool:
         try:

@@ -7,7 +7,8 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from aidl_eval.agreement import Floats, Metric, alpha, ordinal
+from aidl_eval.agreement import Metric, alpha, ordinal
+from aidl_eval.statistics import Floats
 
 _ = None
 OBSERVERS = (
