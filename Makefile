@@ -9,7 +9,7 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,21 +38,24 @@ test-model: $(READY) ## ask a real small model; installs it and llama.cpp into b
 	$(BIN)/python tests/model/install.py build/model
 	AIDL_TEST_MODEL=build/model $(BIN)/python -m pytest tests/model
 
-lint: $(READY) ## style, format, types and the direction of imports
+lint: $(READY) ceilings ## style, format, types, the direction of imports and the size of each room
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+ceilings: $(READY) ## compare the lines of each room with its ceiling in pyproject.toml; `.ci/ceilings.py --set` lowers these
+	@$(BIN)/python .ci/ceilings.py
 
 format: $(READY) ## put all Python code into its canonical form
 	$(BIN)/ruff check --fix-only --quiet .
 	$(BIN)/ruff format .
 
 reference: $(READY) colours ## write all that is generated from the library: docs/reference, docs/guide.md, llms.txt, what editors read
-	$(BIN)/python -m aidl_lang.tools.reference .
+	$(BIN)/python -m aidl_dev.reference .
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
-	$(BIN)/python -m aidl_lang.tools.highlighting .
+	$(BIN)/python -m aidl_dev.highlighting .
 
 pane: ## bundle the editor of the preview's pane: aidl_lang/tools/preview/pane/editor.js
 	cd editors/codemirror && npm ci --silent --no-audit --no-fund && npm run --silent pane
@@ -114,10 +117,10 @@ clean: ## remove what was built; the virtualenv stays
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
 
 # Done again only when the lock or the project file is newer than the last time.
-$(READY): requirements-dev.lock pyproject.toml
+$(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
 	@echo "Setting up $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable eval --editable dev
 	@touch $@

@@ -3,9 +3,10 @@ virtualenv of its own, with a home in which there is nothing.
 
     .venv/bin/python .ci/wheel.py [--keep FOLDER]
 
-First without any extra, then with each of them, from the source archive. Every command must end with the code
-that is expected of it, say what is expected, and show no traceback; none may write into the installation, or
-keep anything of AIDL's in the home. Prints the seconds of each, and those of the processor.
+First without any extra, then with each of them, from the source archive, then with `aidl-eval` beside it.
+Every command must end with the code that is expected of it, say what is expected, and show no traceback; none
+may write into the installation, or keep anything of AIDL's in the home. Prints the seconds of each, and those
+of the processor.
 """
 
 from __future__ import annotations
@@ -198,7 +199,9 @@ def plainly(here: Installation) -> None:
     aidl = here.run
     aidl("--version", says=r"aidl \d")
     for verb in re.findall(r"^    ([a-z]+(?:-[a-z]+)*)", aidl("--help"), re.M):
-        aidl(verb, "--help", says=f"usage: aidl {verb}")
+        if verb != "eval":
+            aidl(verb, "--help", says=f"usage: aidl {verb}")
+    aidl("eval", "--help", code=2, says="pip install aidl-eval")
     aidl("new", "part")
     for suffix in ("svg", "dxf", "pdf", "png", "json"):
         aidl("compile", "part.aidl", "-o", f"part.{suffix}", says="solved")
@@ -238,7 +241,6 @@ def without_extras(here: Installation) -> None:
         ("mcp", "mcp"),
         ("editor", "lsp"),
         ("editor", "preview", "part.aidl", "--no-open"),
-        ("editor", "eval", "study", "results", "--no-open"),
     ]
     for extra, *arguments in lacking:
         here.run(*arguments, code=2, says=rf"pip install 'aidl-lang\[{extra}\]'")
@@ -261,6 +263,16 @@ def with_extras(here: Installation) -> None:
     serves_agents(here)
     serves_editors(here)
     shows_a_preview(here)
+
+
+def evaluates(here: Installation) -> None:
+    """One reply to a prompt that comes along; the page of a study, of which there is too little."""
+    here.run("eval", "--help", says="usage: aidl eval")
+    (here.work / "reply.md").write_text(f"```aidl\n{PLATE}```\n")
+    asked = ("--prompts", "gear", "--variants", "full", "--runs", "1", "--provider", "exec:cat reply.md")
+    here.run("eval", "--out", "results", *asked, says="1/1 gear, full, run 1: valid")
+    here.run("eval", "study", "results", "--no-open", code=2, says="E0987")
+    here.run("eval", "--solver", "part.aidl", says="no-box-rule")
 
 
 def generates(here: Installation, protocol: str) -> None:
@@ -420,6 +432,10 @@ def installed_and_run(folder: Path) -> Installation:
     here.expect(not missing, f"what is built from the source archive lacks {missing[:5]}")
     with_extras(here)
     here.expect(state(here.package) == rebuilt, "a run writes into the installation")
+    here.pip("install", copy / "eval")
+    evaluates(here)
+    strays = [path.name for name in ("aidl_dev", "dev", "eval") for path in here.package.parent.glob(name)]
+    here.expect(not strays, f"what is not the product's is installed: {strays}")
     kept = [str(path) for path in here.home.rglob("*aidl*")]
     here.expect(not kept, f"something is kept in the home: {kept[:5]}")
     return here

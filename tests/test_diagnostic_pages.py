@@ -21,8 +21,9 @@ MISTAKE, MENDED = "The mistake", "Mended"
 
 
 def codes_in_source() -> set[str]:
-    """Codes written as string literals anywhere in the package."""
-    texts = (path.read_text(encoding="utf-8") for path in (ROOT / "aidl_lang").rglob("*.py"))
+    """Codes written as string literals anywhere in the packages."""
+    folders = (ROOT / "aidl_lang", ROOT / "eval" / "aidl_eval")
+    texts = (path.read_text(encoding="utf-8") for folder in folders for path in folder.rglob("*.py"))
     return {code for text in texts for code in re.findall(r"""["']([EWN]\d{4})["']""", text)}
 
 

@@ -19,9 +19,14 @@ from aidl_lang.syntax import tables
 from tests.compiled import EXAMPLES, example
 from tests.documents import ROOT, Block, programs
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "eval").glob("*.md"))]
 # Pages on diagnostics and those made from the library have tests of their own.
-BLOCKS = [b for page in PAGES if page.parent.name not in ("diagnostics", "reference") for b in programs(page)]
+BLOCKS = [
+    b
+    for page in PAGES
+    if page.parent.name not in ("diagnostics", "guides", "reference")
+    for b in programs(page)
+]
 
 
 @pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note in ("", "error")])

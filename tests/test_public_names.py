@@ -9,11 +9,11 @@ from collections.abc import Iterator
 
 import pytest
 
+from aidl_dev.highlighting import site as colours
+from aidl_dev.reference import coverage, gallery, site
+from aidl_dev.reference.pages import image
 from aidl_lang.checking import builtins
-from aidl_lang.tools.highlighting import site as colours
-from aidl_lang.tools.reference import coverage, gallery, site
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.reference.pages import image
 from tests.checker import test_corpus as corpus
 from tests.documents import ROOT
 from tests.property import test_shapes as shapes

@@ -11,6 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from aidl_dev.reference.guide import template
+from aidl_dev.reference.pages import image
+from aidl_dev.reference.short import short, short_forms
+from aidl_dev.reference.site import texts
 from aidl_lang import pipeline
 from aidl_lang.checking import builtins, library
 from aidl_lang.common.diagnostics import Severity
@@ -21,10 +25,8 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.kinds import KINDS
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.tools.reference.collect import Entry, doc, reference
-from aidl_lang.tools.reference.guide import full_guide, guide, template
-from aidl_lang.tools.reference.pages import image
-from aidl_lang.tools.reference.signatures import exactness, held, parts, short, short_forms, split_items
-from aidl_lang.tools.reference.site import texts
+from aidl_lang.tools.reference.guide import full_guide, guide
+from aidl_lang.tools.reference.signatures import exactness, held, parts, split_items
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())

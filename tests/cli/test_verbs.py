@@ -329,3 +329,13 @@ def test_interrupt_is_quiet(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None
 def test_programs_used_here_are_what_they_say(aidl: Aidl) -> None:
     assert aidl("check", "-", stdin=GOOD).code == 0
     assert aidl("check", "-", stdin=WRONG).code == 1
+
+
+@pytest.mark.parametrize("asked", [["--report"], ["study", "results"], ["--help"]])
+def test_eval_says_what_to_install(aidl: Aidl, monkeypatch: pytest.MonkeyPatch, asked: list[str]) -> None:
+    monkeypatch.setattr("aidl_lang.tools.cli.eval.find_spec", lambda name: None)
+    assert aidl("eval", *asked) == Result(
+        2,
+        "",
+        "error[E0913]: `aidl eval` needs a package that is not installed\n  = hint: pip install aidl-eval\n",
+    )

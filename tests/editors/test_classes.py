@@ -20,7 +20,11 @@ from tests.documents import ROOT, programs
 
 EVERYTHING = Path(__file__).with_name("classes.aidl")
 FILES = [
-    *(path for folder in ("examples", "stdlib", "eval/prompts") for path in (ROOT / folder).rglob("*.aidl")),
+    *(
+        path
+        for folder in ("examples", "stdlib", "eval/aidl_eval/prompts")
+        for path in (ROOT / folder).rglob("*.aidl")
+    ),
     EVERYTHING,
 ]
 BLOCKS = [b for page in sorted((ROOT / "docs").glob("*.md")) for b in programs(page)]

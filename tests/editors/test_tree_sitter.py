@@ -46,7 +46,7 @@ def errors(text: str) -> list[str]:
 @cache
 def whole_programs() -> dict[str, str]:
     """What the project itself has written as programs that are read."""
-    folders = ("examples", "stdlib", "eval/prompts")
+    folders = ("examples", "stdlib", "eval/aidl_eval/prompts")
     files = [path for folder in folders for path in sorted((ROOT / folder).rglob("*.aidl"))]
     return {str(path.relative_to(ROOT)): path.read_text("utf-8") for path in files}
 

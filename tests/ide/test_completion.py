@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from aidl_dev.reference.coverage import cells
 from aidl_lang.checking.library import load
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.source import SourceFile
@@ -18,7 +19,6 @@ from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.completion.fitting import forms, read
 from aidl_lang.tools.ide.view import look
 from aidl_lang.tools.ide.workspace import Workspace
-from aidl_lang.tools.reference.coverage import cells
 from aidl_lang.tools.snippets import expanded
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import LIGHTER

@@ -152,7 +152,7 @@ def test_openscad_has_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("aidl_lang.tools.evaluation.openscad.OpenScad.missing", lambda _: None)
+    monkeypatch.setattr("aidl_eval.openscad.OpenScad.missing", lambda _: None)
     said = ["--base-url", "http://localhost:1/v1", "--model", "m", "--constrain", "vllm"]
     assert main(["eval", "--variants", "openscad", *said]) == 2
     assert capsys.readouterr().err == (

@@ -6,7 +6,7 @@ import hashlib
 import re
 from pathlib import Path
 
-from aidl_lang.tools.highlighting.codemirror import words
+from aidl_dev.highlighting.codemirror import words
 
 ROOT = Path(__file__).resolve().parents[2]
 PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"

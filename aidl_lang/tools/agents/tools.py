@@ -163,8 +163,7 @@ class Tools:
         known = reference()
         entry = known.find(name.strip()) or known.misspelt(name.strip())
         if entry is not None:
-            blocks = [block for block in entry_blocks(entry, "#") if not block.startswith("<img")]
-            return Page(entry.name, joined(blocks))
+            return Page(entry.name, joined(entry_blocks(entry, "#")))
         hints = did_you_mean([*known.near(name[:100]), *pages.near(code[:100])][:6])
         raise refusal("E0912", f"there is no `{name[:100]}` to tell about", *hints, "`search` finds names")
 

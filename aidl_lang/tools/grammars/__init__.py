@@ -1,9 +1,13 @@
 """Exports of the grammar of AIDL, for constrained decoding and for readers.
 
-All formats are made of `grammar/aidl.lark`, the grammar that the parser is made of.
+All formats are made of `grammar/aidl.lark`, the grammar that the parser is made of, and lie here as files.
 """
 
 from __future__ import annotations
+
+from pathlib import Path
+
+from aidl_lang.common.resources import resource
 
 FORMATS = ("lark", "llguidance", "gbnf", "ebnf")
 FENCED_FORMATS = ("llguidance", "gbnf")
@@ -16,8 +20,6 @@ def export(format: str, fenced: bool = False) -> str:
     """
     if format not in FORMATS or (fenced and format not in FENCED_FORMATS):
         raise ValueError(f"no such export: {format}, fenced={fenced}")
-    from aidl_lang.tools.grammars import formats
-
-    if format in FENCED_FORMATS:
-        return formats.for_decoding(format, fenced)
-    return formats.as_it_is() if format == "lark" else formats.for_readers()
+    if format == "lark":
+        return resource("grammar/aidl.lark").read_text("utf-8")
+    return Path(__file__).with_name(f"{format}{'-fenced' if fenced else ''}.txt").read_text("utf-8")

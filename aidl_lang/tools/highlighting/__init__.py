@@ -1,1 +1,1 @@
-"""Syntax colours: the class of each token, and the grammars for editors and for Pygments made from these."""
+"""Syntax colours: the class of each token, and the lexer for Pygments made from these."""

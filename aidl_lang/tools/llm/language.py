@@ -81,31 +81,3 @@ class Language(Protocol):
 
     def conversation(self, before: str | None = None) -> Conversation:
         """Returns a new conversation; `before` is the program to be changed, if any."""
-
-
-@record()
-class Wrapped:
-    """A language that does all as another does, but for what a subclass changes."""
-
-    language: Language
-
-    @property
-    def name(self) -> str:
-        return self.language.name
-
-    @property
-    def suffix(self) -> str:
-        return self.language.suffix
-
-    @property
-    def fences(self) -> tuple[str, ...]:
-        return self.language.fences
-
-    def guide(self) -> str:
-        return self.language.guide()
-
-    def reads(self, text: str) -> bool:
-        return self.language.reads(text)
-
-    def conversation(self, before: str | None = None) -> Conversation:
-        return self.language.conversation(before)

@@ -13,7 +13,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
-from itertools import takewhile
 
 from aidl_lang.checking import builtins, library
 from aidl_lang.common import names
@@ -263,12 +262,6 @@ def doc(comment: str) -> Doc:
     sentence = _SENTENCE.match(paragraph)
     line = sentence[1] if sentence else paragraph
     return Doc(" ".join(line.split()), text[len(line) :].strip(), example[1] if example else "")
-
-
-def headline(program: str) -> str:
-    """Returns the first sentence of the comment that a program begins with."""
-    comment = takewhile(lambda line: line.startswith("//"), program.splitlines())
-    return doc("\n".join(line.lstrip("/ ") for line in comment)).line
 
 
 def _topic(name: str, source: str) -> Topic:

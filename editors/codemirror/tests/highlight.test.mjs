@@ -11,7 +11,7 @@ import { words } from "../dist/words.js";
 const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
 const read = (path) => readFileSync(join(root, path), "utf8");
 const { scopes, programs } = JSON.parse(read("tests/editors/classes.json"));
-const files = ["examples", "stdlib", "eval/prompts"].flatMap((folder) =>
+const files = ["examples", "stdlib", "eval/aidl_eval/prompts"].flatMap((folder) =>
   readdirSync(join(root, folder), { recursive: true }).filter((f) => f.endsWith(".aidl")).map((f) => join(folder, f)),
 );
 

@@ -1,6 +1,6 @@
 """The kinds of things that each constraint takes, from the reference's table of all pairs.
 
-That table is made by compiling a program for each of its cells (`aidl_lang.tools.reference.coverage`).
+That table was made by compiling a program for each of its cells.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.types import GeometryType, ListType, NumberType, PointType, StructureType, Type
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
-from aidl_lang.tools.reference.coverage import KINDS
 
 _TABLE = "docs/reference/coverage.md"
 _FORM = re.compile(r"^`([^`]+)`(?:: (.*))?$")
 _ROW = re.compile(r"^\| \*\*(\w+)\*\* \|(.*)\|$")
 _MARK = "●"
+_HEAD = "| a ╲ b |"
 
 
 @record()
@@ -38,6 +38,14 @@ def forms() -> Mapping[str, tuple[Form, ...]]:
     return read(resource(_TABLE).read_text("utf-8"))
 
 
+@cache
+def kinds() -> tuple[str, ...]:
+    """Returns the kinds of things, as the heads of the tables name them."""
+    lines = resource(_TABLE).read_text("utf-8").splitlines()
+    head = next(line for line in lines if line.startswith(_HEAD))
+    return tuple(cell.strip() for cell in head.removeprefix(_HEAD).removesuffix("|").split("|"))
+
+
 def read(page: str) -> Mapping[str, tuple[Form, ...]]:
     found: dict[str, list[Form]] = {}
     name = ""
@@ -48,7 +56,7 @@ def read(page: str) -> Mapping[str, tuple[Form, ...]]:
             found.setdefault(name, []).append(Form(name, form[1], _told(form[2] or "")))
         elif name in found and (row := _ROW.match(line)):
             cells = [cell.strip() == _MARK for cell in row[2].split("|")]
-            more = {(row[1], kind) for kind, works in zip(KINDS, cells, strict=True) if works}
+            more = {(row[1], kind) for kind, works in zip(kinds(), cells, strict=True) if works}
             last = found[name][-1]
             found[name][-1] = Form(last.name, last.text, last.pairs | more)
     return {name: tuple(listed) for name, listed in found.items()}
@@ -58,9 +66,9 @@ def _told(words: str) -> frozenset[tuple[str, str]]:
     """Parses `any two, but no number`, or the kinds of a single thing."""
     if words.startswith("any two"):
         but = {word.strip() for word in re.split(r", but no | and no ", words)[1:]}
-        kinds = [kind for kind in KINDS if kind not in but]
-        return frozenset((a, b) for a in kinds for b in kinds)
-    return frozenset((kind, "") for kind in re.split(r",\s*", words) if kind in KINDS)
+        left = [kind for kind in kinds() if kind not in but]
+        return frozenset((a, b) for a in left for b in left)
+    return frozenset((kind, "") for kind in re.split(r",\s*", words) if kind in kinds())
 
 
 def kind_of(fact: Fact) -> str:
@@ -72,7 +80,7 @@ def _kind(kind: Type, *, is_unknown: bool) -> str:
     match kind:
         case PointType():
             return "point" if is_unknown else ""
-        case GeometryType(name) if name in KINDS:
+        case GeometryType(name) if name in kinds():
             return name
         case GeometryType():
             return "shape"

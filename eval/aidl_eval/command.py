@@ -1,0 +1,306 @@
+"""`aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_eval.study import command as study
+from aidl_lang.common.prose import counted
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.report import UseError, say, show
+
+if TYPE_CHECKING:
+    from aidl_eval.plan import Plan
+    from aidl_eval.recordings import Replay
+    from aidl_eval.requirements import Prompt
+    from aidl_eval.run import Done
+    from aidl_eval.store import Store
+    from aidl_lang import SourceFile
+    from aidl_lang.common.world import World
+    from aidl_lang.tools.llm.messages import Provider
+
+_USUAL = ("full", "no-hierarchy", "no-constraints", "openscad")
+_VARIANTS = (*_USUAL, "paper", "build123d", "cadquery", "svg")
+_RUNS = 3
+_OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_tokens", "constrain", "price")
+"""Options that a recording has no use for."""
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        help="folder of the results (default: evaluation; with --solver they are printed alone)",
+    )
+    parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
+    parser.add_argument(
+        "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
+    )
+    parser.add_argument(
+        "--variants",
+        nargs="+",
+        choices=_VARIANTS,
+        default=list(_USUAL),
+        metavar="NAME",
+        help=f"some of {', '.join(_VARIANTS)} (default: the first four)",
+    )
+    parser.add_argument(
+        "--runs",
+        type=count_to(10_000),
+        metavar="N",
+        help="of each prompt in each variant (default: 3; of a recording all)",
+    )
+    parser.add_argument(
+        "--attempts",
+        type=count_to(10_000),
+        default=5,
+        metavar="N",
+        help="replies in a conversation (default: 5)",
+    )
+    parser.add_argument(
+        "--jobs", type=count_to(10_000), default=4, metavar="N", help="at a time (default: 4)"
+    )
+    parser.add_argument(
+        "--time-limit",
+        type=count_to(10_000),
+        default=60,
+        metavar="SECONDS",
+        help="for judging a program, for drawing and for editing it (default: 60)",
+    )
+    parser.add_argument(
+        "--guide", choices=("full", "none"), default="full", help="what a model is told of a language"
+    )
+    parser.add_argument(
+        "--no-fixes", action="store_false", dest="mends", help="the machine mends nothing (AIDL)"
+    )
+    parser.add_argument(
+        "--no-recovery",
+        action="store_false",
+        dest="recovers",
+        help="what a program lost of earlier ones is neither asked for nor put back (AIDL)",
+    )
+    parser.add_argument(
+        "--no-plans",
+        action="store_false",
+        dest="plans",
+        help="a program with empty structures is taken as it is, not as a plan (AIDL)",
+    )
+    parser.add_argument(
+        "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
+    )
+    parser.add_argument(
+        "--clip-model",
+        default="ViT-B-32-quickgelu",
+        metavar="NAME",
+        help="what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)",
+    )
+    instead = parser.add_mutually_exclusive_group()
+    instead.add_argument(
+        "--report", action="store_true", help="ask nothing: report on the runs that are there"
+    )
+    instead.add_argument(
+        "--replay",
+        metavar="PLACE",
+        help="ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such",
+    )
+    instead.add_argument(
+        "--solver",
+        nargs="+",
+        metavar="PLACE",
+        help="ask nothing: solve programs, or those of recordings, with parts of the solver left out as well",
+    )
+    add_provider(parser)
+    parser.set_defaults(run=run)
+    _add_study(parser)
+
+
+def _add_study(parser: argparse.ArgumentParser) -> None:
+    """Adds `study`, which takes none of the options of a run."""
+    own = parser.add_subparsers(title="instead of a run", metavar="[study]").add_parser(
+        "study", help="have people rank the pictures on a local page: `aidl eval study --help`"
+    )
+    study.register(own)
+    known = vars(own.parse_args(["FOLDER"])).keys()
+
+    def apart(arguments: argparse.Namespace) -> int:
+        for name, value in vars(arguments).items():
+            if name not in known and value != parser.get_default(name):
+                parser.error("`study` takes none of the options of a run")
+        return study.run(arguments)
+
+    own.set_defaults(run=apart)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_eval.recordings import RecordingError
+    from aidl_eval.report import report
+    from aidl_eval.store import Store, StoreError
+
+    try:
+        if arguments.solver:
+            return _compare_ways(arguments.solver, arguments.out)
+        store = Store(Path(arguments.out or "evaluation"))
+        left = _run(arguments, store)
+        print(report(store, arguments.clip_weights, arguments.clip_model), end="")
+    except (StoreError, RecordingError) as reason:
+        raise UseError.of(reason.diagnostic) from None
+    say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
+    return 1 if left else 0
+
+
+def _compare_ways(names: list[str], out: str | None) -> int:
+    """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
+    RecordingError and StoreError.
+    """
+    from aidl_eval import ablation, ablation_table
+    from aidl_eval.recordings import SUFFIX
+    from aidl_eval.store import Store
+
+    programs: list[tuple[SourceFile, World | None, str]] = []
+    for name in dict.fromkeys(names):
+        place = Path(name)
+        if place.is_dir() or place.suffix == SUFFIX:
+            programs += [(source, None, thing) for source, thing in ablation.recorded(place)]
+        else:
+            programs.append((files.read(name), files.world(name), name))
+    solves: list[ablation.Solved] = []
+    for number, (source, world, thing) in enumerate(programs, 1):
+        solves += ablation.compare(source, world, thing)
+        say(f"{number}/{len(programs)} {source.name}")
+    text = ablation_table.markdown(solves)
+    if out is not None:
+        store = Store(Path(out))
+        store.write("solver.md", text.encode())
+        store.write("solver.csv", ablation_table.to_csv(solves).encode("utf-8-sig"))
+    print(text, end="")
+    return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
+
+
+def _run(arguments: argparse.Namespace, store: Store) -> int:
+    """Does the open jobs, and returns how many are still left."""
+    from aidl_eval.run import run
+
+    asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
+    if asked is not None:
+        store.begin(plan, asked.name)
+    outcome = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
+    if outcome.failure is not None:
+        show([outcome.failure])
+        say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
+    return outcome.left
+
+
+def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
+    """Returns the model, none for `--report`, and what it is to be asked."""
+    from aidl_eval.timing import Timed
+
+    asked = None if arguments.report else Timed(provider(arguments))
+    return asked, _plan(arguments, asked is not None and asked.takes_seeds)
+
+
+def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
+    """Returns the replies of a recording, and the plan of its conversations. Raises RecordingError."""
+    from aidl_eval import recordings
+    from aidl_lang.tools.llm.generation import Settings
+
+    for option in _OF_MODELS:
+        if getattr(arguments, option) not in (None, ""):
+            raise UseError(
+                "E0996",
+                f"--{option.replace('_', '-')} is for a model, and --replay asks none",
+                "leave one of the two out",
+            )
+    there = recordings.load(Path(arguments.replay))
+    chosen = recordings.chosen(there, arguments.prompts or (), _variants(arguments), arguments.runs)
+    plan = recordings.plan(chosen, _known(arguments).values(), Settings(arguments.attempts))
+    return recordings.Replay("recording", {one.job: one for one in chosen}), plan
+
+
+def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
+    from dataclasses import replace
+
+    from aidl_eval.plan import Plan, Switches
+    from aidl_lang.tools.llm.generation import Settings
+
+    asked = sampling(arguments)
+    if asked.seed is None and takes_seeds:
+        asked = replace(asked, seed=1)
+    settings = Settings(arguments.attempts, asked)
+    switches = Switches(arguments.guide == "full", arguments.mends, arguments.recovers, arguments.plans)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
+
+
+def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
+    from difflib import get_close_matches
+
+    known = _known(arguments)
+    for name in arguments.prompts or ():
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
+            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+    return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
+
+
+def _known(arguments: argparse.Namespace) -> dict[str, Prompt]:
+    """Returns the prompts of the folder by their names. Raises UseError."""
+    from aidl_eval.requirements import PromptError, load
+
+    folder = arguments.prompt_folder
+    try:
+        known = {prompt.name: prompt for prompt in load(Path(folder) if folder else None)}
+    except (PromptError, OSError) as error:
+        raise UseError("E0947", f"the prompts cannot be read: {error}") from None
+    if not known:
+        raise UseError("E0947", f"there are no prompts in `{folder}`", "a prompt is a file `NAME.aidl`")
+    return known
+
+
+def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """Returns the languages that can be had, and says which of those asked for cannot."""
+    from aidl_eval.plan import VARIANTS
+    from aidl_eval.rendering import RenderedLanguage
+
+    wanted = [name for name in _VARIANTS if name in arguments.variants]
+    for name in list(wanted):
+        language = VARIANTS[name]
+        if not isinstance(language, RenderedLanguage):
+            continue
+        why = language.missing()
+        if why is not None:
+            code, said = "E0949", f"`{name}` cannot be run: {why}"
+            left, hint = f"{name} is left out: {why}", f"leave out `--variants {name}`"
+        elif arguments.constrain:
+            code, said = "E0950", f"--constrain has no grammar for `{name}`"
+            left, hint = (
+                f"{name} is left out: --constrain has the grammar of AIDL alone",
+                "leave --constrain out",
+            )
+        else:
+            continue
+        wanted.remove(name)
+        if not wanted:
+            raise UseError(code, said, hint)
+        say(left)
+    return tuple(wanted)
+
+
+def _progress(done: Done) -> None:
+    say(
+        f"{done.number}/{done.count} {done.job.prompt}, {done.job.variant}, run {done.job.run}: {_came(done)}"
+    )
+
+
+def _came(done: Done) -> str:
+    if done.failure is not None:
+        return f"broke off: {done.failure.message}"
+    after = f"after {counted(len(done.record['attempts']), 'attempt')}"
+    if not done.record["ok"]:
+        return f"not valid {after}"
+    lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""
+    results = done.record.get("requirements", ())
+    met = sum(result["status"] == "met" for result in results)
+    return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")

@@ -1,0 +1,254 @@
+"""What raters say of pictures: the sheets to be ranked, and answers, each one line of `study.jsonl`."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from io import FileIO
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from aidl_eval.plan import VARIANTS
+from aidl_eval.store import Record, StoreError, digest, neutral_path, picture_path
+
+STUDY = "study.jsonl"
+STYLES = {"neutral": neutral_path, "own": picture_path}
+"""Where the pictures of each style are."""
+FEWEST = 2
+"""Fewest pictures that can be ranked."""
+_FORMAT = 1
+_RATER = re.compile(r"[^\W_](?:[\w .-]{0,38}[^\W_])?")
+_LONGEST = 1 << 16
+"""More bytes than a line has."""
+_DATE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The pictures of one prompt and run. `id` changes with the programs that are drawn."""
+
+    prompt: str
+    run: int
+    text: str
+    drawn: tuple[str, ...]
+    undrawn: tuple[str, ...]
+    """Languages whose conversation came to no picture: they are last, and nothing is shown of them."""
+    id: str
+
+    @property
+    def is_shown(self) -> bool:
+        """Tells whether there is anything to ask: with fewer pictures the order is plain."""
+        return len(self.drawn) >= FEWEST
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one rater says of a sheet: languages from best to worst, those of one group alike; None where the
+    rater could not tell. `shown` has them in the order on the screen.
+    """
+
+    rater: str
+    prompt: str
+    run: int
+    sheet: str
+    pictures: str
+    shown: tuple[str, ...]
+    undrawn: tuple[str, ...]
+    ranking: tuple[tuple[str, ...], ...] | None
+    number: int
+    count: int
+    date: str
+
+    @property
+    def was_asked(self) -> bool:
+        return len(self.shown) >= FEWEST
+
+    def ranks(self) -> Mapping[str, float]:
+        """Returns the rank of each language, 1 for the best; those alike share the mean of theirs, and those
+        that drew nothing are alike, and last. Empty where the rater could not tell.
+        """
+        return {} if self.ranking is None else _ranks([*self.ranking, self.undrawn])
+
+    def ranks_of_shown(self) -> Mapping[str, float]:
+        """Returns the ranks among the pictures alone."""
+        return _ranks(self.ranking or ())
+
+
+def _ranks(groups: Iterable[Sequence[str]]) -> dict[str, float]:
+    found, above = dict[str, float](), 0
+    for group in groups:
+        found |= dict.fromkeys(group, above + (len(group) + 1) / 2)
+        above += len(group)
+    return found
+
+
+def sheets(records: Sequence[Record]) -> list[Sheet]:
+    """Returns the sheets of all prompts and runs for which two languages had a conversation. One that broke
+    off says nothing of its language and is left out.
+    """
+    texts = {r["prompt"]: r["text"] for r in records if "text" in r}
+    held = [r for r in records if "failure" not in r]
+    order = {prompt: number for number, prompt in enumerate(dict.fromkeys(r["prompt"] for r in held))}
+    held.sort(key=lambda r: (order[r["prompt"]], r["run"]))
+    found = []
+    for (prompt, run), own in groupby(held, key=lambda r: (r["prompt"], r["run"])):
+        programs = {r["variant"]: digest(str(r["program"])) if _is_drawn(r) else None for r in own}
+        if len(programs) < FEWEST:
+            continue
+        drawn = tuple(name for name, program in programs.items() if program is not None)
+        undrawn = tuple(name for name, program in programs.items() if program is None)
+        of = digest(json.dumps([prompt, run, sorted(programs.items())]))
+        found.append(Sheet(prompt, run, texts.get(prompt, prompt), drawn, undrawn, of))
+    return found
+
+
+def _is_drawn(record: Record) -> bool:
+    return bool(record["ok"]) and "drawing" not in record.get("unmeasured", {})
+
+
+def rater_named(text: object) -> str | None:
+    """Returns the rater of a name or number as typed, None if it is none: up to 40 letters and digits, and
+    blanks, dots, hyphens and low lines between them. Capitals do not matter.
+    """
+    if not isinstance(text, str) or len(text) > 200:
+        return None
+    name = " ".join(unicodedata.normalize("NFKC", text).casefold().split())
+    return name if _RATER.fullmatch(name) else None
+
+
+def now() -> str:
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+# --- the file -------------------------------------------------------------------------------------
+
+
+class Answers:
+    """The answers in a folder. Others may write to it at the same time."""
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / STUDY
+        self._seen: tuple[int, int] | None = None
+        self._answers: list[Answer] = []
+
+    def all(self) -> Sequence[Answer]:
+        """Returns all answers in the order in which they were given. Raises StoreError."""
+        try:
+            state = self.path.stat()
+            if (seen := (state.st_mtime_ns, state.st_size)) != self._seen:
+                self._answers, self._seen = list(_read(self.path)), seen
+        except FileNotFoundError:
+            self._answers, self._seen = [], None
+        except OSError as error:
+            raise StoreError("E0988", f"`{self.path}` cannot be read: {error.strerror or error}") from None
+        return self._answers
+
+    def add(self, answers: Sequence[Answer]) -> None:
+        """Appends answers in one write, and waits until they are on disk. Raises StoreError."""
+        data = "".join(_line(answer) for answer in answers).encode()
+        try:
+            with open(self.path, "ab+", buffering=0) as file:
+                _cut_torn_line(file)
+                if file.write(data) != len(data):
+                    raise OSError("the disk is full")
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise StoreError("E0988", f"`{self.path}` cannot be written: {error.strerror or error}") from None
+
+
+def _cut_torn_line(file: FileIO) -> None:
+    """Takes away what a crash left of an answer that nobody was told was kept."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - _LONGEST))
+    tail = file.read()
+    if tail and not tail.endswith(b"\n"):
+        file.truncate(size - len(tail) + tail.rfind(b"\n") + 1)
+
+
+def _line(answer: Answer) -> str:
+    said = {"aidl_study": _FORMAT, **{name: getattr(answer, name) for name in _FIELDS}}
+    return json.dumps(said, ensure_ascii=False) + "\n"
+
+
+def _read(path: Path) -> Iterator[Answer]:
+    lines = path.read_bytes().split(b"\n")
+    for number, line in enumerate(lines[:-1], 1):  # what follows the last newline is half an answer
+        found = _answer(line)
+        if found is None:
+            hint = "remove that line: the rater is asked once more"
+            raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint)
+        yield found
+
+
+_FIELDS: Mapping[str, type] = {
+    "rater": str,
+    "prompt": str,
+    "run": int,
+    "sheet": str,
+    "pictures": str,
+    "shown": list,
+    "undrawn": list,
+    "ranking": list,
+    "number": int,
+    "count": int,
+    "date": str,
+}
+
+
+def _answer(line: bytes) -> Answer | None:
+    """Returns the answer of a line, None if it is none."""
+    try:
+        said = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(said, dict) or said.keys() != {"aidl_study", *_FIELDS}:
+        return None
+    is_skipped = said["ranking"] is None
+    if said["aidl_study"] != _FORMAT or any(
+        type(said[name]) is not kind
+        for name, kind in _FIELDS.items()
+        if not (name == "ranking" and is_skipped)
+    ):
+        return None
+    shown, undrawn = said["shown"], said["undrawn"]
+    groups = [shown] if is_skipped else said["ranking"]
+    if not all(isinstance(group, list) and (group or is_skipped) for group in groups):
+        return None
+    return _built(said, shown, undrawn, groups) if _is_sound(said, shown, undrawn, groups) else None
+
+
+def _is_sound(said: Mapping[str, Any], shown: list[Any], undrawn: list[Any], groups: list[list[Any]]) -> bool:
+    languages = [*shown, *undrawn]
+    ranked = [name for group in groups for name in group]
+    return (
+        all(isinstance(name, str) and name in VARIANTS for name in [*languages, *ranked])
+        and len(set(languages)) == len(languages) >= FEWEST
+        and sorted(ranked) == sorted(shown)
+        and rater_named(said["rater"]) == said["rater"]
+        and _DATE.fullmatch(said["date"]) is not None
+        and said["pictures"] in STYLES
+        and said["run"] >= 1
+        and 0 <= said["number"] <= said["count"]
+    )
+
+
+def _built(said: Mapping[str, Any], shown: list[str], undrawn: list[str], groups: list[list[str]]) -> Answer:
+    return Answer(
+        said["rater"],
+        said["prompt"],
+        said["run"],
+        said["sheet"],
+        said["pictures"],
+        tuple(shown),
+        tuple(undrawn),
+        None if said["ranking"] is None else tuple(map(tuple, groups)),
+        said["number"],
+        said["count"],
+        said["date"],
+    )

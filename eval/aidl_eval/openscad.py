@@ -1,0 +1,269 @@
+"""OpenSCAD as the language of a conversation, for comparison: an installed one runs the programs."""
+
+from __future__ import annotations
+
+import re
+import resource
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from aidl_eval import rendering
+from aidl_eval.regions import Part, Regions, of_outlines
+from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered, RenderedConversation
+from aidl_eval.sandbox import fence
+from aidl_lang.common.colors import hexadecimal
+
+COMMAND = "openscad"
+_MOST = 48
+"""Most parts that a drawing is taken apart into."""
+_TREE = 4 << 20
+"""Characters of a tree above which it is not taken apart."""
+
+_MESSAGE = re.compile(r"^(ERROR|WARNING|TRACE|DEPRECATED): *(.*)$", re.M)
+_PLACE = re.compile(r",? in file [^,\n]*, line (\d+)")
+_OUTLINE = re.compile(r'<path d="([^"]*)"')
+_CORNER = re.compile(r"([^\s,MLz]+),([^\s,MLz]+)")
+_PLAIN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\])*"', re.S)
+_FILES = re.compile(r"\b(?:include|use)\s*<|\b(?:import\w*|surface|dxf_\w+)\s*\(|\bfile\s*=")
+_AROUND = re.compile(r"(group\(\)|color\(|multmatrix\()")
+_COLOR = re.compile(r"color\(\[([\d.e-]+), ([\d.e-]+), ([\d.e-]+), [\d.e-]+\]\)")
+_MODULE = re.compile(r"\bmodule\s+\w+")
+_KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*\Z")
+
+
+@dataclass(frozen=True)
+class OpenScad:
+    name: str = "openscad"
+    suffix: str = ".scad"
+    fences: tuple[str, ...] = ("openscad", "scad")
+
+    def missing(self) -> str | None:
+        path = shutil.which(COMMAND)
+        return _unlockable(path) if path else "it is not installed"
+
+    def guide(self) -> str:
+        return rendering.guide(self.name)
+
+    def reads(self, text: str) -> bool:
+        return self.run(text, parted=False)[0].ok
+
+    def conversation(self, before: str | None = None) -> RenderedConversation:
+        return RenderedConversation(self)
+
+    def structures(self, program: str) -> int:
+        return structures(program)
+
+    def knobs(self, program: str) -> Mapping[str, float]:
+        return knobs(program)
+
+    def run(
+        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
+    ) -> list[Rendered]:
+        drawn = _parted if parted else _united
+        return [drawn(program, edit) for edit in edits]
+
+
+@cache
+def _unlockable(path: str) -> str | None:
+    """Returns the reason why an OpenSCAD does not run locked in; None if it does."""
+    errors = render("square(1);").errors
+    return f"`{path}` does not run locked in ({errors[0]})" if errors else None
+
+
+def structures(program: str) -> int:
+    """Counts the modules that a program defines."""
+    return len(_MODULE.findall(_bare(program)))
+
+
+def knobs(program: str) -> dict[str, float]:
+    """Returns the top-level variables that are plain numbers; the last definition of a name counts."""
+    depth, start, found, bare = 0, 0, dict[str, float](), _bare(program)
+    for index, character in enumerate(bare):
+        depth += (character in "({[") - (character in ")}]")
+        if depth == 0 and character in ";}":
+            match = _KNOB.match(bare[start:index])
+            if match and character == ";":
+                found[match[1]] = float(match[2])
+            start = index + 1
+    return found
+
+
+def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
+    """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
+    is kept from reading files.
+
+    The limits on time, memory and output are set in the process that is started: call this where no other
+    thread runs.
+    """
+    if "\0" in program or _FILES.search(_bare(program)):
+        return Rendered(
+            errors=("error: files cannot be read: do without `include`, `use`, `import` and `surface`",)
+        )
+    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
+    code, text, drawn = _called(program, "drawing.svg", values)
+    if code is None:
+        return Rendered(errors=(f"error: rendering took longer than {rendering.SECONDS} s",))
+    errors, warnings = _messages(text)
+    if code:
+        return Rendered(errors=errors or (_failure(code, text),), warnings=warnings)
+    return _outlined(drawn, errors, warnings)
+
+
+def _united(program: str, knobs: Mapping[str, float]) -> Rendered:
+    return replace(render(program, knobs), is_parted=False)
+
+
+def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int | None, str, str]:
+    """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawing, said = Path(folder, output), Path(folder, "said")
+        Path(folder, "program.scad").write_text(program, "utf-8", errors="replace")
+        try:
+            with open(said, "wb") as file:
+                code = subprocess.run(
+                    [COMMAND, "-o", output, *values, "program.scad"],
+                    cwd=folder,
+                    env={"HOME": folder, "PATH": "/usr/local/bin:/usr/bin:/bin", "OPENSCADPATH": folder},
+                    stdin=subprocess.DEVNULL,
+                    stdout=file,
+                    stderr=subprocess.STDOUT,
+                    timeout=rendering.SECONDS,
+                    preexec_fn=partial(_limit, folder),
+                ).returncode
+        except subprocess.TimeoutExpired:
+            return None, "", ""
+        text = said.read_bytes()[: rendering.OUTPUT // 32].decode("utf-8", "replace")
+        return code, text, "" if code or not drawing.exists() else drawing.read_text("utf-8")
+
+
+def _parted(program: str, knobs: Mapping[str, float]) -> Rendered:
+    """Runs a program as `render` does, and draws what stands side by side in it as parts of their own, in
+    the order of writing: OpenSCAD itself unites them and drops their colours.
+    """
+    whole = render(program, knobs)
+    if not whole.ok:
+        return whole
+    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
+    code, _, tree = _called(program, "tree.csg", values)
+    pieces = parts(tree) if code == 0 and len(tree) <= _TREE else []
+    if len(pieces) < 2:
+        color = pieces[0].color if pieces else None
+        return replace(whole, regions=Regions(tuple(replace(p, color=color) for p in whole.regions.parts)))
+    found = list[Part]()
+    for piece in pieces:
+        drawn = render(piece.text)
+        found += [replace(part, color=piece.color) for part in drawn.regions.parts]
+    return replace(whole, regions=Regions(tuple(found)))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A subtree that stands beside others; `text` draws it alone."""
+
+    text: str
+    color: str | None
+
+
+def parts(tree: str) -> list[Piece]:
+    """Returns the subtrees of a tree (as OpenSCAD writes it) that stand side by side: what groups, moves and
+    colours hold, down to the first operation on shapes. Where they are too many, those of a level further up.
+    """
+    lines = [line.strip() for line in tree.splitlines() if line.strip()]
+    level = [_Node(tuple(lines), "", "", None)] if lines else []
+    while (finer := [inner for node in level for inner in _opened(node)]) != level and len(finer) <= _MOST:
+        level = finer
+    return [Piece(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
+
+
+@dataclass(frozen=True)
+class _Node:
+    """Lines of a tree that belong together, within opening and closing ones of moves around it."""
+
+    lines: tuple[str, ...]
+    before: str
+    after: str
+    color: str | None
+
+
+def _opened(node: _Node) -> list[_Node]:
+    """Returns what a node holds side by side; itself, if that is one shape."""
+    statements = _statements(node.lines)
+    if len(statements) > 1:
+        return [replace(node, lines=lines) for lines in statements]
+    head = node.lines[0]
+    if not _AROUND.match(head):
+        return [node]
+    if len(node.lines) < 3:
+        return []  # an empty group
+    inner = node.lines[1:-1]
+    if head.startswith("multmatrix"):
+        return [_Node(inner, f"{node.before}{head}\n", f"\n}}{node.after}", node.color)]
+    named = _COLOR.match(head)
+    color = node.color or (hexadecimal([255 * float(part) for part in named.groups()]) if named else None)
+    return [_Node(inner, node.before, node.after, color)]
+
+
+def _statements(lines: Sequence[str]) -> list[tuple[str, ...]]:
+    """Returns lines by statement: each ends where its braces are closed."""
+    found, start, depth = list[tuple[str, ...]](), 0, 0
+    for number, line in enumerate(lines):
+        bare = _PLAIN.sub("", line)
+        depth += bare.count("{") - bare.count("}")
+        if depth == 0:
+            found.append(tuple(lines[start : number + 1]))
+            start = number + 1
+    return found
+
+
+def _limit(folder: str) -> None:
+    fence.fence(folder)
+    resource.setrlimit(resource.RLIMIT_CPU, (rendering.SECONDS,) * 2)
+    resource.setrlimit(resource.RLIMIT_AS, (rendering.MEMORY,) * 2)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (rendering.OUTPUT,) * 2)
+
+
+def _bare(program: str) -> str:
+    """Returns a program without comments and texts."""
+    return _PLAIN.sub(" ", program)
+
+
+def _messages(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Returns errors and warnings, each once, with its line."""
+    errors, warnings = dict[str, None](), dict[str, None]()
+    for kind, message in _MESSAGE.findall(text):
+        place = _PLACE.search(message)
+        line = f" (line {place[1]})" if place else ""
+        said = f"{'error' if kind == 'ERROR' else 'warning'}{line}: {_PLACE.sub('', message).strip()}"
+        if kind != "TRACE":
+            (errors if kind == "ERROR" else warnings)[said] = None
+    return tuple(errors), tuple(warnings)
+
+
+def _failure(code: int, text: str) -> str:
+    """Returns the reason for a missing drawing if no message gives one."""
+    if code < 0:
+        return f"error: OpenSCAD was stopped (signal {-code}): it took too much time, memory or room"
+    if "3D object" in text:
+        return "error: the drawing must be flat, not a solid: do without extrusion, `cube`, `sphere` …"
+    return NOTHING
+
+
+def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> Rendered:
+    outlines = [
+        np.array(_CORNER.findall(part), float) * (1.0, -1.0)
+        for path in _OUTLINE.findall(svg)
+        for part in path.split("z")
+        if "," in part
+    ]
+    if not outlines:
+        return Rendered(errors=(*errors, NOTHING), warnings=warnings)
+    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
+        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
+    return Rendered(of_outlines([(outlines, None)]), errors, warnings)

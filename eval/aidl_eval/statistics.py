@@ -1,0 +1,128 @@
+"""Intervals by resampling, and paired tests between languages, both prompt by prompt.
+
+Runs of one prompt are not independent of each other, so prompts are what is drawn and what is compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+RESAMPLES = 10_000
+"""Of each interval, and the most sign patterns of a test: up to 13 prompts all of them are tried."""
+SEED = 1
+_OUTER = (2.5, 97.5)
+
+Interval = tuple[float, float]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Case:
+    """The share of one conversation in a figure: the figure is the sum of `value` over that of `weight`."""
+
+    prompt: str
+    value: float
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The difference of a figure between two languages, over the prompts that both have; each counts once."""
+
+    prompts: int
+    difference: float
+    interval: Interval | None
+    p: float | None
+    """Two-sided, of the paired permutation test; None for fewer than two prompts."""
+
+    adjusted: float | None = None
+    """`p` after Holm's correction for the number of pairs of languages."""
+
+
+def interval(cases: Sequence[Case]) -> Interval | None:
+    """Returns the 95 % percentile interval of a figure, by drawing prompts with replacement; where there is
+    one prompt, by drawing its conversations. None for fewer than two.
+    """
+    return _interval(tuple(cases))
+
+
+@lru_cache(maxsize=1 << 14)  # each format of the tables asks for it
+def _interval(cases: tuple[Case, ...]) -> Interval | None:
+    prompts = list(dict.fromkeys(case.prompt for case in cases))
+    if len(prompts) > 1:
+        place = {prompt: number for number, prompt in enumerate(prompts)}
+        group = np.array([place[case.prompt] for case in cases])
+    else:
+        group = np.arange(len(cases))
+    values = np.bincount(group, [case.value for case in cases]) if cases else np.zeros(0)
+    weights = np.bincount(group, [case.weight for case in cases]) if cases else np.zeros(0)
+    drawn = weights > 0
+    values, weights = values[drawn], weights[drawn]
+    if len(values) < 2:
+        return None
+    if np.ptp(values / weights) == 0:
+        return (float(values[0] / weights[0]),) * 2
+    chosen = np.random.default_rng(SEED).integers(0, len(values), (RESAMPLES, len(values)))
+    low, high = np.percentile(values[chosen].sum(1) / weights[chosen].sum(1), _OUTER)
+    return float(low), float(high)
+
+
+def by_prompt(cases: Sequence[Case]) -> dict[str, float]:
+    """Returns the figure of each prompt."""
+    sums = dict[str, tuple[float, float]]()
+    for case in cases:
+        value, weight = sums.get(case.prompt, (0.0, 0.0))
+        sums[case.prompt] = value + case.value, weight + case.weight
+    return {prompt: value / weight for prompt, (value, weight) in sums.items() if weight > 0}
+
+
+def compared(first: Mapping[str, float], second: Mapping[str, float]) -> Comparison | None:
+    """Returns how much greater a figure is in the first language than in the second; None if no prompt has
+    both.
+    """
+    shared = [prompt for prompt in first if prompt in second]
+    if not shared:
+        return None
+    differences = [first[prompt] - second[prompt] for prompt in shared]
+    mean = float(np.mean(differences))
+    if len(shared) < 2:
+        return Comparison(1, mean, None, None)
+    drawn = [Case(prompt, value) for prompt, value in zip(shared, differences, strict=True)]
+    return Comparison(len(shared), mean, interval(drawn), _p(differences))
+
+
+def _p(differences: Sequence[float]) -> float:
+    """Returns the two-sided probability that the languages of each prompt, exchanged at random, differ so
+    much.
+    """
+    if not any(differences):
+        return 1.0
+    from scipy.stats import permutation_test
+
+    def mean(first: Floats, second: Floats, axis: int) -> Floats:
+        found: Floats = np.mean(first - second, axis=axis)
+        return found
+
+    found = permutation_test(
+        (np.asarray(differences, float), np.zeros(len(differences))),
+        mean,
+        permutation_type="samples",
+        vectorized=True,
+        n_resamples=RESAMPLES,
+        random_state=np.random.default_rng(SEED),  # `rng` in scipy 1.15 and later
+    )
+    return min(1.0, float(found.pvalue))
+
+
+def holm(values: Sequence[float]) -> list[float]:
+    """Returns probabilities after Holm's correction (Scandinavian Journal of Statistics 6, 1979, 65)."""
+    adjusted, least = [0.0] * len(values), 0.0
+    for rank, index in enumerate(sorted(range(len(values)), key=values.__getitem__)):
+        least = max(least, min(1.0, (len(values) - rank) * values[index]))
+        adjusted[index] = least
+    return adjusted

@@ -1,0 +1,236 @@
+"""Finished work on disk: a JSON record and a picture for each job, and the common settings.
+
+Everything is written in one step, so that an interrupted run leaves whole records or none.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from aidl_eval.plan import VARIANTS, Job, Plan
+from aidl_eval.recordings import GUIDE, RecordedPlan
+from aidl_eval.requirements import Prompt
+from aidl_lang import Diagnostic, __version__
+from aidl_lang.common.replacing import replace
+from aidl_lang.tools.llm.generation import Attempt, Generation
+from aidl_lang.tools.llm.language import Verdict
+from aidl_lang.tools.llm.messages import Usage
+
+Record = dict[str, Any]
+
+SETTINGS = "settings.json"
+_SHOWN = 60
+
+
+class StoreError(Exception):
+    """Raised if the folder cannot be used; the diagnostic gives the reason and a remedy."""
+
+    def __init__(self, code: str, message: str, *hints: str) -> None:
+        super().__init__(message)
+        self.diagnostic = Diagnostic(code, message, hints=hints)
+
+
+class Store:
+    """A folder of records."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    # --- settings ---------------------------------------------------------------------------------
+
+    def begin(self, plan: Plan, provider: str) -> None:
+        """Writes the settings of a plan. Raises StoreError if the records come from others."""
+        known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
+        differing = [
+            f"{name}: `{_short(known[name])}` then, `{_short(now[name])}` now"
+            for name in sorted(known.keys() & now.keys())
+            if known[name] != now[name]
+        ]
+        if differing:
+            raise StoreError(
+                "E0946",
+                f"`{self.folder}` holds runs with other settings",
+                *differing,
+                "give these runs a folder of their own with --out, or use the settings of those there",
+            )
+        self.write(SETTINGS, _json(known | now))
+
+    def settings(self) -> Mapping[str, Any]:
+        """Returns the settings of the records there, empty without any. Raises StoreError."""
+        return self._read(self.folder / SETTINGS) or {}
+
+    # --- records ----------------------------------------------------------------------------------
+
+    def record(self, job: Job) -> Record | None:
+        """Returns the record of a job, if any. Raises StoreError for a file that is no record."""
+        found = self._read(self.folder / _record_path(job))
+        if found is not None and not _is_record(found, job):
+            raise _damaged(self.folder / _record_path(job))
+        return found
+
+    def records(self) -> list[Record]:
+        """Returns all records, by prompt, variant and run."""
+        found = []
+        for path in (self.folder / "records").glob("*/*/*.json"):
+            if path.stem.isdecimal():
+                job = Job(path.parent.parent.name, path.parent.name, int(path.stem))
+                record = self.record(job)
+                found.append((job.prompt, list(VARIANTS).index(job.variant), job.run, record))
+        found.sort(key=lambda item: item[:3])
+        return [record for *_, record in found if record is not None]
+
+    def keep(self, job: Job, record: Record, png: bytes | None, neutral: bytes | None = None) -> None:
+        """Writes the pictures, then the record that refers to them."""
+        for path, drawn in ((picture_path(job.key), png), (neutral_path(job.key), neutral)):
+            if drawn is not None:
+                self.write(path, drawn)
+        self.write(_record_path(job), _json(record))
+
+    # --- files ------------------------------------------------------------------------------------
+
+    def write(self, name: str, data: bytes) -> None:
+        """Writes a file below the folder in one step. Raises StoreError."""
+        path = self.folder / name
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            replace(path, data)
+        except OSError as error:
+            raise StoreError("E0948", f"`{path}` cannot be written: {error.strerror or error}") from None
+
+    def _read(self, path: Path) -> dict[str, Any] | None:
+        try:
+            found = json.loads(path.read_bytes())
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError):
+            raise _damaged(path) from None
+        if not isinstance(found, dict):
+            raise _damaged(path)
+        return found
+
+
+def picture_path(key: str) -> str:
+    return f"pictures/{key}.png"
+
+
+def neutral_path(key: str) -> str:
+    """Returns where the picture in the style that all languages share is kept."""
+    return f"pictures/{key}.neutral.png"
+
+
+def _record_path(job: Job) -> str:
+    return f"records/{job.key}.json"
+
+
+def _damaged(path: Path) -> StoreError:
+    return StoreError("E0948", f"`{path}` is no record of a run", "remove it: the run is made again")
+
+
+def _is_record(found: Record, job: Job) -> bool:
+    """Tells whether a record belongs to its job and is complete."""
+    names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
+    is_about = (found.get("prompt"), found.get("variant"), found.get("run")) == (
+        job.prompt,
+        job.variant,
+        job.run,
+    )
+    return is_about and job.variant in VARIANTS and ("failure" in found or names <= found.keys())
+
+
+# --- from values to data --------------------------------------------------------------------------
+
+
+def digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def measured_with(prompt: Prompt) -> str:
+    """Returns a digest of what measures depend on beside the program: a new one makes them outdated."""
+    return digest(f"{__version__}\n{prompt.source.text}")
+
+
+def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
+    """Returns the record of a conversation, not yet measured."""
+    verdict = generation.verdict
+    asked = [message.text for message in generation.messages if message.role == "user"]
+    return {
+        **asdict(job),
+        "text": prompt.text,
+        "request": asked[0] if asked else "",
+        "attempts": [_attempt(attempt) for attempt in generation.attempts],
+        "ok": generation.ok,
+        "program": verdict.program if verdict else None,
+        "missing": list(verdict.missing) if verdict else [],
+        "fixes": list(verdict.fixes) if verdict else [],
+        "usage": _usage(generation.usage),
+    }
+
+
+def failed(job: Job, failure: Diagnostic) -> Record:
+    """Returns the record of a conversation that broke off, to be repeated."""
+    return {**asdict(job), "failure": {"code": failure.code, "message": failure.message}}
+
+
+def _attempt(attempt: Attempt) -> Record:
+    return {
+        "reply": attempt.reply.text,
+        "model": attempt.reply.model,
+        "finish": str(attempt.reply.finish),
+        "usage": _usage(attempt.reply.usage),
+        "seconds": attempt.reply.seconds,
+        "date": attempt.reply.date,
+        "program": attempt.program,
+        "verdict": None if attempt.verdict is None else _verdict(attempt.verdict),
+        "answer": attempt.answer,
+    }
+
+
+def _verdict(verdict: Verdict) -> Record:
+    return {
+        "ok": verdict.ok,
+        "stage": verdict.stage,
+        "codes": list(verdict.codes),
+        "fixes": list(verdict.fixes),
+        "missing": list(verdict.missing),
+        "numbers": dict(verdict.numbers),
+    }
+
+
+def _usage(usage: Usage) -> Record:
+    return {"input": usage.input, "output": usage.output, "cost": usage.cost}
+
+
+def _settings(plan: Plan, provider: str) -> Record:
+    """Returns the settings that records in one table share; prompts and variants may be added."""
+    sampling = plan.settings.sampling
+    return {
+        "provider": provider,
+        "attempts": plan.settings.attempts,
+        "seed": sampling.seed,
+        "temperature": sampling.temperature,
+        "max_tokens": sampling.max_tokens,
+        "extra": dict(sampling.extra),
+        "help": asdict(plan.switches),
+        **(plan.facts if isinstance(plan, RecordedPlan) else _guides(plan)),
+        **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
+    }
+
+
+def _guides(plan: Plan) -> Record:
+    return {f"{GUIDE}{name}": digest(plan.language(name).guide()) for name in plan.variants}
+
+
+def _short(value: object) -> str:
+    text = " ".join(str(value).split())
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+
+
+def _json(value: Mapping[str, Any]) -> bytes:
+    return (json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False, default=str) + "\n").encode(
+        "utf-8", "backslashreplace"
+    )

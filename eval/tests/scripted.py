@@ -1,0 +1,347 @@
+"""A recording that is put together here: the same drawings in every language, to test the harness.
+
+In AIDL (`full`) a drawing is a good program for its prompt. In each other language it is the regions of that
+drawing, outline by outline, with its size and the radius of its largest round outline as named numbers at
+the head. Half of the conversations begin with a mistake.
+
+`python -m eval.tests.scripted FILE` writes it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from aidl_eval.plan import VARIANTS
+from aidl_eval.regions import FINE, Regions, of_drawing
+from aidl_eval.requirements import load
+from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.curves import Arc, Circle
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import Loop
+from aidl_lang.geometry.tessellate import loop_points
+from aidl_lang.pipeline import compile
+from tests.documents import ROOT
+
+NOTE = (
+    "scripted: drawings of one origin in every language, with mistakes put in; it tests the harness, no model"
+)
+PROMPTS = tuple(prompt.name for prompt in load())
+_TEXTS = {prompt.name: prompt.text for prompt in load()}
+_SAME = 1e-3
+"""Relative difference up to which two radii are one number."""
+
+
+def good(name: str) -> str:
+    """Returns the good program for a prompt."""
+    path = Path(__file__).parent / "programs" / f"{name}.aidl"
+    return (path if path.exists() else ROOT / f"examples/{name}.aidl").read_text(encoding="utf-8")
+
+
+@cache
+def regions(name: str) -> Regions:
+    """Returns what the good program for a prompt draws."""
+    compiled = compile(SourceFile(f"{name}.aidl", good(name)))
+    assert compiled.model is not None
+    assert compiled.drawing is not None
+    return of_drawing(compiled.model, compiled.drawing)
+
+
+# --- a drawing, as it is written ---------------------------------------------------------------------
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Disc:
+    """`center` is a share of the drawing's size, `radius` in mm: the number at the head if it `is_named`."""
+
+    center: Point
+    radius: float
+    is_named: bool
+
+
+Outline = Disc | tuple[Point, ...]
+"""Corners are shares of the drawing's size."""
+
+
+@dataclass(frozen=True)
+class Area:
+    outer: Outline
+    holes: tuple[Outline, ...]
+
+
+@dataclass(frozen=True)
+class Plain:
+    """Areas by part, back to front; `radius` is that of the largest discs and round holes, if any."""
+
+    size: float
+    radius: float | None
+    parts: tuple[tuple[str | None, tuple[Area, ...]], ...]
+
+    @property
+    def numbers(self) -> Mapping[str, float]:
+        return {"size": self.size} | ({} if self.radius is None else {"radius": self.radius})
+
+
+@cache
+def plain(name: str) -> Plain:
+    """Returns the drawing for a prompt, with its numbers as they are written."""
+    drawn = regions(name)
+    left, bottom, *_ = union_bounds([region_bounds(part.region) for part in drawn.parts])
+    size = round(drawn.size, 2) + 0.003  # no whole number, which edits would keep whole
+    radii = [d.radius for part in drawn.parts for loop in part.region.loops if (d := _disc(loop))]
+    radius = round(max(radii), 2) + 0.003 if radii else None
+
+    def share(x: float, y: float) -> Point:
+        return round((x - left) / drawn.size, 6), round((y - bottom) / drawn.size, 6)
+
+    def outline(loop: Loop) -> Outline:
+        if disc := _disc(loop):
+            is_named = radius is not None and abs(disc.radius - max(radii)) <= _SAME * disc.radius
+            return Disc(
+                share(*disc.center), radius if is_named and radius else round(disc.radius, 4), is_named
+            )
+        return tuple(share(float(x), float(y)) for x, y in loop_points(loop, FINE * drawn.size))
+
+    parts = tuple(
+        (part.color, tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.region.faces))
+        for part in drawn.parts
+    )
+    return Plain(size, radius, parts)
+
+
+def _disc(loop: Loop) -> Circle | None:
+    """Returns the circle that a loop is, in one piece or several."""
+    first = loop.pieces[0]
+    if not isinstance(first, Arc | Circle):
+        return None
+    around = [(p.center, p.radius) for p in loop.pieces if isinstance(p, Arc | Circle)]
+    is_one = len(around) == len(loop.pieces) and np.allclose(
+        [(*center, radius) for center, radius in around], (*first.center, first.radius), rtol=1e-9, atol=1e-9
+    )
+    return Circle(first.center, first.radius) if is_one else None
+
+
+# --- the languages -----------------------------------------------------------------------------------
+
+
+def aidl(name: str, variant: str) -> str:
+    """Returns the drawing as solids beside each other, or, without hierarchy, as outlines in one solid."""
+    drawing = plain(name)
+    is_flat, has_cuts = variant == "no-hierarchy", variant != "paper"
+    lines = [f"    param {n} = {v:g} in {v / 2:g}..{2 * v:g}" for n, v in drawing.numbers.items()]
+    for number, (color, areas) in enumerate(drawing.parts):
+        if not is_flat:
+            lines.append(f"    {_color(color) if has_cuts else ''}solid part_{number} {{")
+        for k, area in enumerate(areas):
+            if k and not has_cuts:  # a hole cuts all of its solid
+                lines.append(f"    }}\n    solid part_{number}_{k} {{")
+            stem = f"face_{number}_{k}"
+            lines.append(f"        {stem} = {_aidl(area.outer)}")
+            for h, hole in enumerate(area.holes):
+                it = f"{stem}_hole_{h}"
+                lines.append(
+                    f"        {it} = {_aidl(hole)}"
+                    if has_cuts
+                    else f"        hole {it} {{ rim = {_aidl(hole)} }}"
+                )
+            if area.holes and has_cuts:
+                cuts = ", ".join(f"{stem}_hole_{h}" for h in range(len(area.holes)))
+                lines.append(f"        {stem}_cut = cut({stem}, {cuts})")
+        if not is_flat:
+            lines.append("    }")
+    kind = "solid" if is_flat else "assembly"
+    return "\n".join((f"/// {_TEXTS[name]}", f"{kind} {name} {{", *lines, "}", ""))
+
+
+def _aidl(outline: Outline) -> str:
+    if isinstance(outline, Disc):
+        x, y = outline.center
+        return f"circle(center: ({x} * size, {y} * size), radius: {_radius(outline)})"
+    return f"polygon([{', '.join(f'({x} * size, {y} * size)' for x, y in outline)}])"
+
+
+def _color(color: str | None) -> str:
+    return f'@color("{color}") ' if color else ""
+
+
+def _radius(disc: Disc) -> str:
+    return "radius" if disc.is_named else f"{disc.radius:g}"
+
+
+def openscad(name: str) -> str:
+    """Returns the drawing with a module for each part."""
+    drawing = plain(name)
+    lines = [f"// {_TEXTS[name]}", "$fn = 180;", *(f"{n} = {v:g};" for n, v in drawing.numbers.items())]
+    for number, (_, areas) in enumerate(drawing.parts):
+        lines.append(f"module part_{number}() {{")
+        for area in areas:
+            holes = " ".join(map(_openscad, area.holes))
+            outer = _openscad(area.outer)
+            lines.append(f"    difference() {{ {outer} {holes} }}" if holes else f"    {outer}")
+        lines.append("}")
+    for number, (color, _) in enumerate(drawing.parts):
+        lines.append(f'color("{color}") part_{number}();' if color else f"part_{number}();")
+    return "\n".join((*lines, ""))
+
+
+def _openscad(outline: Outline) -> str:
+    if isinstance(outline, Disc):
+        return f"translate({list(outline.center)} * size) circle({_radius(outline)});"
+    return f"polygon({[list(corner) for corner in outline]} * size);"
+
+
+def build123d(name: str) -> str:
+    return _python(
+        name,
+        "from build123d import *",
+        "def polygon(*points):\n"
+        "    return make_face(Polyline(*[(x * size, y * size) for x, y in points], close=True))\n",
+        "def disc(x, y, r):\n    return Pos(x * size, y * size) * Circle(r)\n",
+        "def cut(outer, *holes):\n    for hole in holes:\n        outer -= hole\n    return outer\n",
+    )
+
+
+def cadquery(name: str) -> str:
+    return _python(
+        name,
+        "import cadquery as cq",
+        "def polygon(*points):\n"
+        "    return cq.Sketch().polygon([(x * size, y * size) for x, y in [*points, points[0]]])\n",
+        "def disc(x, y, r):\n    return cq.Sketch().push([(x * size, y * size)]).circle(r).reset()\n",
+        "def cut(outer, *holes):\n"
+        "    for hole in holes:\n        outer = outer.face(hole, mode='s')\n    return outer\n",
+    )
+
+
+def _python(name: str, head: str, *functions: str) -> str:
+    drawing = plain(name)
+    lines = [
+        f"# {_TEXTS[name]}",
+        head,
+        "",
+        *(f"{n} = {v:g}" for n, v in drawing.numbers.items()),
+        "",
+        *functions,
+    ]
+    for color, areas in drawing.parts:
+        shown = ", ".join(
+            f"cut({', '.join(map(_called, (area.outer, *area.holes)))})"
+            if area.holes
+            else _called(area.outer)
+            for area in areas
+        )
+        options = f", options={{'color': '{color}'}}" if color else ""
+        lines.append(f"show_object([{shown}]{options})")
+    return "\n".join((*lines, ""))
+
+
+def _called(outline: Outline) -> str:
+    if isinstance(outline, Disc):
+        return f"disc{(*outline.center, 'R')}".replace("'R'", _radius(outline))
+    return f"polygon({', '.join(map(str, outline))})"
+
+
+def svg(name: str) -> str:
+    """Returns the drawing with a path for each part."""
+    drawing = plain(name)
+    size = drawing.size
+    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {-size:g} {size:g} {size:g}">']
+    for color, areas in drawing.parts:
+        d = " ".join(_path(o, size) for area in areas for o in (area.outer, *area.holes))
+        lines.append(f'  <path fill="{color or "gray"}" fill-rule="evenodd" d="{d}"/>')
+    return "\n".join((*lines, "</svg>", ""))
+
+
+def _path(outline: Outline, size: float) -> str:
+    if isinstance(outline, Disc):
+        (x, y), r = outline.center, outline.radius
+        return f"M{x * size - r:.5f} {-y * size:.5f} a{r} {r} 0 1 0 {2 * r} 0 a{r} {r} 0 1 0 {-2 * r} 0Z"
+    return "M" + " L".join(f"{x * size:.5f} {-y * size:.5f}" for x, y in outline) + "Z"
+
+
+WRITERS: Mapping[str, Callable[[str], str]] = {
+    "full": good,
+    **{v: lambda name, v=v: aidl(name, v) for v in ("no-hierarchy", "no-constraints", "paper")},  # type: ignore[misc]
+    "openscad": openscad,
+    "build123d": build123d,
+    "cadquery": cadquery,
+    "svg": svg,
+}
+
+
+# --- mistakes, and the recording ---------------------------------------------------------------------
+
+Mistake = Callable[[str], str]
+
+
+def _after(text: str) -> Mistake:
+    return lambda program: program + text
+
+
+_AIDL: Sequence[Mistake] = (
+    lambda program: f'{program.rstrip().removesuffix("}")}    assert 2 < 1, "never"\n}}\n',
+    lambda program: program.replace(" = ", " = nowhere + ", 1),
+)
+_PYTHON: Sequence[Mistake] = (_after("open('/etc/passwd')\n"), _after("show_object(nowhere)\n"))
+MISTAKES: Mapping[str, Sequence[Mistake]] = {
+    **dict.fromkeys(("full", "no-hierarchy", "no-constraints", "paper"), _AIDL),
+    "openscad": (_after('import("/etc/drawing.svg");\n'), _after("square(3 4);\n")),
+    "build123d": _PYTHON,
+    "cadquery": _PYTHON,
+    "svg": (
+        lambda program: '<!DOCTYPE svg [<!ENTITY a "b">]>' + program,
+        lambda program: program.replace("</svg>", "<g>"),
+    ),
+}
+"""What is wrong in a first reply; the second is right. A third mistake is to answer without a program."""
+
+
+def mistake(name: str) -> int:
+    """Returns which mistake the first reply to a prompt has, where it has one."""
+    return PROMPTS.index(name) // 2 % 3
+
+
+def replies(name: str, variant: str) -> list[str]:
+    """Returns the replies of a conversation: every other one has a mistake first, all kinds in turn."""
+    program = WRITERS[variant](name)
+    right = _fenced(program, variant)
+    if PROMPTS.index(name) % 2 == 0:
+        return [right]
+    kinds, kind = MISTAKES[variant], mistake(name)
+    wrong = "First I think about it." if kind == len(kinds) else _fenced(kinds[kind](program), variant)
+    return [wrong, right]
+
+
+def _fenced(program: str, variant: str) -> str:
+    return f"Here it is.\n\n```{VARIANTS[variant].fences[0]}\n{program}```\n"
+
+
+def recording(names: Sequence[str] = PROMPTS, variants: Sequence[str] = tuple(WRITERS)) -> str:
+    """Returns a recording with one conversation for each of these prompts in each of these languages."""
+    lines = (
+        {
+            "aidl_recording": 1,
+            "prompt": name,
+            "text": _TEXTS[name],
+            "variant": variant,
+            "run": 1,
+            "note": NOTE,
+            "replies": replies(name, variant),
+        }
+        for variant in variants
+        for name in names
+    )
+    return "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_text(recording(), encoding="utf-8")

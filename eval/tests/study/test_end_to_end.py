@@ -1,0 +1,334 @@
+"""A study as people have it: a real process, a real browser, three raters; then the report."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import combinations, permutations, product
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+from scipy.stats import rankdata
+
+from aidl_lang.tools.cli import main
+from eval.tests.study import results
+from eval.tests.study.results import LANGUAGES, PROMPTS
+from tests.documents import ROOT
+
+PATIENCE = 30.0
+Taste = Callable[[str], dict[str, int] | None]
+"""How good a rater finds each language for a prompt, 0 the best; None: cannot tell."""
+
+
+@contextmanager
+def serving(folder: Path) -> Iterator[str]:
+    command = [sys.executable, "-m", "aidl_lang", "eval", "study", str(folder), "--no-open"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+        try:
+            assert process.stderr is not None
+            found = re.search(r"http://[^\s,]+", process.stderr.readline())
+            assert found is not None
+            yield found[0]
+            process.send_signal(signal.SIGINT)
+            assert process.wait(PATIENCE) == 130
+            assert process.stderr.read() == ""
+        finally:
+            process.kill()
+
+
+@contextmanager
+def opened(browser: Browser, url: str) -> Iterator[Page]:
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.set_default_timeout(PATIENCE * 1000)
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+    page.goto(url)
+    yield page
+    page.close()
+    assert complaints == []
+
+
+def begin(page: Page, rater: str) -> None:
+    page.get_by_label("Your name or number").fill(rater)
+    page.keyboard.press("Enter")
+    expect(page.locator("#rater")).to_have_text(rater.lower())
+
+
+def languages(page: Page) -> list[str]:
+    """What the pictures are of, in the order on the screen: their widths tell it to tests alone."""
+    widths = page.eval_on_selector_all(
+        ".card img", "all => Promise.all(all.map(async one => (await one.decode(), one.naturalWidth)))"
+    )
+    by_width = {results.width_of(name): name for name in LANGUAGES}
+    return [by_width[width] for width in widths]
+
+
+def rank(page: Page, taste: Taste) -> None:
+    """One sheet, by keys."""
+    number, asked = page.locator("#count").inner_text(), page.locator("#asked").inner_text()
+    liked, names = taste(asked), languages(page)
+    if liked is None:
+        page.keyboard.press("s")
+    else:
+        order = sorted(names, key=liked.__getitem__)
+        for before, name in zip([None, *order], order, strict=False):
+            if before is not None and liked[before] == liked[name]:
+                page.keyboard.press("=")
+            page.keyboard.press(str(names.index(name) + 1))
+        page.keyboard.press("Enter")
+    is_next = "number => !rank.checkVisibility() || count.textContent !== number"
+    page.wait_for_function(is_next, arg=number)
+
+
+def north(prompt: str) -> dict[str, int]:
+    return {"full": 0, "openscad": 1, "svg": 2}
+
+
+def south(prompt: str) -> dict[str, int] | None:
+    return None if prompt == "old key" else {"full": 0, "openscad": 0, "svg": 1}
+
+
+def west(prompt: str) -> dict[str, int]:
+    return {"full": 1, "openscad": 0, "svg": 2} if prompt < "p" else {"full": 2, "openscad": 1, "svg": 0}
+
+
+RATERS: dict[str, Taste] = {"north": north, "south": south, "west": west}
+STATES = {("tall mug", "svg", 1): "none"}
+
+
+def ranks_of(taste: Taste, prompt: str) -> dict[str, float] | None:
+    """The ranks that a rater gives, by scipy; who drew nothing is behind all."""
+    liked = taste(prompt)
+    if liked is None:
+        return None
+    levels = [9 if (prompt, name, 1) in STATES else liked[name] for name in LANGUAGES]
+    return dict(zip(LANGUAGES, map(float, rankdata(levels)), strict=True))
+
+
+GIVEN = [
+    (prompt, ranks)
+    for prompt in PROMPTS
+    for taste in RATERS.values()
+    if (ranks := ranks_of(taste, prompt)) is not None
+]
+"""What the three raters say of all prompts."""
+
+
+def test_three_raters_and_the_report(
+    browser: Browser, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results.write(tmp_path, states=STATES)
+    with serving(tmp_path) as url:
+        with opened(browser, url) as page:
+            begin(page, "north")
+            for _number in PROMPTS:
+                rank(page, north)
+            expect(page.locator("#all")).to_have_text("That was all: 4 answers are kept.")
+            page.get_by_role("button", name="Someone else").click()
+            begin(page, "south")
+            rank(page, south)
+            rank(page, south)
+        assert [line["rater"] for line in results.lines(tmp_path)] == ["north"] * 4 + ["south"] * 2
+    with serving(tmp_path) as url:  # south stopped in the middle, and so did the study
+        with opened(browser, url) as page:
+            begin(page, "South")
+            expect(page.locator("#count")).to_have_text("3 of 4")
+            rank(page, south)
+            page.reload()
+            expect(page.locator("#count")).to_have_text("4 of 4")
+            rank(page, south)
+            expect(page.locator("#all")).to_be_visible()
+        with opened(browser, url) as page:
+            begin(page, "west")
+            for _number in PROMPTS:
+                rank(page, west)
+            expect(page.locator("#all")).to_be_visible()
+    assert len(results.lines(tmp_path)) == 12
+
+    assert main(["eval", "--report", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    found = json.loads((tmp_path / "evaluation.json").read_text("utf-8"))
+    whole = {line["figure"]: line["value"] for line in found["study"]}
+    assert (whole["raters"], whole["judgements"], whole["skipped"]) == (3, 11, 1)
+    assert whole["alpha"] == pytest.approx(alpha_by_definition())
+    for name in LANGUAGES:
+        own = {line["figure"]: line for line in found["variants"] if line["variant"] == name}
+        assert own["rank"]["value"] == pytest.approx(fmean(ranks[name] for _, ranks in GIVEN))
+        assert own["rank"]["count"] == 11
+        assert own["rank"]["low"] <= own["rank"]["value"] <= own["rank"]["high"]
+        shares = [over(ranks, name, other) for _, ranks in GIVEN for other in LANGUAGES if other != name]
+        assert own["preferred"]["value"] == pytest.approx(fmean(shares))
+        assert f"{own['rank']['value']:.2f} ± " in out
+    check_pairs(found)
+    assert "3 raters and 11 judgements; 1 time a rater could not tell. Their agreement" in out
+    assert f"Krippendorff's alpha of ranks: {whole['alpha']:.3f}." in out
+    check_csv(tmp_path, found)
+    assert (tmp_path / "evaluation.md").read_text("utf-8") == out
+
+
+def over(ranks: dict[str, float], first: str, second: str) -> float:
+    return 0.5 if ranks[first] == ranks[second] else float(ranks[first] < ranks[second])
+
+
+def check_pairs(found: dict[str, Any]) -> None:
+    """Differences, exact probabilities over all exchanges, and Holm's correction."""
+    for figure in ("rank", "preferred"):
+        lines = [line for line in found["pairs"] if line["figure"] == figure]
+        assert [(line["variant"], line["against"]) for line in lines] == list(combinations(LANGUAGES, 2))
+        for line in lines:
+            first, second = line["variant"], line["against"]
+            differences = []
+            for prompt in PROMPTS:
+                own = [ranks for asked, ranks in GIVEN if asked == prompt]
+                ahead = fmean(over(r, first, second) - over(r, second, first) for r in own)
+                lower = fmean(r[first] - r[second] for r in own)
+                differences.append(ahead if figure == "preferred" else lower)
+            signs = list(product((1, -1), repeat=len(differences)))
+            sums = [sum(s * d for s, d in zip(sign, differences, strict=True)) for sign in signs]
+            extreme = sum(abs(one) >= abs(sum(differences)) - 1e-9 for one in sums)
+            assert line["value"] == pytest.approx(fmean(differences))
+            assert line["p"] == pytest.approx(extreme / len(signs))
+        least = min(line["p"] for line in lines)
+        assert min(line["p_holm"] for line in lines) == pytest.approx(min(1, 3 * least))
+
+
+def check_csv(folder: Path, found: dict[str, Any]) -> None:
+    with open(folder / "evaluation.csv", encoding="utf-8-sig", newline="") as file:
+        table = list(csv.DictReader(file))
+    for line in [*found["study"], *found["pairs"], *found["variants"]]:
+        (row,) = [
+            row
+            for row in table
+            if all(row[name] == (line[name] or "") for name in ("prompt", "variant", "against", "figure"))
+        ]
+        assert row["value"] == ("" if line["value"] is None else str(line["value"]))
+
+
+def alpha_by_definition() -> float:
+    """The ordinal alpha pair by pair; what was not shown is no value, and sheets of two are apart."""
+    observed = expected = 0.0
+    for size in (2, 3):
+        units = []
+        for prompt in PROMPTS:
+            shown = [name for name in LANGUAGES if (prompt, name, 1) not in STATES]
+            if len(shown) == size:
+                own = [ranks for asked, ranks in GIVEN if asked == prompt]
+                units += [[ranks[name] for ranks in own] for name in shown]
+        given = [value for unit in units for value in unit]
+
+        def square(c: float, k: float, given: list[float] = given) -> float:
+            between = sum(min(c, k) <= value <= max(c, k) for value in given)
+            return 0.0 if c == k else (between - (given.count(c) + given.count(k)) / 2) ** 2
+
+        observed += sum(sum(square(*pair) for pair in permutations(u, 2)) / (len(u) - 1) for u in units)
+        expected += sum(square(*pair) for pair in permutations(given, 2)) / (len(given) - 1)
+    return 1 - observed / expected
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with serving(results.write(tmp_path_factory.mktemp("study")).folder) as url:
+        yield url
+
+
+def test_undo_alike_and_back(browser: Browser, url: str) -> None:
+    with opened(browser, url) as page:
+        begin(page, "undoing")
+        order, forward = page.locator("#order"), page.locator("#next")
+        page.keyboard.press("Enter")  # nothing is chosen yet
+        for key, shown in (
+            ("2", "2 > …"),
+            ("=", "2 = …"),
+            ("Backspace", "2 > …"),
+            ("=", "2 = …"),
+            ("3", "2 = 3 > …"),
+            ("9", "2 = 3 > …"),
+            ("1", "2 = 3 > 1"),
+            ("Backspace", "2 = 3 > …"),
+            ("Backspace", "2 > …"),
+            ("2", "Choose from best to worst."),
+            ("3", "3 > …"),
+            ("1", "3 > 1 > …"),
+        ):
+            page.keyboard.press(key)
+            expect(order).to_have_text(shown)
+        expect(forward).to_be_disabled()
+        page.keyboard.press("2")
+        expect(forward).to_be_enabled()
+        page.keyboard.press("Enter")
+        expect(page.locator("#count")).to_have_text("2 of 4")
+        page.keyboard.press("b")
+        expect(page.locator("#count")).to_have_text("1 of 4")
+        expect(order).to_have_text("3 > 1 > 2")
+        page.keyboard.press("Enter")
+        expect(page.locator("#count")).to_have_text("2 of 4")
+        page.keyboard.press("s")
+        expect(page.locator("#count")).to_have_text("3 of 4")
+        page.keyboard.press("ArrowLeft")
+        expect(order).to_have_text("You could not tell.")
+
+
+def test_mouse_and_names_for_readers(browser: Browser, url: str) -> None:
+    with opened(browser, url) as page:
+        begin(page, "clicking")
+        expect(page.get_by_role("heading", level=1)).to_be_focused()
+        drawings = page.get_by_role("group", name="Drawings, to be chosen from best to worst")
+        assert drawings.get_by_role("button").count() == 3
+        drawings.get_by_role("button", name="Drawing 2, no place yet").click()
+        expect(drawings.get_by_role("button", name="Drawing 2, place 1")).to_have_attribute(
+            "aria-pressed", "true"
+        )
+        page.get_by_role("button", name="As good as the last").click()
+        drawings.get_by_role("button", name="Drawing 1, no place yet").click()
+        expect(drawings.get_by_role("button", name="Drawing 1, place 1")).to_be_visible()
+        drawings.get_by_role("button", name="Drawing 3").click()
+        expect(drawings.get_by_role("button", name="Drawing 3, place 3")).to_be_focused()
+        page.keyboard.press("Space")  # on a drawing it takes its place away
+        expect(drawings.get_by_role("button", name="Drawing 3, no place yet")).to_be_visible()
+        drawings.get_by_role("button", name="Drawing 3").click()
+        page.keyboard.press("Enter")  # and this goes on
+        expect(page.locator("#count")).to_have_text("2 of 4")
+        expect(page.get_by_role("progressbar", name="Prompts that are done")).to_have_attribute("value", "1")
+        page.get_by_role("button", name="Back").click()
+        expect(page.locator("#order")).to_have_text("2 = 1 > 3")
+
+
+def test_touch_on_a_small_screen(browser: Browser, url: str) -> None:
+    context = browser.new_context(viewport={"width": 390, "height": 800}, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(url)
+    page.locator("#name").fill("touching")
+    page.locator("#begin button").tap()
+    for number in (3, 1, 2):
+        page.locator(".card").nth(number - 1).tap()
+    page.locator("#next").tap()
+    expect(page.locator("#count")).to_have_text("2 of 4")
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    context.close()
+
+
+def test_a_study_that_has_ended_is_told(browser: Browser, tmp_path: Path) -> None:
+    with serving(results.write(tmp_path).folder) as url:
+        page = browser.new_page()
+        page.goto(url)
+        page.locator("#name").fill("=no name")
+        page.keyboard.press("Enter")
+        expect(page.get_by_role("alert")).to_contain_text("1 to 40 letters or digits")
+        begin(page, "late")
+    for key in "123":
+        page.keyboard.press(key)
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("alert")).to_contain_text("This was not kept")
+    expect(page.locator("#order")).to_have_text("1 > 2 > 3")
+    page.close()
+    assert not (tmp_path / "study.jsonl").exists()

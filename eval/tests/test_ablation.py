@@ -1,0 +1,289 @@
+"""Ways of solving compared: what each moves, on programs small enough to foresee."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import json
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from aidl_eval import ablation_table
+from aidl_eval.ablation import WAYS, Solved, compare
+from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.solved import Frame, SolvedStructure
+from eval.tests.conftest import Evaluation
+
+LIFTED = """
+assembly stack {
+    assembly low { solid foot { plate = rectangle(center: (0, 0), width: 40, height: 10) } }
+    assembly high {
+        solid lid { plate = rectangle(center: (3, 30), width: 40, height: 10) }
+        solid knob { ball = circle(center: (3, 40), radius: 5) }
+        constrain knob.bottom == lid.top
+    }
+    constrain { high.lid.bottom == low.foot.top high.lid.center_x == low.foot.center_x }
+}
+"""
+KIT = """
+assembly kit {
+    solid post { bar = rectangle(center: (0, 0), width: 10, height: 40) }
+    solid slid { plate = rectangle(center: (30, 3), width: 12, height: 8) }
+    solid turned {
+        plate = rectangle(center: (60, 0), width: 20, height: 6)
+        hole eye { rim = circle(center: (66, 0), radius: 2) }
+    }
+    solid widened { plate = rectangle(center: (100, 0), width: guess(14), height: 8) }
+    constrain {
+        slid.left == post.right + 5
+        turned.rotation == 30
+        turned.plate.center == (70, 20)
+        widened.width == 20
+    }
+}
+"""
+INSIDE = """
+assembly cabinet {
+    solid body {
+        shell = rectangle(center: (0, 0), width: 60, height: 40)
+        solid knob { ball = circle(center: (50, 3), radius: 5) }
+        constrain knob.inside(self)
+    }
+}
+"""
+
+
+def solves(program: str) -> dict[str, Solved]:
+    return {solved.way: solved for solved in compare(SourceFile("stack.aidl", program))}
+
+
+def test_ways_move_parts_as_wholes_where_all_at_once_moves_what_is_in_them() -> None:
+    found = solves(LIFTED)
+    assert list(found) == list(WAYS)
+    assert {solved.status for solved in found.values()} == {"solved"}
+    assert found["full"].disturbed == found["paper"].disturbed == 0
+    assert found["flat"].disturbed > 0
+    assert {(s.parts, s.bent, s.sizes, s.missed) for s in found.values()} == {(3, 0, 0, 0)}
+
+
+# --- From the drawings: what is not the same in its frame, and what is another shape ------------------
+
+Shape = dict[str, list[tuple[float, ...]]]
+
+
+def structures(program: str, way: str) -> Iterator[tuple[SolvedStructure, list[Frame]]]:
+    """Yields the structures of a drawing, each with the frames from its own to the root's."""
+
+    def below(s: SolvedStructure, frames: list[Frame]) -> Iterator[tuple[SolvedStructure, list[Frame]]]:
+        yield s, frames
+        for child in s.structures:
+            yield from below(child, [child.frame, *frames])
+
+    settings = pipeline.Settings()
+    settings = replace(settings, solving=replace(settings.solving, stages=WAYS[way].stages))
+    model = pipeline.compile(SourceFile("kit.aidl", program), settings=settings).model
+    assert model is not None
+    return below(model.root, [])
+
+
+def drawn(s: SolvedStructure) -> list[tuple[float, ...]]:
+    """The numbers of the curves: places, and radii as tuples of one."""
+    found = []
+    for geometry in s.geometry:
+        for part in geometry.walk():
+            if part.curve is not None:
+                found += [v if isinstance(v, tuple) else (v,) for v in part.values.values()]
+    return [tuple(map(float, each)) for each in found]
+
+
+def in_frame(at: tuple[float, ...], frames: list[Frame]) -> tuple[float, ...]:
+    if len(at) == 2:
+        for frame in reversed(frames):
+            x, y, turn = at[0] - frame.x, at[1] - frame.y, math.radians(-frame.rotation)
+            at = (
+                x * math.cos(turn) - y * math.sin(turn),
+                x * math.sin(turn) + y * math.cos(turn),
+            )
+    return at
+
+
+def places(program: str, way: str) -> Shape:
+    return {s.path: [in_frame(at, frames) for at in drawn(s)] for s, frames in structures(program, way)}
+
+
+def distances(program: str, way: str) -> Shape:
+    """Lengths alone, which no move and no turn changes."""
+    found: Shape = {}
+    for s, _ in structures(program, way):
+        points = [at for at in drawn(s) if len(at) == 2]
+        apart = [(math.dist(a, b),) for a, b in itertools.combinations(points, 2)]
+        found[s.path] = [*apart, *(at for at in drawn(s) if len(at) == 1)]
+    return found
+
+
+def changed(before: Shape, after: Shape) -> set[str]:
+    found = set()
+    for path, numbers in before.items():
+        pairs = zip(itertools.chain(*numbers), itertools.chain(*after[path]), strict=True)
+        if any(abs(a - b) > 1e-4 for a, b in pairs):
+            found.add(path)
+    return found
+
+
+@pytest.mark.parametrize("way", ["full", "paper", "level", "flat"])
+@pytest.mark.parametrize("program", [KIT, LIFTED])
+def test_what_is_disturbed_and_bent_is_so_in_the_drawing(program: str, way: str) -> None:
+    written = re.sub(r"constrain (\{[^}]*\}|[^\n]*)", "", program)
+    disturbed = changed(places(written, "full"), places(program, way))
+    bent = changed(distances(written, "full"), distances(program, way))
+    solved = solves(program)[way]
+    assert (solved.disturbed, solved.bent) == (len(disturbed), len(bent))
+    if program is KIT:
+        assert bent == {"kit.widened"}
+        assert disturbed == {"kit.widened"} or way == "flat"
+
+
+def test_a_part_moved_and_turned_as_a_whole_is_as_it_was() -> None:
+    found = solves(KIT)
+    assert {solved.status for solved in found.values()} == {"solved"}
+    assert {solved.parts for solved in found.values()} == {5}
+    assert {solved.bent for solved in found.values()} == {1}
+    assert (found["full"].disturbed, found["flat"].disturbed) == (1, 2)
+
+
+def test_an_empty_structure_is_bent_by_its_size_alone() -> None:
+    plan = "assembly a {{ solid b {{ }} solid c {{ }} constrain {{ c.left == b.right + 20 {} }} }}"
+    assert solves(plan.format(""))["full"].bent == 0
+    wider = solves(plan.format("c.width == 30"))["full"]
+    assert (wider.parts, wider.disturbed, wider.bent) == (2, 1, 1)
+
+
+def test_without_the_box_rule_what_lies_in_a_part_widens_its_box() -> None:
+    found = solves(INSIDE)
+    assert {solved.status for solved in found.values()} == {"solved"}
+    weaker = found.pop("no-box-rule")
+    assert (weaker.is_other, weaker.drift) == (True, 0.0)
+    assert weaker.missed > 0
+    assert {(solved.is_other, solved.missed) for solved in found.values()} == {(False, 0)}
+    assert all(solved.drift > 0.0 for solved in found.values())
+
+
+def test_what_holds_already_is_left_alone_by_all() -> None:
+    found = solves("solid a { c = circle(center: (3, 4), radius: 5) constrain c.radius == 5 }")
+    assert {(s.status, s.disturbed, s.bent, s.drift) for s in found.values()} == {("solved", 0, 0, 0.0)}
+
+
+def test_what_cannot_hold_is_solved_by_none() -> None:
+    found = solves("solid a { c = circle(radius: 5) constrain { c.radius == 5 c.radius == 6 } }")
+    assert "solved" not in {solved.status for solved in found.values()}
+    assert all(solved.missed for solved in found.values())
+
+
+# --- Tables -------------------------------------------------------------------------------------------
+
+
+def solved(way: str, program: str, thing: str, **figures: object) -> Solved:
+    known: dict[str, object] = {"status": "solved", "seconds": 0.01, "parts": 10, "drift": 1.0}
+    return Solved(program, thing, way, **(known | figures))  # type: ignore[arg-type]
+
+
+def table(drifts: dict[str, float], **figures: object) -> list[Solved]:
+    """Solves of programs, of which `flat` has the drifts given and the others 1."""
+    return [
+        solved(way, program, program[0], **({"drift": drift, **figures} if way == "flat" else {}))
+        for program, drift in drifts.items()
+        for way in WAYS
+    ]
+
+
+def lines(solves: list[Solved], way: str) -> list[list[str]]:
+    text = ablation_table.markdown(solves)
+    cells = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    return [line for line in cells if way in line]
+
+
+def test_means_are_over_programs_and_differences_over_things() -> None:
+    # The differences of the things a, b, c are 3, 1 and 2, the mean of a counting once.
+    found = table({"a1": 2.0, "a2": 6.0, "b": 2.0, "c": 3.0})
+    (means,) = [line for line in lines(found, "flat") if line[0] == "flat"]
+    assert means[1] == "100 % [100–100] (4/4)"
+    assert means[5].startswith("3.25 ± 1.89 [2.00–")  # 13 / 4
+    ((_, _, difference, things, p, adjusted),) = lines(found, "flat − full")
+    assert difference == "+2.00 [1.00–3.00]"
+    assert (things, p, adjusted) == ("3", "0.250", "1.000")  # 2 of 8 exchanges; of six ways the least
+
+
+def test_what_one_way_does_not_solve_is_in_no_mean() -> None:
+    found = table({"a": 2.0, "b": 4.0})
+    found = [replace(s, status="failed") if (s.way, s.program) == ("paper", "b") else s for s in found]
+    rows = {line[0]: line for line in lines(found, "flat") + lines(found, "paper") if len(line) == 8}
+    assert rows["paper"][1] == "50 % [0–100] (1/2)"
+    assert rows["flat"][1] == "100 % [100–100] (2/2)"
+    assert rows["flat"][5] == "2.00 (1)"
+    assert "All but `solved` are over the 1 programs of 2" in ablation_table.markdown(found)
+
+
+def test_a_wrong_program_is_told_apart() -> None:
+    (wrong,) = compare(SourceFile("a.aidl", "solid a { b = }"))
+    assert wrong.status == "wrong"
+    text = ablation_table.markdown([wrong, *compare(SourceFile("b.aidl", LIFTED))])
+    assert "| a.aidl | full | wrong |" in text
+    assert "over the 1 programs of 1 that every way solves; they draw 1 things." in text
+    assert "The problem of `no-box-rule` is another one in 0 of 1 programs." in text
+
+
+def test_the_csv_has_ways_programs_and_differences() -> None:
+    found = list(csv.DictReader(io.StringIO(ablation_table.to_csv(table({"a": 2.0, "b": 4.0})))))
+    drift = [line for line in found if line["figure"] == "drift"]
+    drifts = {(line["prompt"], line["variant"], line["against"]): line for line in drift}
+    assert float(drifts["", "flat", ""]["value"]) == 3.0
+    assert float(drifts["b", "flat", ""]["value"]) == 4.0
+    least = drifts["", "flat", "full"]
+    assert [float(least[name]) for name in ("value", "count", "low", "high", "p")] == [2.0, 2, 1.0, 3.0, 0.5]
+
+
+def test_the_command_prints_the_tables_and_writes_them_if_asked(evaluation: Evaluation) -> None:
+    file = evaluation.folder / "stack.aidl"
+    file.write_text(LIFTED)
+    done = evaluation.called("eval", "--solver", file.name)
+    assert done.code == 0
+    assert done.out.count("| stack.aidl | ") == len(WAYS)
+    assert not evaluation.out.exists()
+    again = evaluation.called("eval", "--solver", file.name, "--out", str(evaluation.out))
+    assert again.code == 0
+    assert (evaluation.out / "solver.md").read_text() == again.out
+    assert (
+        (evaluation.out / "solver.csv")
+        .read_text("utf-8-sig")
+        .startswith("prompt,variant,against,figure,value,")
+    )
+    assert evaluation.called("eval", "--solver", "no.aidl").code == 2
+
+
+def test_the_command_takes_the_programs_of_a_recording(evaluation: Evaluation) -> None:
+    replies = [f"```aidl\n{program}```\n" for program in ("solid a { b = }\n", LIFTED, KIT)]
+    shared = {"aidl_recording": 1, "prompt": "stack", "run": 1}
+    conversations = [
+        {**shared, "variant": "full", "replies": [*replies, "I am at a loss."]},
+        {**shared, "variant": "openscad", "replies": ["```openscad\nsquare(1);\n```\n"]},
+    ]
+    file = evaluation.folder / "said.jsonl"
+    file.write_text("\n".join(map(json.dumps, conversations)))
+    done = evaluation.called("eval", "--solver", file.name)
+    assert done.code == 1  # as one of them is wrong
+    assert "| stack/full/1, reply 1 | full | wrong |" in done.out
+    assert done.out.count("| stack/full/1, reply 3 | ") == len(WAYS)
+    assert "over the 2 programs of 2 that every way solves; they draw 1 things." in done.out
+    assert "openscad" not in done.out
+    file.write_text(json.dumps(conversations[1]))
+    without = evaluation.called("eval", "--solver", file.name)
+    assert without.code == 2
+    assert "error[E0994]: `said.jsonl` holds no program in AIDL" in without.err
+    file.write_text("{}")
+    assert evaluation.called("eval", "--solver", file.name).code == 2

@@ -1,0 +1,97 @@
+"""The guides of all languages: alike in what they have, with programs that run, none of them of a prompt."""
+
+from __future__ import annotations
+
+import re
+from argparse import ArgumentParser
+
+import pytest
+
+from aidl_eval.plan import VARIANTS, Plan, Switches
+from aidl_eval.rendering import RenderedLanguage
+from aidl_eval.requirements import load
+from aidl_lang.common.source import SourceFile
+from aidl_lang.pipeline import Settings, compile
+from aidl_lang.tools.cli.eval import register
+from aidl_lang.tools.llm import generation
+from aidl_lang.tools.llm.aidl import Aidl
+
+THINGS = ("storm lantern", "city tram")
+_FILLING = {"a", "an", "and", "of", "old", "school", "pair", "with", "the"}
+
+
+def programs(name: str) -> list[str]:
+    fences = "|".join(VARIANTS[name].fences)
+    found = re.findall(rf"^```(?:{fences})\n(.*?)^```", VARIANTS[name].guide(), re.S | re.M)
+    return [program for program in found if any(thing in program for thing in THINGS)]
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_each_guide_has_the_same_two_things(name: str) -> None:
+    found = programs(name)
+    assert [next(t for t in THINGS if t in program) for program in found] == list(THINGS)
+    for program in found:
+        assert 30 <= len(program.splitlines()) <= 115
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_its_programs_run(name: str) -> None:
+    language = VARIANTS[name]
+    if isinstance(language, RenderedLanguage) and (why := language.missing()) is not None:
+        pytest.skip(f"{name}: {why}")
+    for program in programs(name):
+        if isinstance(language, RenderedLanguage):
+            (rendered,) = language.run(program)
+            assert (rendered.errors, rendered.warnings) == ((), ())
+            assert len(rendered.regions.parts) >= 12
+        else:
+            assert isinstance(language, Aidl)
+            compiled = compile(SourceFile("a.aidl", program), settings=Settings(variant=language.variant))
+            assert compiled.ok
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_no_guide_draws_what_is_asked_for(name: str) -> None:
+    for program in re.findall(r"```\w*\n(.*?)```", VARIANTS[name].guide(), re.S):
+        titles = re.findall(r"^\s*(?:///?|#|<!--) (.*)|^(?:assembly|solid|module|def) (\w+)", program, re.M)
+        heads = " ".join(" ".join(title) for title in titles[:2]).casefold()
+        for prompt in load():
+            words = set(re.findall(r"[a-z]+", prompt.text.casefold())) - _FILLING
+            if prompt.name not in ("house", "table_lamp"):  # a house's roof is no house
+                assert not words <= set(re.findall(r"[a-z]+", heads)), (name, prompt.text)
+
+
+def test_without_a_guide_only_the_language_is_named() -> None:
+    plan = Plan((), ("full", "svg"), 1, generation.Settings(), Switches(guide=False))
+    assert plan.language("full").guide() == (
+        "You write programs in AIDL that draw flat parts. "
+        "Answer with the whole program in one ```aidl block.\n"
+    )
+    assert plan.language("svg").guide().startswith("You write programs in SVG that draw flat parts.")
+    assert plan.language("full").conversation().judge("solid a { c = circle(radius: 3) }").ok
+
+
+def test_help_can_be_switched_off() -> None:
+    slip = "solid a { c = circle(radus: 3) }"
+    helped = Aidl().conversation().judge(slip)
+    bare = Aidl(mends=False).conversation().judge(slip)
+    assert (helped.ok, bare.ok, bare.fixes, bare.program) == (True, False, (), slip)
+    plan = "assembly a { solid b { todo } solid c { d = circle(radius: 3) } }"
+    assert Aidl().conversation().judge(plan).is_partial
+    taken = Aidl(plans=False).conversation().judge(plan)
+    assert (taken.ok, taken.is_partial) == (True, False)
+    first = "assembly a { solid b { c = circle(radius: 3) } solid d { e = circle(radius: 4) } }"
+    last = "assembly a { solid b { c = circle(radius: 3) } }"
+    for language, restored in ((Aidl(), True), (Aidl(recovers=False), False)):
+        conversation = language.conversation()
+        conversation.judge(first)
+        verdict = conversation.finish(conversation.judge(last))
+        assert ("solid d" in verdict.program) == restored
+
+
+def test_the_command_knows_the_same_variants() -> None:
+    """It repeats their names, so that it starts without the languages."""
+    parser = ArgumentParser()
+    register(parser)
+    choices = next(action.choices for action in parser._actions if action.dest == "variants")
+    assert sorted(choices or ()) == sorted(VARIANTS)
