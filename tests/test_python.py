@@ -279,5 +279,5 @@ def test_what_a_notebook_shows() -> None:
     assert "did you mean `width`?" in _told(wrong)
     shown = aidl_lang.compile(FALSE)._repr_html_() or ""
     assert shown.startswith('<img alt="the drawing" src="data:image/svg+xml;base64,')
-    assert "&lt;text&gt;:3:12" in shown
+    assert "&lt;text&gt;:2:12" in shown
     assert "<text>" not in shown

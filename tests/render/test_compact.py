@@ -30,15 +30,15 @@ def span(source: SourceFile, text: str) -> Span:
 
 def test_a_conflict() -> None:
     assert told(SHELF) == (
-        "error E0601 line 7: `foot.below(board, gap: 0)`, `foot.bottom == board.bottom - 40` and "
+        "error E0601 line 6: `foot.below(board, gap: 0)`, `foot.bottom == board.bottom - 40` and "
         "`foot.height == 30` cannot hold together\n"
-        "  7 | foot.height == 30\n"
-        "  why: 40 would fit\n"
+        "  6 | foot.bottom == board.bottom - 40\n"
+        "  why: 30 would fit\n"
         "  line 5: conflicts with this; 10 would fit | foot.below(board, gap: 0)\n"
-        "  line 6: conflicts with this; 30 would fit | foot.bottom == board.bottom - 40\n"
+        "  line 7: conflicts with this; 40 would fit | foot.height == 30\n"
         "  hint: given the others, `foot.bottom` is 10 more than `board.bottom - 40`\n"
-        "  fix (write `40`): line 7 becomes\n"
-        "            foot.height == 40"
+        "  fix (write `30`): line 6 becomes\n"
+        "            foot.bottom == board.bottom - 30"
     )
 
 
