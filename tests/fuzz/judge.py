@@ -156,7 +156,7 @@ class Judge:
 
 def _as_meant(node: ast.Node) -> ast.Node:
     """A tree in which what means the same is written in one way: `=` among constraints, `constrain` before
-    one that needs it or not.
+    one that needs it or not, `cut` for `hole`.
     """
     changed: dict[str, object] = {}
     for part in fields(node):
@@ -166,6 +166,8 @@ def _as_meant(node: ast.Node) -> ast.Node:
         elif isinstance(value, tuple):
             changed[part.name] = tuple(_as_meant(v) if isinstance(v, ast.Node) else v for v in value)
     node = replace(node, **changed)
+    if isinstance(node, ast.Structure):
+        return replace(node, kind_word=replace(node.kind_word, text=node.kind))
     if isinstance(node, ast.Equation):
         return ast.ExpressionStatement(node.meant, span=node.span)
     if isinstance(node, ast.Constrain) and not node.braces and len(node.items.statements) == 1:

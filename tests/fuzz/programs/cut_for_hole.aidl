@@ -1,0 +1,1 @@
+assembly a{cut s{e((0))}}
