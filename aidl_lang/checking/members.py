@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.resolving.complaints import respell
+from aidl_lang.checking.resolving.complaints import renamed, respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.standard import body_of, part
 from aidl_lang.checking.synonyms import FIELDS, MEMBERS
@@ -222,7 +222,7 @@ def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[
             "E0202",
             f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`",
             node.name,
-            fix=Fix("write `rotation`", (Edit(node.name.span, "rotation"),), is_sure=True),
+            fix=renamed(node.name, "rotation"),
         )
     return None
 
