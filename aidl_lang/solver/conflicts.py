@@ -31,7 +31,7 @@ from aidl_lang.solver.tiers import Scope
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
-SECONDS = 2.0
+SECONDS = 1.0
 """Time for one explanation, should the budget not be spent by then."""
 PATIENCE = 4.0
 """Seconds after the first failure during which explanations are sought."""
@@ -259,8 +259,6 @@ class _ConflictSearch:
         """Returns a smallest part of a failing set that still fails, or what was left of the set when the
         budget was spent.
         """
-        if self._relaxation(found).is_tight:
-            return sorted(found)
         return needed(found, lambda part: self._spent or self._holds(part))
 
     def _refuted(self, constraints: Sequence[int]) -> list[int]:

@@ -23,7 +23,7 @@ import numpy as np
 from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, linearise, lots, stacked
+from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, linearise
 from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Problem
 
@@ -59,7 +59,7 @@ def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[
     matrix = rows.take(originals)
     rest = _entangled(matrix, width)
     undecided: list[int] = []
-    for part in _doubtful_parts(matrix.take(rest), width):
+    for part in _connected_parts(matrix.take(rest), width):
         names = originals[rest[part]].tolist()
         found = _relations(matrix.take(rest[part]))
         if found is None:
@@ -134,29 +134,15 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
     return np.flatnonzero(left)
 
 
-def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
-    """Returns the connected parts of the rows, without parts that are clearly independent."""
+def _connected_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
+    """Returns the connected parts of the rows."""
     if not len(matrix):
         return []
     links = matrix.links
     label = connected(*links, width)
     part_of_row = np.unique(label[links[1][matrix.starts[:-1]]], return_inverse=True)[1]
     parts = Sorted(part_of_row, int(part_of_row.max()) + 1)
-    column_part = np.full(width, -1)
-    column_part[matrix.columns] = part_of_row[matrix.rows]
-    columns = Sorted(column_part, len(parts.count))
-    doubtful: list[int] = []
-    for members in lots(parts.count, columns.count):
-        if max(parts.count[members[0]], columns.count[members[0]]) > LARGE:
-            doubtful += members.tolist()
-            continue
-        slot = np.full(len(parts.count), -1)
-        slot[members] = np.arange(len(members))
-        stack = stacked(matrix, part_of_row, parts, columns, slot)
-        sigma = np.linalg.svd(stack, compute_uv=False)
-        few = np.count_nonzero(sigma >= RANK, axis=1) < parts.count[members]
-        doubtful += members[few].tolist()
-    return [parts.members(part) for part in doubtful]
+    return [parts.members(part) for part in range(len(parts.count))]
 
 
 def _relations(matrix: Sparse) -> dict[int, Relation] | None:

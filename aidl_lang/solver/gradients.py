@@ -35,8 +35,6 @@ NARROW = 50
 """Nodes to a level up to which dictionaries are quicker, as in chains of things that hang on each other."""
 FLAT = 1e-9
 """Slopes below this count as zero: coordinates that cancel, as in the width of a box."""
-EDGES = 3000
-"""Edges of a graph up to which scipy is not worth loading."""
 RANK = 1e-6
 """Singular values of unit rows above this count towards the rank."""
 DOUBT = 1e-8
@@ -207,13 +205,6 @@ def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tu
 
 def components(a: Ints, b: Ints, count: int) -> Ints:
     """Returns the component of each of `count` vertices, numbered from 0; edges (e,) link `a` and `b`."""
-    if len(a) > EDGES:
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
-        labels: Ints = connected_components(links, directed=False)[1].astype(np.int64)
-        return labels
     lowest = connected(a, b, count)
     return (np.cumsum(lowest == np.arange(count)) - 1)[lowest]
 

@@ -50,10 +50,8 @@ LAST_RESTARTS = 5
 MOST_FAILURES = 20
 """The most conflicts that are explained and worked around; after them the best effort is kept."""
 
-PATIENCE = 2.0
+PATIENCE = 1.0
 """Seconds for stages tried as wholes."""
-COSTLY = 20_000
-"""Free unknowns times constraints above which a proof is sought before stages are tried as wholes."""
 ROUNDS = 12
 """The most times that something more is freed before all is."""
 FIRMNESS = 1e-5
@@ -172,11 +170,8 @@ class Group:
             if hierarchy.clock.expired:
                 hierarchy.timed_out = True
                 break
-            more = givers(hierarchy, self.tiers, scope, extra, before)
-            is_large = len(scope.free) * len(scope.constraints) > COSTLY
-            if not more or (
-                is_large and max(map(self.tiers.tier, more)) > POSITIONS and self._is_refuted(seeds)
-            ):
+            more = givers(hierarchy, self.tiers, scope, before)
+            if not more:
                 break
             positions = [tier for tier in tiers if tier < POSITIONS]
             if positions and max(map(self.tiers.tier, more)) > POSITIONS:

@@ -14,7 +14,7 @@ combination of these; things without a share in it are held.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -39,8 +39,6 @@ NOTHING = 1e-6
 MANY = 200_000
 """Entries of the linearised rows above which only parts that help themselves are looked at."""
 
-BOUNDS = 3
-"""Rounds of counting inequalities that a step would break."""
 STILL = 1e-9
 """Moves below this, in units of the unknown's scale, count as none."""
 TIGHT = 10.0
@@ -51,27 +49,20 @@ REACHED = 1e-6
 """Part of a change within which two changes are the same."""
 ASTRAY = 0.2
 """Part of the way promised by slopes by which what bends may end elsewhere."""
-FURTHER = 2.4
-"""Factor of the way to the nearest point that something in curved rows may go so that other things can
-stay.
-"""
 SPARING = 8
 """The most changed sizes of which it is tried whether they need change."""
 MOST = 400
 """The most moved unknowns that are thinned; above, the nearest point is kept."""
 
-Giver: TypeAlias = tuple[tuple[object, ...], list[int]]
-"""What gives way as one: a key by which those that help alike are ordered, and its columns."""
+Giver: TypeAlias = list[int]
+"""The columns of what gives way as one."""
 
 
-def givers(
-    hierarchy: Hierarchy, tiers: Tiers, scope: Scope, taken: Collection[int], before: Mapping[int, float]
-) -> frozenset[int]:
+def givers(hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> frozenset[int]:
     """Returns the unknowns that shall give way besides those of `scope`, whose rows are left as they are at
-    the current values, found on the way from those `before`; none if nobody can help. Parts of which some are
-    `taken` already come first.
+    the current values, found on the way from those `before`; none if nobody can help.
     """
-    return _Loosening(hierarchy, tiers, scope, taken, before).givers()
+    return _Loosening(hierarchy, tiers, scope, before).givers()
 
 
 @record()
@@ -82,7 +73,6 @@ class _Rest:
     others  (r, k) those along the others; `columns` (r, k) without what the free ones reach
     lack    (r,) what the rows need, counted from where the search began
     rest    (r,) the part of it that the free ones do not reach
-    owner   (r,) the constraint of each row
     """
 
     free: Floats
@@ -90,24 +80,10 @@ class _Rest:
     lack: Floats
     columns: Floats
     rest: Floats
-    owner: Sequence[int]
 
     @cached_property
     def size(self) -> float:
         return float(np.linalg.norm(self.rest))
-
-    @cached_property
-    def contrary(self) -> frozenset[int]:
-        """The constraints whose rows contradict each other."""
-        shares = zip(self.owner, self.rest, strict=True)
-        return frozenset(index for index, share in shares if abs(share) > NOTHING * self.size)
-
-    @cached_property
-    def changes(self) -> Floats:
-        """The change (k,) by which each of the others by itself takes up most of the rest."""
-        square = np.einsum("rk,rk->k", self.columns, self.columns)
-        found: Floats = (self.rest @ self.columns) / np.where(square > 0.0, square, np.inf)
-        return found
 
     def left(self, chosen: Sequence[int]) -> float:
         """Returns the part of the rest that is left when some columns have taken up what they can; 0 if that
@@ -126,69 +102,48 @@ class _Rest:
         """Returns the columns of as few of these as take up, beside those `given`, what all of them can."""
         chosen: list[Giver] = []
         left = self.left(given)
-        goal = self.left([*given, *(k for _, columns in among for k in columns)])
+        goal = self.left([*given, *(k for columns in among for k in columns)])
         while left > goal + NOTHING:
-            held = [*given, *(k for _, columns in chosen for k in columns)]
-            tried = [(self.left([*held, *each[1]]), each) for each in among if each not in chosen]
+            held = [*given, *(k for columns in chosen for k in columns)]
+            tried = [(self.left([*held, *each]), each) for each in among if each not in chosen]
             least = min((length for length, _ in tried), default=left)
             if least >= left * (1.0 - NOTHING):
                 break
             ties = [each for length, each in tried if length <= least + NOTHING]
             best = ties[0]
             if len(ties) > 1:
-                best = min(ties, key=lambda e: (*e[0], round(self.way([*held, *e[1]]), 6)))
+                best = min(ties, key=lambda e: round(self.way([*held, *e]), 6))
             left = least
             chosen.append(best)
         for each in reversed(chosen[:-1]):
-            others = [k for other in chosen if other is not each for k in other[1]]
+            others = [k for other in chosen if other is not each for k in other]
             if self.left([*given, *others]) <= left:
                 chosen.remove(each)
-        return sorted({k for _, columns in chosen for k in columns})
+        return sorted({k for columns in chosen for k in columns})
 
 
 class _Loosening:
-    def __init__(
-        self,
-        hierarchy: Hierarchy,
-        tiers: Tiers,
-        scope: Scope,
-        taken: Collection[int],
-        before: Mapping[int, float],
-    ) -> None:
+    def __init__(self, hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> None:
         self.hierarchy, self.tiers, self.scope = hierarchy, tiers, scope
-        self.before, self.taken = before, frozenset(taken)
-        self.parts = {int(hierarchy.problem.group[unknown]) for unknown in taken}
-        self._free_are(scope.free)
+        self.free = sorted(scope.free)
+        values = hierarchy.values.unknowns
+        moved = np.array([values[unknown] - before[unknown] for unknown in self.free])
+        self.moved = moved / hierarchy.problem.scale[self.free]
         is_large = len(hierarchy.rows(scope.constraints)) * len(scope.free) > MANY
         self.constraints = hierarchy.unmet(scope.constraints) if is_large else scope.constraints
         """Constraints that contradict each other, maybe among others."""
         thing = hierarchy.problem.thing
         self.thing = thing if thing.any() else np.arange(len(thing))
 
-    def _free_are(self, free: frozenset[int]) -> None:
-        self.free = sorted(free)
-        values = self.hierarchy.values.unknowns
-        moved = np.array([values[unknown] - self.before[unknown] for unknown in self.free])
-        self.moved = moved / self.hierarchy.problem.scale[self.free]
-
     def givers(self) -> frozenset[int]:
-        found = self._found()
-        if not found and self.taken:
-            # They would do by their slopes, but did not: somebody else has to.
-            self._free_are(self.scope.free - self.taken)
-            found = self._found()
-        return found
-
-    def _found(self) -> frozenset[int]:
         found = frozenset[int]()
         for locked, limit in self._circles():
             rest = self._rest(self._binding(locked), locked)
             if not rest.size:
                 break
             dear = [self._dearness(unknown) for unknown in locked]
-            lost = self._vanishing(rest, locked)
             for last in sorted(set(dear)):
-                able = [k for k, dearness in enumerate(dear) if dearness <= last and k not in lost]
+                able = [k for k, dearness in enumerate(dear) if dearness <= last]
                 if not rest.left(able):
                     found = self._few(rest, locked, dear, able)
                     break
@@ -197,20 +152,6 @@ class _Loosening:
             if last[0] < limit:
                 break
         return found
-
-    def _vanishing(self, rest: _Rest, locked: Sequence[int]) -> set[int]:
-        """Returns the columns of sizes that would vanish, were they to take up the rest; none of them as long
-        as no size was tried.
-        """
-        if not any(map(self.hierarchy.is_kept, self.taken)):
-            return set()
-        values, scale = self.hierarchy.values.unknowns, self.hierarchy.problem.scale
-        change = rest.changes * scale[list(locked)]
-        return {
-            k
-            for k, size in enumerate(locked)
-            if self.tiers.tier(size) > POSITIONS and values[size] * (values[size] + change[k]) <= 0.0
-        }
 
     def _few(
         self, rest: _Rest, locked: Sequence[int], dear: Sequence[tuple[Tier, int]], able: list[int]
@@ -223,12 +164,11 @@ class _Loosening:
         for dearness in sorted({dear[k] for k in able}, reverse=True):
             given = [*found, *(k for k in able if dear[k] < dearness)]
             parts = self._grouped([k for k in able if dear[k] == dearness], lambda k: self._part(locked[k]))
-            keys = [self._key(rest, locked, order, each) for order, each in enumerate(parts)]
-            chosen = set(rest.fewest(list(zip(keys, parts, strict=True)), given))
+            chosen = set(rest.fewest(parts, given))
             things = self._grouped(
                 [k for k in able if k in chosen], lambda k: ("thing", int(self.thing[locked[k]]))
             )
-            found += rest.fewest([((), each) for each in things], given)
+            found += rest.fewest(things, given)
         return frozenset(locked[k] for k in found)
 
     def _dearness(self, unknown: int) -> tuple[Tier, int]:
@@ -285,39 +225,36 @@ class _Loosening:
         """
         hierarchy = self.hierarchy
         hierarchy.refresh(constraints)
-        owned = [(row, index) for index in constraints for row in hierarchy.rows([index])]
+        owned = hierarchy.rows(constraints)
         place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
         matrix = np.zeros((len(owned), len(place)))
         ends = None if any(map(hierarchy.is_kept, place)) else hierarchy.values.still()
-        slopes = gradients(hierarchy.values, [row.expression for row, _ in owned], ends=ends)
-        for i, (row, _) in enumerate(owned):
+        slopes = gradients(hierarchy.values, [row.expression for row in owned], ends=ends)
+        for i, row in enumerate(owned):
             for unknown, slope in slopes[row.expression].items():
                 if unknown in place:
                     matrix[i, place[unknown]] = slope / row.scale
         matrix = np.nan_to_num(matrix * hierarchy.problem.scale[list(place)])
         nodes = hierarchy.values.nodes
-        lack = np.nan_to_num(np.array([-nodes[row.expression] / row.scale for row, _ in owned]))
+        lack = np.nan_to_num(np.array([-nodes[row.expression] / row.scale for row in owned]))
         free = matrix[:, : len(self.free)]
-        counts = np.array([row.relation is Relation.EQUAL for row, _ in owned]) | (
+        counts = np.array([row.relation is Relation.EQUAL for row in owned]) | (
             lack < -hierarchy.settings.tolerance
         )
-        for _ in range(BOUNDS):
+        basis = _basis(free[counts])
+        rest = lack[counts] - basis @ (basis.T @ lack[counts])
+        if float(np.linalg.norm(rest)) <= NOTHING * float(np.linalg.norm(lack[counts])):
+            step = np.linalg.lstsq(free[counts], lack[counts], rcond=NOTHING)[0]
+            counts |= ~counts & (lack - free @ step < -hierarchy.settings.tolerance)
             basis = _basis(free[counts])
             rest = lack[counts] - basis @ (basis.T @ lack[counts])
-            if float(np.linalg.norm(rest)) > NOTHING * float(np.linalg.norm(lack[counts])):
-                break
-            rest[:] = 0.0
-            step = np.linalg.lstsq(free[counts], lack[counts], rcond=NOTHING)[0]
-            broken = ~counts & (lack - free @ step < -hierarchy.settings.tolerance)
-            if not broken.any():
-                break
-            counts |= broken
+            if float(np.linalg.norm(rest)) <= NOTHING * float(np.linalg.norm(lack[counts])):
+                rest[:] = 0.0
         others = matrix[counts, len(self.free) :]
         columns = others - basis @ (basis.T @ others)
         columns[:, np.linalg.norm(columns, axis=0) <= NOTHING * np.linalg.norm(others, axis=0)] = 0.0
         lack = lack[counts] + free[counts] @ self.moved
-        owner = [index for (_, index), counted in zip(owned, counts, strict=True) if counted]
-        return _Rest(free[counts], others, lack, columns, rest, owner)
+        return _Rest(free[counts], others, lack, columns, rest)
 
     def _part(self, unknown: int) -> tuple[str, int]:
         """Returns what gives way with an unknown: a size, a frame, or the inside of a group."""
@@ -327,18 +264,6 @@ class _Loosening:
         if problem.frame_of[unknown] >= 0:
             return "frame", int(problem.frame_of[unknown])
         return "inside", int(problem.group[unknown])
-
-    def _key(self, rest: _Rest, locked: Sequence[int], order: int, columns: list[int]) -> tuple[object, ...]:
-        """Returns what decides between parts of a class that help alike: whether they give way already; of
-        sizes, whether a constraint that contradicts others places them, and how much of them changes.
-        """
-        hierarchy, size = self.hierarchy, locked[columns[0]]
-        if self.tiers.tier(size) < POSITIONS:
-            return (int(hierarchy.problem.group[size]) not in self.parts,)
-        value, change = hierarchy.values.unknowns[size], rest.changes[columns[0]]
-        part = abs(float(change) / value) if value else np.inf
-        is_placed = any(size in hierarchy.problem.constraints[i].placed for i in rest.contrary)
-        return not is_placed, round(part, 6), order
 
 
 def _basis(matrix: Floats) -> Floats:
@@ -369,10 +294,7 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
     verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
-    # A part that can stay is worth a long way of something within another.
-    spared = any(hierarchy.problem.frame_of[unknown] >= 0 for unknown in moved.keys() - needed)
-    furthest = np.inf if spared else FURTHER * max(map(abs, moved.values()))
-    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), furthest, expected):
+    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), expected):
         hierarchy.values.assign(reached.items())
 
 
@@ -401,12 +323,10 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
             hierarchy.values.assign(reached.items())
 
 
-def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:
+def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
     """Tells whether unknowns in curved rows moved about as far as the slopes promised, not through a singular
-    place, and no unknown further than `furthest`.
+    place.
     """
-    if expected and max(map(abs, moved.values()), default=0.0) > furthest:
-        return False
     off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 

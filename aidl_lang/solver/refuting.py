@@ -105,29 +105,10 @@ class Relaxation:
     def smallest(self) -> list[int]:
         """Returns a smallest set of rows that is refuted; empty if the rows are not refuted."""
         found = list(self.refutation(self._all))
-        if self._is_tight(found):
-            return found
         for number in list(found):
             if number in found and (fewer := self.refutation(n for n in found if n != number)):
                 found = list(fewer)
         return found
-
-    @property
-    def is_tight(self) -> bool:
-        """True if rows that are refuted hold together as soon as any one of them is left out: they are affine
-        and add up to nothing in one way only.
-        """
-        return self._is_tight(self._all)
-
-    def _is_tight(self, among: Iterable[int]) -> bool:
-        forms = [self._rows[i][0] for i in among]
-        if not forms or len(forms) > MANY or any(map(self._knots, forms)):
-            return False
-        jacobian, _ = _arrays(forms)
-        length = np.linalg.norm(jacobian, axis=1, keepdims=True)
-        unit = jacobian / np.where(length > 0.0, length, 1.0)
-        rank = np.linalg.matrix_rank(unit) if unit.size else 0  # numpy before 2.4 takes no empty matrix
-        return bool(rank == len(forms) - 1)
 
     # -- forms over what is free
 
