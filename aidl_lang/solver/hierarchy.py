@@ -39,9 +39,9 @@ CHANGED = 1e-9
 """A kept size that moved less than this, in units of its scale, did not change."""
 
 MANY, LARGE = 50, 1000
-"""Numbers of rows from which on all groups of a depth are solved at once, if they are not few, and always."""
+"""Numbers of rows from which on all groups of a depth are solved at once: if they are not few, and always."""
 FEW = 4
-"""Number of groups of a depth below which they are few."""
+"""Number of groups below which they are few, if there are more of them at other depths."""
 
 
 class Hierarchy:
@@ -156,7 +156,8 @@ class Hierarchy:
                 for group in np.flatnonzero(known).tolist():
                     self.stages.extend(recollection.stages(group))
             groups = [g for g in self._held_by if self._group_depths[g] == depth and not known[g]]
-            if usual and count >= (MANY if len(groups) >= FEW else LARGE):
+            is_small = len(groups) < FEW <= len(self._held_by)
+            if usual and count >= (LARGE if is_small else MANY):
                 self._solve_together(depth, known)
             else:
                 self._solve_with_care(dict.fromkeys(groups, (0, 0)))
