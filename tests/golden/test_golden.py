@@ -32,6 +32,7 @@ EXPECTED = Path(__file__).parent / "expected"
 ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
 _MOST_LINES = 60
+_WIDTH = 160
 
 
 def rounded(value: float) -> float:
@@ -101,13 +102,23 @@ def _geometry(s: Structure) -> str:
 
 
 def solved(text: str) -> str:
-    document = rounded_document(json.loads(model(text).to_json()))
-    return _compact(json.dumps(document, indent=1, ensure_ascii=False)) + "\n"
+    return _rows(rounded_document(json.loads(model(text).to_json())), "") + "\n"
 
 
-def _compact(text: str) -> str:
-    """Points on one line."""
-    return re.sub(r"\[\s+(-?[\d.e+-]+),\s+(-?[\d.e+-]+)\s+\]", r"[\1, \2]", text)
+def _rows(value: Any, indent: str) -> str:
+    """Returns JSON in which what fits into a line has one line: a geometry, mostly."""
+    line = json.dumps(value, ensure_ascii=False)
+    if len(line) + len(indent) <= _WIDTH or not isinstance(value, dict | list) or not value:
+        return line
+    inner = indent + " "
+    if isinstance(value, list):
+        rows, (left, right) = [_rows(each, inner) for each in value], "[]"
+    else:
+        rows, (left, right) = (
+            [f"{json.dumps(key)}: {_rows(each, inner)}" for key, each in value.items()],
+            "{}",
+        )
+    return f"{left}\n{inner}" + f",\n{inner}".join(rows) + f"\n{indent}{right}"
 
 
 def drawn(text: str) -> str:
