@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 import aidl_lang
 from aidl_lang.export.comparison import Comparison, GeometryChange, StructureChange, Version, compare
-from aidl_lang.export.comparison.changes import Fields, Sort
-from aidl_lang.export.comparison.move import Move
+from aidl_lang.export.comparison.changes import Fields, Move, Sort
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedStructure

@@ -20,11 +20,11 @@ from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.ide.actions.action import drawn_alike
+from aidl_lang.tools.ide.actions import drawn_alike
 from aidl_lang.tools.ide.dragging import drag, handles
 from aidl_lang.tools.ide.preview import preview
-from aidl_lang.tools.ide.refusing import CannotError, Refusal
-from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.references import CannotError, Refusal
+from aidl_lang.tools.ide.workspace import View, look, run
 
 PLATES = """\
 assembly plates {

@@ -11,12 +11,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from aidl_lang.tools.terminal.characters import cells
-from aidl_lang.tools.terminal.inline import iterm, kitty
-from aidl_lang.tools.terminal.letters import Cell, Label, nearest, text, written
-from aidl_lang.tools.terminal.protocols import has_true_colour, protocol
-from aidl_lang.tools.terminal.screen import CELL, Screen, fit, plausible
-from aidl_lang.tools.terminal.sixel import sixel
+from aidl_lang.tools.terminal.characters import Cell, Label, cells, nearest, text, written
+from aidl_lang.tools.terminal.protocols import (
+    CELL,
+    Screen,
+    fit,
+    has_true_colour,
+    iterm,
+    kitty,
+    plausible,
+    protocol,
+    sixel,
+)
 
 RED, BLUE, WHITE = (255, 0, 0), (0, 0, 255), (255, 255, 255)
 

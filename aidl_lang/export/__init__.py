@@ -178,7 +178,7 @@ class Exporter:
         """Writes each part that differs from the others by itself, flat and with its lower left corner at the
         origin. Raises as `export` does.
         """
-        from aidl_lang.export.single_parts import jobs_of_parts
+        from aidl_lang.export.cut_list import jobs_of_parts
 
         if suffix in (".json", ".csv"):
             raise ExportError(
@@ -326,7 +326,7 @@ def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
     """Returns the pages of the cut list that are asked for."""
     if "list" not in jobs[0].options.show:
         return []
-    from aidl_lang.export.cut_list_files import pages
+    from aidl_lang.export.cut_list import pages
 
     return pages(jobs)
 
@@ -353,9 +353,8 @@ def _svg(job: Job) -> Exported:
 
 
 def _png(job: Job) -> Exported:
-    from aidl_lang.export.font import character_notes
     from aidl_lang.export.picture import pages
-    from aidl_lang.export.png import to_png
+    from aidl_lang.export.png import character_notes, to_png
 
     drawn = pages(job)
     data, *further = (to_png(page, job.options.pixels) for page in drawn)
@@ -367,9 +366,9 @@ def _pdf(job: Job) -> Exported:
 
 
 def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.font import character_notes
     from aidl_lang.export.pdf import to_pdf
     from aidl_lang.export.picture import pages
+    from aidl_lang.export.png import character_notes
 
     drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
     root = jobs[0].model.root
@@ -393,7 +392,7 @@ def _csv(job: Job) -> Exported:
 
 
 def _csv_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.cut_list_files import to_csv
+    from aidl_lang.export.cut_list import to_csv
 
     return to_csv(jobs)
 
@@ -405,13 +404,13 @@ def _step(job: Job) -> Exported:
 
 
 def _stl(job: Job) -> Exported:
-    from aidl_lang.export.stl import to_stl
+    from aidl_lang.export.mesh import to_stl
 
     return to_stl(job)
 
 
 def _3mf(job: Job) -> Exported:
-    from aidl_lang.export.threemf import to_3mf
+    from aidl_lang.export.mesh import to_3mf
 
     return to_3mf(job)
 
@@ -442,7 +441,7 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
     """Writes pictures in the format of a file suffix among `PICTURES`: a PDF has a page for each, of others
     there is a file for each. Raises as `export` does.
     """
-    from aidl_lang.export.font import character_notes
+    from aidl_lang.export.png import character_notes
 
     if suffix == ".pdf":
         from aidl_lang.export.pdf import to_pdf

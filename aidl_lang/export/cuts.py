@@ -1,9 +1,4 @@
-"""The outlines that a machine follows, with what it does along each, in order.
-
-What is engraved and scored comes before what is cut, the cuts inside parts before those around them, as the
-profile says. The outline around an opening in which another part lies is cut late, after that part, so that
-nothing is cut in a piece that has come loose.
-"""
+"""The outlines that a machine follows, joined end to end, with what it does along each, in order."""
 
 from __future__ import annotations
 
@@ -18,20 +13,66 @@ import numpy as np
 
 from aidl_lang.common.numbers import significant
 from aidl_lang.common.records import record
-from aidl_lang.export.chains import chains
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
-from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
+from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.nearness import inside, near_pairs
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, union_bounds
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 from aidl_lang.geometry.tessellate import loop_points
 from aidl_lang.solver.gradients import connected
+
+# --- Joins curves end to end, for machines that draw them in one go.
+
+Chain = tuple[Piece, ...]
+
+
+def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
+    """Joins pieces to chains as long as possible; each piece occurs once, reversed if its neighbours need it.
+
+    A chain ends where nothing follows within the tolerance (mm) and where more than two ends meet. Whole
+    circles and ellipses stand alone.
+    """
+    weld = Weld(tolerance)
+    nodes = [tuple(map(weld.number, ends(p))) for p in pieces]
+    meeting: dict[int, list[int]] = defaultdict(list)
+    for number, piece in enumerate(pieces):
+        for node in () if is_closed(piece) else nodes[number]:
+            meeting[node].append(number)
+    left = dict.fromkeys(range(len(pieces)))
+
+    def follow(node: int) -> list[Piece]:
+        """Removes and returns the pieces that continue from a node."""
+        found = []
+        while len(meeting[node]) == 2 and (more := [n for n in meeting[node] if n in left]):
+            (number,) = more
+            del left[number]
+            start, end = nodes[number]
+            found.append(pieces[number] if start == node else reverse(pieces[number]))
+            node = end if start == node else start
+        return found
+
+    result = []
+    while left:
+        number = next(iter(left))
+        del left[number]
+        start, end = nodes[number]
+        after = follow(end)
+        before = [reverse(piece) for piece in reversed(follow(start))]
+        result.append((*before, pieces[number], *after))
+    return result
+
+
+# --- The outlines that a machine follows, with what it does along each, in order.
+#
+# What is engraved and scored comes before what is cut, the cuts inside parts before those around them, as
+# the profile says. The outline around an opening in which another part lies is cut late, after that part, so
+# that nothing is cut in a piece that has come loose.
 
 HOLE, OPEN = "hole", "open"
 

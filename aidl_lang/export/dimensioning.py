@@ -12,9 +12,8 @@ from dataclasses import field, replace
 
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
-from aidl_lang.export import palette
-from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, words_of
-from aidl_lang.export.dimension_sheet import Sheet, broken
+from aidl_lang.export import themes
+from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
 from aidl_lang.export.marks import Group, Text
 from aidl_lang.geometry.curves import Arc, Circle, Vec
 from aidl_lang.geometry.dimensions import dimensions
@@ -168,7 +167,7 @@ class _Layout:
     def _remark(self, left: int, box: Bounds) -> Text:
         words = f"{counted(left, 'more dimension')} not shown"
         size = 0.8 * self.pen.font
-        return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
+        return Text((box[0], box[1] - 1.6 * size), words, size, themes.DIMENSION)
 
     def point(self, callout: Callout) -> PlacedDimension | None:
         """Places a callout, if there is room for it."""

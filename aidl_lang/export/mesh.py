@@ -1,25 +1,32 @@
-"""Triangle meshes of the bodies that have a thickness, for STL and 3MF.
-
-A triangle mesh has no curves: chords depart from the outline by at most `FINENESS` of the size of a body, or
-by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not cross itself.
-"""
+"""Triangle meshes of the bodies that have a thickness, and their files: STL and 3MF."""
 
 from __future__ import annotations
 
 import math
+import uuid
 from collections.abc import Sequence
+from typing import Any
 
+import lib3mf
 import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
-from aidl_lang.export import ExportError, Job
+from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.solids import PlacedBody, Recess, thick_bodies
+from aidl_lang.export.themes import body_fill
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
+
+# --- Triangle meshes of the bodies that have a thickness, for STL and 3MF.
+#
+# A triangle mesh has no curves: chords depart from the outline by at most `FINENESS` of the size of a body,
+# or by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not cross itself.
 
 FINENESS = 1e-4
 FINEST = 0.001
@@ -134,3 +141,116 @@ def _drilled(
 
 def _upright(polygons: list[NDArray[np.float64]], thickness: float) -> manifold3d.Manifold:
     return manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)
+
+
+# --- STL: binary for one body; text, which can name them, for several.
+
+_HEADER = 80
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def to_stl(job: Job) -> Exported:
+    """Writes the STL file. Raises ExportError as `meshes` does."""
+    made, notes = meshes(job)
+    return Exported(_binary(made[0]) if len(made) == 1 else _text(made), notes=notes)
+
+
+def _binary(mesh: Mesh) -> bytes:
+    records = np.zeros(len(mesh.triangles), _RECORD)
+    records["normal"], records["corners"] = _normals(mesh), mesh.corners
+    # A reader takes a file that begins with `solid` for text.
+    header = f"AIDL {mesh.body.path}".encode("ascii", "replace")[:_HEADER].ljust(_HEADER, b"\0")
+    count: bytes = np.array(len(records), "<u4").tobytes()
+    return header + count + records.tobytes()
+
+
+def _text(made: Sequence[Mesh]) -> bytes:
+    lines: list[str] = []
+    for mesh in made:
+        lines.append(f"solid {mesh.name}")
+        for normal, corners in zip(_normals(mesh), mesh.corners, strict=True):
+            lines += [f"facet normal {_numbers(normal)}", "outer loop"]
+            lines += [f"vertex {_numbers(corner)}" for corner in corners]
+            lines += ["endloop", "endfacet"]
+        lines.append(f"endsolid {mesh.name}")
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _normals(mesh: Mesh) -> NDArray[np.float64]:
+    a, b, c = mesh.corners.swapaxes(0, 1)
+    normals = np.cross(b - a, c - a)
+    sizes = np.linalg.norm(normals, axis=1, keepdims=True)
+    found: NDArray[np.float64] = np.divide(normals, sizes, out=np.zeros_like(normals), where=sizes > 0)
+    return found
+
+
+def _numbers(point: NDArray[np.float64]) -> str:
+    x, y, z = point
+    return f"{x + 0.0:.9g} {y + 0.0:.9g} {z + 0.0:.9g}"
+
+
+# --- 3MF: a named mesh for each body, with its colour, opacity and material, as printers take it.
+
+_NAMES = uuid.UUID("6f0a1d5e-6f6b-5c1a-9c53-3d9a4f7b2c10")
+"""Namespace for ids, which are derived from names, so that the same drawing gives the same file."""
+
+_LARGEST = 1e9
+"""mm. Largest coordinate that lib3mf takes."""
+
+
+def to_3mf(job: Job) -> Exported:
+    """Writes the 3MF file. Raises ExportError as `meshes` does, and for a body that reaches too far
+    (E0918).
+    """
+    made, notes = meshes(job)
+    wrapper = lib3mf.get_wrapper()
+    model = wrapper.CreateModel()
+    model.SetUnit(lib3mf.ModelUnit.MilliMeter)
+    model.SetBuildUUID(_id("build", job.model.root.path))
+    materials = _Materials(wrapper, model)
+    order = {body.path: index for index, body in enumerate(job.drawing.bodies)}
+    for mesh in made:
+        checkpoint()
+        thing = _mesh_object(model, mesh)
+        style = mesh.body.style
+        color = style.color or body_fill(order[mesh.body.path])
+        name, opacity = printable(style.material or mesh.body.path), style.opacity
+        thing.SetObjectLevelProperty(*materials.of(name, color, 1.0 if opacity is None else opacity))
+        item = model.AddBuildItem(thing, wrapper.GetIdentityTransform())
+        item.SetUUID(_id("item", mesh.body.path))
+    return Exported(bytes(model.QueryWriter("3mf").WriteToBuffer()), notes=notes)
+
+
+def _mesh_object(model: Any, mesh: Mesh) -> Any:
+    if np.abs(mesh.points).max() >= _LARGEST:
+        raise ExportError(
+            "E0918",
+            f"`{mesh.body.path}` does not fit into 3MF: it reaches further than {_LARGEST:g} mm",
+            "look for a size or position that was written in another unit, or multiplied once too often",
+        )
+    thing = model.AddMeshObject()
+    thing.SetName(mesh.name)
+    thing.SetUUID(_id("object", mesh.body.path))
+    points = [lib3mf.Position(tuple(p)) for p in mesh.points.tolist()]
+    thing.SetGeometry(points, [lib3mf.Triangle(tuple(t)) for t in mesh.triangles.tolist()])
+    return thing
+
+
+class _Materials:
+    """One group of materials, each a name and a colour, without duplicates."""
+
+    def __init__(self, wrapper: Any, model: Any) -> None:
+        self.wrapper, self.group = wrapper, model.AddBaseMaterialGroup()
+        self.known: dict[tuple[str, str, float], int] = {}
+
+    def of(self, name: str, color: str, opacity: float) -> tuple[int, int]:
+        """Returns the ids of the group and of the material in it."""
+        key = name, color, opacity
+        if key not in self.known:
+            paint = self.wrapper.RGBAToColor(*rgb(color), round(255 * opacity))
+            self.known[key] = self.group.AddMaterial(name, paint)
+        return self.group.GetResourceID(), self.known[key]
+
+
+def _id(sort: str, path: str) -> str:
+    return str(uuid.uuid5(_NAMES, f"{sort} {path}"))

@@ -15,7 +15,7 @@ import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.export import palette
+from aidl_lang.export import themes
 from aidl_lang.export.marks import Dot, Frame, Mark, Text
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -155,29 +155,29 @@ def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -
     """Places a name in the upper left corner of a structure without parts, if it fits; else around its
     box.
     """
-    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, palette.NAME)
+    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, themes.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
         return at.first_free([inside])
-    return at.label(structure.name, box, palette.NAME, size, bold=structure is at.model.root)
+    return at.label(structure.name, box, themes.NAME, size, bold=structure is at.model.root)
 
 
 def _boxes(at: Explainer) -> Iterator[Mark]:
     for structure in at.model.root.walk():
         box = _bounds(structure)
         if box is not None:
-            yield Frame(box, palette.BOX, at.hair, 4 * at.hair)
+            yield Frame(box, themes.BOX, at.hair, 4 * at.hair)
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
     """Yields empty structures as dashed boxes with their names."""
     for plan in at.drawing.plans:
-        yield Frame(plan.box, palette.PLAN, 1.6 * at.hair, 8 * at.hair)
+        yield Frame(plan.box, themes.PLAN, 1.6 * at.hair, 8 * at.hair)
         left, bottom, right, top = plan.box
         fitting = (right - left) / max(1, 0.7 * len(plan.name))
         size = max(0.5 * at.font, min(1.2 * at.font, fitting, 0.6 * (top - bottom)))
         label = Text(
-            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, palette.PLAN, "middle"
+            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, themes.PLAN, "middle"
         )
         at.taken.add(label.box)
         yield label
@@ -198,13 +198,13 @@ def _points(at: Explainer) -> Iterator[Mark]:
     radius = 0.2 * at.font
     for p in places.values():
         at.taken.add((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
-        yield Dot(p, radius, palette.POINT)
+        yield Dot(p, radius, themes.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font
         for key, p in places.items():
             spot = (p[0] - radius, p[1] - 1.5 * radius, p[0] + radius, p[1] + 1.5 * radius)
             text = " = ".join(names[key][:2]) + (" …" if len(names[key]) > 2 else "")
-            yield at.label(text, spot, palette.POINT, size)
+            yield at.label(text, spot, themes.POINT, size)
 
 
 def _named_points(geometry: SolvedGeometry, name: str) -> Iterator[tuple[str, Vec]]:
@@ -232,7 +232,7 @@ def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     size, (left, top) = 0.7 * at.font, corner
     for number, constraint in enumerate(at.model.constraints, 1):
         checkpoint()
-        color = palette.GOOD if constraint.satisfied else palette.BAD
+        color = themes.GOOD if constraint.satisfied else themes.BAD
         spot = _spot(at.model, constraint)
         if spot is not None:
             marks.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
@@ -315,7 +315,7 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     for structure in structures:
         box = _bounds(structure)
         if box is not None and (structure.degrees or structure is at.model.root):
-            marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, palette.FREE, size))
+            marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, themes.FREE, size))
     count = at.model.degrees
     lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
@@ -323,7 +323,7 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
             lines.append((0, f"{structure.path}: {structure.degrees}"))
             lines += [(1, name) for name in names]
     for indent, line in lines:
-        marks.append(Text((left + indent * size, top), line, size, palette.FREE, halo=False))
+        marks.append(Text((left + indent * size, top), line, size, themes.FREE, halo=False))
         top -= 1.35 * size
     return marks
 

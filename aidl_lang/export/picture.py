@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.export import Job, palette
-from aidl_lang.export.labels import labels
+from aidl_lang.export import Job, themes
+from aidl_lang.export.cut_list import labels
 from aidl_lang.export.marks import LETTERS, Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.overlay import explain
-from aidl_lang.export.shading import gradient_of
+from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
@@ -25,7 +25,7 @@ from aidl_lang.geometry.stacking import stacked
 from aidl_lang.geometry.styles import DASH, GAP, Style
 
 if TYPE_CHECKING:
-    from aidl_lang.export.halos import Halos
+    from aidl_lang.export.svg import Halos
 
 MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
@@ -65,7 +65,7 @@ def _whole(job: Job) -> Picture:
 def _drawn(job: Job, size: float) -> Iterator[Group]:
     """Yields the groups of the drawing: for a cutter what it follows, else one for each structure."""
     if job.options.followed is not None:
-        from aidl_lang.export.followed import followed_groups
+        from aidl_lang.export.sheets import followed_groups
 
         return followed_groups(job.model, job.drawing, job.options.followed)
     return _groups(job.model, job.drawing, _marks(job.model.root, job.drawing, size))
@@ -159,13 +159,13 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     """Returns the gaps around what lies in front; None where none are asked for, as in most drawings."""
     if not any(style.halo for style in drawing.styles.values()):
         return None
-    from aidl_lang.export.halos import Halos
+    from aidl_lang.export.svg import Halos
 
     return Halos(drawing, root)
 
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
-    fill = body.style.color or palette.body_fill(index)
+    fill = body.style.color or themes.body_fill(index)
     ink = (
         None if body.style.is_unlined else _line(body.style, _outline_color(body.style), OUTLINE_WIDTH, size)
     )
@@ -176,7 +176,7 @@ def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
 
 
 def _outline_color(style: Style) -> str:
-    return palette.OUTLINE if style.color is None else palette.outline_of(style.color)
+    return themes.OUTLINE if style.color is None else themes.outline_of(style.color)
 
 
 def _seam(seam: Seam, style: Style, size: float) -> Curves:
@@ -187,12 +187,12 @@ def _seam(seam: Seam, style: Style, size: float) -> Curves:
 def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     style = stroke.style
     if stroke.role != "drawing":
-        ink = Ink(palette.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
+        ink = Ink(themes.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
         yield Curves(stroke.pieces, ink, stroke.role)
         return
-    color = style.color or palette.OUTLINE
+    color = style.color or themes.OUTLINE
     if stroke.over is not None:
-        color = palette.contrasting(stroke.over) if stroke.faces else palette.etched(stroke.over)
+        color = themes.contrasting(stroke.over) if stroke.faces else themes.etched(stroke.over)
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)
         return

@@ -3,13 +3,46 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from dataclasses import replace
 
-from aidl_lang.export.coarse import resolved
-from aidl_lang.export.font import FAMILY, font_file
-from aidl_lang.export.marks import Picture
-from aidl_lang.export.scaling import scaled
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.lettering import unknown_characters
+from aidl_lang.common.prose import first_few
+from aidl_lang.common.resources import resource
+from aidl_lang.export.marks import Picture, Text
+from aidl_lang.export.scaling import resolved, scaled
 from aidl_lang.export.svg import to_svg
+
+# --- The font of texts in pictures, for formats that embed it.
+
+FAMILY = "DejaVu Sans AIDL"
+_NAMED = 8
+
+
+def font_file() -> str:
+    return str(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
+
+
+def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
+    """Warns of characters in the texts that the font lacks."""
+    texts = (
+        mark.text for page in pages for group in page.groups for mark in group.marks if isinstance(mark, Text)
+    )
+    missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
+    if not missing:
+        return ()
+    shown = first_few([f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing], _NAMED)
+    return (
+        Diagnostic(
+            "W0733",
+            f"the font has no {shown}; texts in the picture show a box in their place",
+            hints=("an SVG is shown with the fonts of the reader's system",),
+        ),
+    )
+
+
+# --- PNG: the SVG of a picture as pixels on white, with the bundled font and no other.
 
 SLIMMEST = 1 / 100
 """Largest ratio of the sides; a longer picture gets more white along its sides."""

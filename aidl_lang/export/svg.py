@@ -3,20 +3,274 @@
 from __future__ import annotations
 
 import io
+import math
 import re
-from collections.abc import Mapping
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import singledispatch
+from importlib import import_module
+from types import ModuleType
 from typing import Any
 
+import numpy as np
+
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.numbers import fixed
-from aidl_lang.export import UNITS
-from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
-from aidl_lang.export.paths import face_path, open_path
+from aidl_lang.export import UNITS, themes
+from aidl_lang.export.marks import (
+    HALO,
+    Area,
+    Curves,
+    Dot,
+    Frame,
+    Gradient,
+    Group,
+    Ink,
+    Mark,
+    Picture,
+    Stop,
+    Text,
+)
 from aidl_lang.export.scaling import scaled
-from aidl_lang.export.svg_package import svgwrite
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.boolean import without
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
+from aidl_lang.geometry.evaluate import Bounds, bounds, ends, point, points
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.offsets import offset
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.solved import SolvedStructure
+from aidl_lang.geometry.stacking import stacked
+from aidl_lang.geometry.styles import Shade
+
+# --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
+
+
+def svgwrite() -> Any:
+    """Loads the package `svgwrite` when the first drawing is written.
+
+    It imports the protocols of the web, to embed fonts and style sheets by their address, and a parser that
+    checks the values of attributes (`debug=True`); both are loaded if they are ever called.
+    """
+    if "svgwrite" not in sys.modules:
+        values = ("is_valid_transferlist", "is_valid_pathdata", "is_valid_animation_timing")
+        with _loaded_later("urllib.request", "urlopen"), _loaded_later("svgwrite.data.svgparser", *values):
+            import_module("svgwrite")
+    return import_module("svgwrite")
+
+
+@contextmanager
+def _loaded_later(name: str, *functions: str) -> Iterator[None]:
+    """Replaces a module that is not loaded: functions imported from it meanwhile load it when they are
+    called.
+    """
+    if name in sys.modules:
+        yield
+        return
+    stand_in = _StandIn(name)
+    for function in functions:
+        setattr(stand_in, function, _calling(name, function))
+    sys.modules[name] = stand_in
+    try:
+        yield
+    finally:
+        _remove(stand_in)
+
+
+def _calling(name: str, function: str) -> Callable[..., Any]:
+    def call(*args: Any, **named: Any) -> Any:
+        return getattr(import_module(name), function)(*args, **named)
+
+    return call
+
+
+class _StandIn(ModuleType):
+    """A placeholder module that gives way to the real one when another thread asks for anything else in
+    it.
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        _remove(self)
+        return getattr(import_module(self.__name__), name)
+
+
+def _remove(stand_in: ModuleType) -> None:
+    if sys.modules.get(stand_in.__name__) is stand_in:
+        del sys.modules[stand_in.__name__]
+
+
+# --- SVG path data from exact pieces. Coordinates turn upside down: SVG counts y downwards.
+
+_HALF = 1e-8
+"""Radians by which a half turn may be off after solving; to take it for the other half moves nothing."""
+
+
+def xy(p: Vec) -> str:
+    return f"{fixed(p[0])} {fixed(-p[1])}"
+
+
+def face_path(face: Face) -> str:
+    """Returns all loops of a face as one path, its holes really cut out."""
+    return "".join(loop_path(loop) for loop in face.loops)
+
+
+def loop_path(loop: Loop) -> str:
+    if loop.is_whole:
+        return _whole(loop.pieces[0], clockwise=loop.reversed)
+    pieces = loop.pieces
+    # The last straight way home is what Z draws.
+    drawn = pieces[:-1] if isinstance(pieces[-1], Line) else pieces
+    return f"M{xy(ends(pieces[0])[0])}{''.join(map(_segment, drawn))}Z"
+
+
+def open_path(pieces: Sequence[Piece]) -> str:
+    """Returns curves one after the other, moving only where one does not start at the end of the one
+    before.
+    """
+    return "".join(_chain(pieces))
+
+
+def _chain(pieces: Iterable[Piece]) -> Iterable[str]:
+    at: Vec | None = None
+    for piece in pieces:
+        if isinstance(piece, Circle | Ellipse):
+            yield _whole(piece, clockwise=False)
+            at = None
+            continue
+        start, end = ends(piece)
+        if start != at:
+            yield f"M{xy(start)}"
+        yield _segment(piece)
+        at = end
+
+
+def _whole(piece: Piece, clockwise: bool) -> str:
+    """Returns a closed curve as two halves, since an `A` that ends where it starts draws nothing."""
+    assert isinstance(piece, Circle | Ellipse)
+    start, middle = xy(point(piece, 0.0)), xy(point(piece, 0.5))
+    flag = int(clockwise)
+    radii = _radii(piece)
+    return f"M{start}A{radii} 0 {flag} {middle}A{radii} 0 {flag} {start}Z"
+
+
+def _radii(piece: Arc | Circle | Ellipse | EllipseArc) -> str:
+    if isinstance(piece, Arc | Circle):
+        return f"{fixed(piece.radius)} {fixed(piece.radius)} 0"
+    return f"{fixed(piece.rx)} {fixed(piece.ry)} {fixed(-math.degrees(piece.angle))}"
+
+
+def _segment(piece: Piece) -> str:
+    """Returns the path command that continues from the start of a piece."""
+    if isinstance(piece, Line):
+        return f"L{xy(piece.end)}"
+    if isinstance(piece, Bezier):
+        return f"C{xy(piece.p1)} {xy(piece.p2)} {xy(piece.p3)}"
+    assert isinstance(piece, Arc | EllipseArc)
+    flag = int(piece.sweep < 0)
+    if abs(piece.sweep) > 1.9 * math.pi:
+        # Nearly full turns lose their direction in rounding: go by way of the middle.
+        return f"A{_radii(piece)} 0 {flag} {xy(point(piece, 0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
+    is_large = (
+        abs(piece.sweep) > math.pi + _HALF
+    )  # of two equal halves no machine says otherwise than another
+    return f"A{_radii(piece)} {int(is_large)} {flag} {xy(piece.end)}"
+
+
+# --- Clear gaps around what lies in front (`@halo`): the colour of the paper, over all that is behind.
+
+
+class Halos:
+    """The gaps of a drawing; only what lies near something further back has one."""
+
+    def __init__(self, drawing: Drawing, root: SolvedStructure) -> None:
+        self._place = {s.path: place for place, s in enumerate(stacked(root))}
+        boxes = [(self._place[b.path], b.box) for b in drawing.bodies]
+        self._boxes = boxes + [(self._place[s.path], _box(s)) for s in drawing.strokes]
+
+    def around_body(self, body: Body, line: float) -> Iterator[Area]:
+        """Yields the gap around a body whose outline has a width."""
+        width = body.style.halo or 0.0
+        if width > 0 and self._covers(body.path, body.box, by := width + line / 2):
+            wide = offset(body.region, by, sharp=False)
+            if body.style.is_clear:
+                wide = without(wide, body.region)
+            yield from (Area(face, themes.PAPER, None, HALO) for face in wide.faces)
+
+    def around_stroke(self, stroke: Stroke, line: float) -> Iterator[Area | Curves]:
+        """Yields the gap around curves drawn as lines of a width; letters that are filled have lines of 0."""
+        width = stroke.style.halo or 0.0
+        if width > 0 and self._covers(stroke.path, _box(stroke), width + line / 2):
+            ink = Ink(themes.PAPER, line + 2 * width, is_round=True)
+            yield Curves(stroke.pieces, ink, HALO)
+
+    def _covers(self, path: str, box: Bounds, by: float) -> bool:
+        """Tells whether the box of something, widened, meets that of something behind it."""
+        left, bottom, right, top = box[0] - by, box[1] - by, box[2] + by, box[3] + by
+        return any(
+            place < self._place[path] and b[0] < right and left < b[2] and b[1] < top and bottom < b[3]
+            for place, b in self._boxes
+        )
+
+
+def _box(stroke: Stroke) -> Bounds:
+    return union_bounds([bounds(piece) for piece in stroke.pieces])
+
+
+# --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
+
+_LIGHT: dict[str, tuple[tuple[float, float], ...]] = {
+    "round": ((0.0, -0.22), (0.3, 0.34), (0.6, 0.0), (1.0, -0.42)),
+    "ball": ((0.0, 0.5), (0.5, 0.0), (1.0, -0.45)),
+    "slope": ((0.0, 0.18), (1.0, -0.26)),
+}
+"""Shares of the way, and of white in the colour there, or of black where they are negative."""
+_FADING = ((0.0, 1.0), (0.3, 0.78), (0.6, 0.3), (0.8, 0.09), (1.0, 0.0))
+"""Shares of the way out of the middle, and the opacity there: as soft light and shadows end."""
+_SPOT = (0.36, 0.66)
+"""Where a ball is brightest: shares of the width and the height of its box."""
+_REACH = 0.72
+"""How far light reaches from there, in the larger side of the box."""
+_STEPS = np.linspace(0.0, 1.0, 9)
+
+
+def gradient_of(shade: Shade, color: str, region: Region) -> Gradient:
+    """Returns the fill of a body of a colour."""
+    stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
+    left, bottom, right, top = region_bounds(region)
+    width, height = right - left, top - bottom
+    if shade.way is None:
+        center = (left + width / 2, bottom + height / 2)
+        fading = tuple(Stop(share, color, opacity) for share, opacity in _FADING)
+        return Gradient(center, center, fading, width / 2, height / width)
+    if shade.kind == "ball":
+        spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
+        return Gradient(spot, spot, stops, _REACH * max(width, height))
+    ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
+    spots = np.concatenate([points(piece, _STEPS) for piece in region.pieces])
+    along = spots @ ways
+    middle = np.array([(left + right) / 2, (bottom + top) / 2])
+    start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
+    other = css_color([shade.kind])
+    if shade.kind == "fade":
+        stops = (Stop(0.0, color), Stop(1.0, color, 0.0))
+    elif other is not None:
+        stops = (Stop(0.0, color), Stop(1.0, other))
+    return Gradient((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), stops)
+
+
+def _toned(color: str, tone: float) -> str:
+    """Returns a colour with a share of white in it, or of black where that is negative."""
+    goal = 255.0 if tone > 0 else 0.0
+    return hexadecimal(part + abs(tone) * (goal - part) for part in rgb(color))
+
+
+# --- SVG: millimetres or inches, y upwards, one group per structure, holes really cut, curves as curves.
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 

@@ -15,7 +15,7 @@ import numpy as np
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.numbers import fixed, size_text
 from aidl_lang.common.records import record
-from aidl_lang.export import ExportError, palette
+from aidl_lang.export import ExportError, themes
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
@@ -123,7 +123,7 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
     """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
-    ink = Ink(palette.PLAN, HAIRLINE)
+    ink = Ink(themes.PLAN, HAIRLINE)
     ticks: list[Piece] = []
     for x, out in ((left, -1.0), (right, 1.0)):
         for y, up in ((bottom, -1.0), (top, 1.0)):
@@ -138,8 +138,8 @@ def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: st
     start, low = left + 2 * TICK, bottom - 2.5
     ends = (Line((x, low - 1), (x, low + 1)) for x in (start, start + SCALE))
     yield Curves((Line((start, low), (start + SCALE, low)), *ends), ink, "scale")
-    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, palette.PLAN, halo=False)
-    yield Text((start, top + 1.5), label, FONT, palette.PLAN, halo=False)
+    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, themes.PLAN, halo=False)
+    yield Text((start, top + 1.5), label, FONT, themes.PLAN, halo=False)
 
 
 class _Shape:

@@ -94,7 +94,7 @@ def recorded(place: Path) -> list[tuple[SourceFile, str]]:
     from aidl_eval import recordings
     from aidl_eval.plan import VARIANTS
     from aidl_lang.tools.llm.aidl import Aidl
-    from aidl_lang.tools.llm.replies import find_program
+    from aidl_lang.tools.llm.messages import find_program
 
     found: list[tuple[SourceFile, str]] = []
     for conversation in recordings.load(place):

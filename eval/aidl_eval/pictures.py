@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from aidl_eval.regions import Regions
 from aidl_eval.shapes import PIXELS
-from aidl_lang.export import Options, palette
+from aidl_lang.export import Options, themes
 from aidl_lang.export import render as render_picture
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.picture import MARGIN, OUTLINE_WIDTH
@@ -25,9 +25,9 @@ def neutral(drawn: Regions) -> bytes:
 
 def colored(drawn: Regions) -> bytes:
     """Returns a PNG in the colours that the program gives; without one, in those of AIDL's drawings."""
-    fills = [part.color or palette.body_fill(number) for number, part in enumerate(drawn.parts)]
+    fills = [part.color or themes.body_fill(number) for number, part in enumerate(drawn.parts)]
     edges = [
-        palette.outline_of(fill) if part.color else palette.OUTLINE
+        themes.outline_of(fill) if part.color else themes.OUTLINE
         for fill, part in zip(fills, drawn.parts, strict=True)
     ]
     return _png(drawn, fills, edges)

@@ -18,10 +18,9 @@ from aidl_lang.export import Options
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.discretion import Programs
 from aidl_lang.tools.ide.completion import complete
-from aidl_lang.tools.ide.definition import definitions
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.rename import CannotError, renameable
-from aidl_lang.tools.ide.view import look
+from aidl_lang.tools.ide.references import CannotError, definitions, renameable
+from aidl_lang.tools.ide.workspace import look
 from tests.amount import tries
 
 LOGO = (

@@ -16,7 +16,7 @@ from aidl_lang.common.world import DiskWorld
 from aidl_lang.export import ExportError, Job, Options
 from aidl_lang.export.dimension_marks import DIGIT, Block
 from aidl_lang.export.drafting import Draft, drafted
-from aidl_lang.export.drafting.paper import SCALES, STANDARDS, papers
+from aidl_lang.export.drafting.tables import SCALES, STANDARDS, papers
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.evaluate import bounds

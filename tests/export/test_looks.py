@@ -12,7 +12,7 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import Exported, Job, Options, export, palette
+from aidl_lang.export import Exported, Job, Options, export, themes
 from tests.compiled import compiled
 from tests.export.colours import near
 
@@ -214,7 +214,7 @@ def test_outlines_are_a_darker_tone_of_the_fill() -> None:
     """
     svg = written(".svg", program).data.decode()
     found = dict(re.findall(r'data-path="a\.(\w+)".*?stroke="([^"]*)"', svg, re.DOTALL))
-    assert found.pop("plain") == palette.OUTLINE
+    assert found.pop("plain") == themes.OUTLINE
     assert found == {"dark": "#000000", "toned": "#6e3716", "pale": "#808080"}
     for theme, line in (("blueprint", "#eaf2ff"), ("ink", "#000000"), ("cutter", "#ff0000")):
         lines = re.findall(r'stroke="(#[^"]*)"', written(".svg", program, theme=theme).data.decode())

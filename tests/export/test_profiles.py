@@ -21,8 +21,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.export import ExportError, Options
-from aidl_lang.export.profile_files import parsed
-from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile
+from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile, parsed
 
 PLATE = """\
 assembly tag {

@@ -11,7 +11,7 @@ import pytest
 
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import SHOW, Job, Options, export
-from aidl_lang.export.paths import face_path, loop_path, open_path
+from aidl_lang.export.svg import face_path, loop_path, open_path
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop

@@ -5,7 +5,7 @@ import sys
 
 SCRIPT = """
 import sys
-from aidl_lang.export.svg_package import svgwrite
+from aidl_lang.export.svg import svgwrite
 
 svg = svgwrite()
 assert svg is sys.modules["svgwrite"] is svgwrite()
@@ -29,7 +29,7 @@ else:
 
 MEANWHILE = """
 import sys
-from aidl_lang.export.svg_package import _loaded_later
+from aidl_lang.export.svg import _loaded_later
 
 with _loaded_later("urllib.request", "urlopen"):
     from urllib.request import Request, urlopen  # as another thread does meanwhile

@@ -5,9 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.tools.ide.project import Project
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.workspace import Project, View, Workspace, look, run
 from tests.compiled import LIGHTER
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))

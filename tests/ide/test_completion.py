@@ -16,9 +16,8 @@ from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
-from aidl_lang.tools.ide.completion.fitting import forms, read
-from aidl_lang.tools.ide.view import look
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.completion.constraints import forms, read
+from aidl_lang.tools.ide.workspace import Workspace, look
 from aidl_lang.tools.snippets import expanded
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import LIGHTER

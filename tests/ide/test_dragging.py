@@ -8,10 +8,9 @@ import pytest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.tools.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
-from aidl_lang.tools.ide.edits import applied
-from aidl_lang.tools.ide.refusing import Refusal
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.positions import applied
+from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.ide.conftest import EXAMPLES, seen
 
 ROD = """drawing d {

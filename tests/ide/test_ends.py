@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang.tools.ends import Sweep
-from aidl_lang.tools.ide.ends import can_be_tried, end_lenses, tried
-from aidl_lang.tools.ide.view import SETTINGS, View
+from aidl_lang.tools.ide.lenses import can_be_tried, end_lenses, tried
+from aidl_lang.tools.ide.workspace import SETTINGS, View
 from tests.ide.conftest import seen
 
 PLATE = """\

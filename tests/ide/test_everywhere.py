@@ -11,8 +11,7 @@ import pytest
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.signatures import signature_help
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.compiled import LIGHTER
 
 from .conftest import seen

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.tools.ide.edits import applied
 from aidl_lang.tools.ide.guesses import Guess, guesses
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.positions import applied
+from aidl_lang.tools.ide.workspace import View
 from tests.documents import ROOT, Block, programs
 from tests.ide.conftest import seen
 

@@ -11,8 +11,7 @@ import pytest
 
 from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from aidl_lang.tools.reference.collect import reference
 from tests.compiled import LIGHTER
 

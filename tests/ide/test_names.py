@@ -9,14 +9,16 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.definition import definitions
 from aidl_lang.tools.ide.meaning import mention_at, mentions, place_of
-from aidl_lang.tools.ide.project import Project
-from aidl_lang.tools.ide.references import highlights, references
-from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.ide.rename import rename, renameable
-from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.references import (
+    CannotError,
+    definitions,
+    highlights,
+    references,
+    rename,
+    renameable,
+)
+from aidl_lang.tools.ide.workspace import Project, View, Workspace
 from tests.compiled import LIGHTER
 
 from .conftest import opened

@@ -10,12 +10,10 @@ from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.tools.ide.folding import folds
-from aidl_lang.tools.ide.formatting import format_document, format_range
-from aidl_lang.tools.ide.selection import selections
+from aidl_lang.tools.ide.outline import Entry, folds, outline, search, selections
+from aidl_lang.tools.ide.positions import format_document, format_range
 from aidl_lang.tools.ide.semantic_tokens import MODIFIERS, TYPES, Colored, semantic_tokens
-from aidl_lang.tools.ide.symbols import Entry, outline, search
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import View
 from tests.amount import tries
 
 from .conftest import EXAMPLES, opened, seen

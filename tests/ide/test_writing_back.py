@@ -6,13 +6,11 @@ import pytest
 
 from aidl_lang.common.numbers import shortest
 from aidl_lang.syntax.tokens import tokenize
-from aidl_lang.tools.ide.edits import applied
-from aidl_lang.tools.ide.guesses import guesses
-from aidl_lang.tools.ide.inlays import inlays
-from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
-from aidl_lang.tools.ide.writing_back import can_write_back, write_back
+from aidl_lang.tools.ide.guesses import can_write_back, guesses, write_back
+from aidl_lang.tools.ide.lenses import inlays
+from aidl_lang.tools.ide.positions import applied
+from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.ide.conftest import EXAMPLES, seen
 from tests.ide.test_guesses import curves, near
 

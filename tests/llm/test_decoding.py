@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.llm.replies import find_program
+from aidl_lang.tools.llm.messages import find_program
 from tests.grammars.engines import engine
 from tests.llm.scripted import Failed, Says, Scripted
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.tools.llm import feedback
+from aidl_lang.tools.llm import generation
 
 
 def floats(program: str) -> tuple[str, ...]:
     model = pipeline.compile(SourceFile("part.aidl", program)).model
     assert model is not None
-    return feedback.floats(model)
+    return generation.floats(model)
 
 
 LAMP = """assembly lamp {
@@ -41,14 +41,14 @@ def test_a_part_alone_does_not_float() -> None:
 
 def test_what_is_told_of_floating_parts() -> None:
     compiled = pipeline.compile(SourceFile("part.aidl", LAMP.replace("CONSTRAIN", "")))
-    told = feedback.remarks(compiled, may_constrain=True)
+    told = generation.remarks(compiled, may_constrain=True)
     assert "warning: `foot`, `pole`, `shade` float: no constraint speaks of where, so they stand" in told
-    assert "float" not in feedback.remarks(compiled, may_constrain=False)
+    assert "float" not in generation.remarks(compiled, may_constrain=False)
 
 
 def test_the_stage_is_the_first_that_fails() -> None:
     def stage(program: str) -> str:
-        return feedback.stage_of(pipeline.compile(SourceFile("part.aidl", program)).diagnostics)
+        return generation.stage_of(pipeline.compile(SourceFile("part.aidl", program)).diagnostics)
 
     plate = "solid plate { outline = rectangle(width: 60, height: 40) REST }"
     assert stage(plate.replace("REST", "constrain }")) == "syntax"

@@ -11,7 +11,7 @@ import numpy
 import PIL.Image
 import pytest
 
-from aidl_lang.tools.llm.images import MAX_FILE, MAX_SENT, ImageError, read_image
+from aidl_lang.tools.llm.messages import MAX_FILE, MAX_SENT, ImageError, read_image
 
 
 def encoded(picture: PIL.Image.Image, kind: str, **more: object) -> bytes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang.tools.llm.aidl import Aidl
-from aidl_lang.tools.llm.replies import find_program
+from aidl_lang.tools.llm.messages import find_program
 
 PROGRAM = "solid plate { outline = rectangle(width: 60, height: 40) }\n"
 

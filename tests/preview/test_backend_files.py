@@ -21,7 +21,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.reading import Reads
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.tools.ide.refusing import CannotError
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.host import Host
 from tests.preview.talking import CHANGED, TEXT, WORDS, serving, talking, write_bytes

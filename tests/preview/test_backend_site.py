@@ -15,10 +15,10 @@ import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
+from aidl_lang.tools.preview.files import watch
 from aidl_lang.tools.preview.host import LONGEST, MOST_ORDERS
 from aidl_lang.tools.preview.local import PANE
 from aidl_lang.tools.preview.site import MOST_PAGES
-from aidl_lang.tools.preview.watching import watch
 from tests.preview import talking as pages
 from tests.preview.talking import ADDRESS, CHANGED, TEXT, TOKEN, Talk, serving
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from aidl_lang.tools.ide.view import View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
 

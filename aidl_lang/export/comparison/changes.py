@@ -1,20 +1,225 @@
-"""The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
-
-Of two values the first is from before, the second from after; None stands for nothing.
-"""
+"""The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import field
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import field, replace
+from functools import cached_property
 from typing import Literal, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from aidl_lang.common.records import record
-from aidl_lang.export.comparison.move import Move
 from aidl_lang.geometry.contacts import Contact
-from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.solved import Scalar, SolvedModel
+from aidl_lang.geometry.evaluate import point
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel
+
+# --- Rigid motions of the plane, and finding the one between two poses.
+
+Points = NDArray[np.float64]
+_SAME_ANGLE = 1e-4
+"""Degrees by which the axes of an ellipse may differ."""
+
+
+@record(slots=True)
+class Move:
+    """A rigid motion: reflects x if `mirrored`, turns about the origin by `turn` degrees, then shifts by (dx,
+    dy) mm.
+    """
+
+    dx: float = 0.0
+    dy: float = 0.0
+    turn: float = 0.0
+    mirrored: bool = False
+
+    def __call__(self, p: Vec) -> Vec:
+        x, y = self.all(np.array([p]))[0]
+        return float(x), float(y)
+
+    def all(self, points: Points) -> Points:
+        """Returns the images of many points, shape (n, 2)."""
+        if not (self.turn or self.mirrored):
+            shifted: Points = points + np.array((self.dx, self.dy))
+            return shifted
+        c, s = math.cos(math.radians(self.turn)), math.sin(math.radians(self.turn))
+        x = -points[:, 0] if self.mirrored else points[:, 0]
+        y = points[:, 1]
+        return np.stack((c * x - s * y + self.dx, s * x + c * y + self.dy), axis=1)
+
+    @property
+    def fixed_point(self) -> Vec | None:
+        """The point about which it turns; None for a shift or a reflection."""
+        if self.mirrored or not self.turn:
+            return None
+        # (1 - R) p = d, and (1 - R) is 2 sin(turn/2) times a turn by (turn - 180)/2.
+        half = math.radians(self.turn) / 2
+        k = 1 / (2 * math.tan(half))
+        return self.dx / 2 - k * self.dy, self.dy / 2 + k * self.dx
+
+
+STILL = Move()
+
+
+@record()
+class Pose:
+    """The positions of a thing, before and after.
+
+    tolerance  how far a place may be off, mm
+    points     shape (2, n, 2)
+    axes       directions of ellipses in degrees, alike modulo 180, shape (2, m)
+    congruent  whether sizes without a place (radii) agree and every part has its counterpart
+    centers    the centre before and after of a shape that has one, whatever became of the rest
+    """
+
+    tolerance: float
+    points: Points = field(default_factory=lambda: np.zeros((2, 0, 2)))
+    axes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((2, 0)))
+    congruent: bool = True
+    centers: Points | None = None
+
+    @classmethod
+    def joined(cls, poses: Iterable[Pose], tolerance: float) -> Pose:
+        all_ = [cls(tolerance), *poses]
+        return cls(
+            tolerance,
+            np.concatenate([p.points for p in all_], axis=1),
+            np.concatenate([p.axes for p in all_], axis=1),
+            all(p.congruent for p in all_),
+        )
+
+    def fits(self, move: Move) -> bool:
+        """True if everything moved by `move`."""
+        before, after = self.points
+        if not self.congruent or not bool(np.all(np.abs(move.all(before) - after) <= self.tolerance)):
+            return False
+        first, last = self.axes
+        turned = (-first + 180 if move.mirrored else first) + move.turn
+        return bool(np.all(np.abs((turned - last + 90) % 180 - 90) <= _SAME_ANGLE))
+
+    def follows(self, move: Move) -> bool:
+        """True if it moved by `move`; of a thing that changed its shape, if its centre did."""
+        if self.centers is None or self.whole is not None:
+            return self.fits(move)
+        return bool(np.all(np.abs(move.all(self.centers[0]) - self.centers[1]) <= self.tolerance))
+
+    def move(self, expected: Move = STILL) -> Move | None:
+        """Returns the motion of all its points, if there is one: `expected` if that fits, else the
+        simplest.
+        """
+        if not self.congruent:
+            return None
+        return next((m for m in self._candidates(expected) if self.fits(m)), None)
+
+    @cached_property
+    def whole(self) -> Move | None:
+        """The simplest motion of all its points, if there is one."""
+        return self.move()
+
+    def shift(self) -> Move | None:
+        """The motion of the whole, else of the centre."""
+        if self.centers is None or self.whole is not None:
+            return self.whole
+        return self._clean(Move(*(self.centers[1] - self.centers[0])[0]))
+
+    def _candidates(self, expected: Move) -> Iterator[Move]:
+        yield expected
+        yield STILL
+        before, after = self.points
+        if not len(before):
+            return
+        p, q = before[0], after[0]
+        yield self._clean(Move(*(q - p)))
+        arms = before - p
+        far = int(np.argmax(np.hypot(*arms.T)))
+        (x, y), (u, v) = arms[far], after[far] - q
+        for mirrored in (False, True):
+            if math.hypot(x, y) > self.tolerance:
+                turn = math.degrees(math.atan2(v, u) - math.atan2(y, -x if mirrored else x))
+            elif self.axes.size:
+                turn = self.axes[1][0] - (180 - self.axes[0][0] if mirrored else self.axes[0][0])
+                turn = (turn + 90) % 180 - 90
+            else:
+                return
+            about = Move(turn=180 - (180 - float(turn)) % 360, mirrored=mirrored)
+            yield self._clean(replace(about, dx=q[0] - about(p)[0], dy=q[1] - about(p)[1]))
+
+    def _clean(self, move: Move) -> Move:
+        """Returns the motion without shifts that are rounding."""
+        dx, dy = (0.0 if abs(d) <= self.tolerance else float(d) for d in (move.dx, move.dy))
+        return replace(move, dx=dx, dy=dy)
+
+
+def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> Pose:
+    """Returns the pose of two geometries; not congruent if they differ in kind, in parts or in radii."""
+    places: list[tuple[Vec, Vec]] = []
+    axes: list[tuple[float, float]] = []
+    centers = [g.values.get("center") for g in (before, after)]
+    known = np.array(centers, dtype=np.float64).reshape(2, 1, 2) if all(centers) else None
+    if not _gather(before, after, tolerance, places, axes):
+        return Pose(tolerance, congruent=False, centers=known)
+    return Pose(
+        tolerance,
+        np.array(places, dtype=np.float64).reshape(-1, 2, 2).transpose(1, 0, 2),
+        np.array(axes, dtype=np.float64).reshape(-1, 2).T,
+        centers=known,
+    )
+
+
+def _gather(
+    a: SolvedGeometry,
+    b: SolvedGeometry,
+    tolerance: float,
+    places: list[tuple[Vec, Vec]],
+    axes: list[tuple[float, float]],
+) -> bool:
+    """Collects places and axes; returns False as soon as the two differ."""
+    if a.type != b.type or [p.name for p in a.parts] != [p.name for p in b.parts]:
+        return False
+    first, last = _places(a), _places(b)
+    if type(a.curve) is not type(b.curve) or len(first) != len(last):
+        return False
+    radii = zip(_radii(a), _radii(b), strict=True)
+    if any(not abs(r - s) <= tolerance for r, s in radii):
+        return False
+    places += zip(first, last, strict=True)
+    if (
+        isinstance(a.curve, Ellipse)
+        and isinstance(b.curve, Ellipse)
+        and abs(a.curve.rx - a.curve.ry) > tolerance
+    ):
+        axes.append((math.degrees(a.curve.angle), math.degrees(b.curve.angle)))
+    return all(_gather(p, q, tolerance, places, axes) for p, q in zip(a.parts, b.parts, strict=True))
+
+
+def _places(g: SolvedGeometry) -> list[Vec]:
+    """Returns points that fix the place and direction of a primitive; the middle of an arc fixes its way
+    round.
+    """
+    if g.curve is None:
+        at = g.values.get("at")
+        return [] if at is None else [at]  # type: ignore[list-item]
+    found = [getattr(g.curve, name) for name in FIELDS[type(g.curve)]]
+    middle = [point(g.curve, 0.5)] if isinstance(g.curve, Arc) else []
+    return [each for each in found if isinstance(each, tuple)] + middle
+
+
+def _radii(g: SolvedGeometry) -> tuple[float, ...]:
+    match g.curve:
+        case Circle(_, radius):
+            return (abs(radius),)
+        case Ellipse(_, rx, ry):
+            return abs(rx), abs(ry)
+        case _:
+            return ()
+
+
+# --- The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
+#
+# Of two values the first is from before, the second from after; None stands for nothing.
 
 Value: TypeAlias = Scalar | Vec | tuple[Scalar, ...] | None
 Fields: TypeAlias = Mapping[str, tuple[Value, Value]]

@@ -2,27 +2,148 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.export.comparison import fields
 from aidl_lang.export.comparison.changes import (
+    STILL,
     Comparison,
     ContactChange,
     Fields,
     GeometryChange,
+    Move,
     StructureChange,
+    Value,
     Version,
 )
 from aidl_lang.export.comparison.matching import GeometryPair, StructurePair, match
-from aidl_lang.export.comparison.move import STILL, Move
 from aidl_lang.geometry.contacts import Contact
-from aidl_lang.geometry.curves import Vec
-from aidl_lang.geometry.solved import SolvedStructure
+from aidl_lang.geometry.curves import Arc, Line, Vec
+from aidl_lang.geometry.measures import measure
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
+
+# --- The numbers and words of a structure or geometry, and which of them differ.
+
+RELATIVE, ABSOLUTE = 1e-6, 1e-9
+Values = Mapping[str, Value]
+Changed = dict[str, tuple[Value, Value]]
+
+
+def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) -> Changed:
+    """Returns the values that differ, in order of writing after. Points that moved by `move` count as
+    equal.
+    """
+    return {
+        name: (a.get(name), b.get(name))
+        for name in dict.fromkeys([*b, *a])
+        if not _went(a.get(name), b.get(name), move, tolerance)
+        and not is_same(a.get(name), b.get(name), name)
+    }
+
+
+def is_same(a: Value, b: Value, name: str = "") -> bool:
+    """True for equal values: numbers to 1e-6 of themselves, angles up to whole turns."""
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(is_same, a, b))
+    if _is_number(a) and _is_number(b):
+        difference = math.remainder(a - b, 360) if "angle" in name else a - b
+        return abs(difference) <= RELATIVE * max(abs(a), abs(b)) + ABSOLUTE
+    return type(a) is type(b) and a == b
+
+
+def _went(a: Value, b: Value, move: Move, tolerance: float) -> bool:
+    return _is_point(a) and _is_point(b) and math.dist(move(a), b) <= tolerance
+
+
+def _is_number(value: Value) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_point(value: Value) -> TypeGuard[Vec]:
+    return isinstance(value, tuple) and len(value) == 2 and all(isinstance(x, float) for x in value)
+
+
+def settings(s: SolvedStructure) -> dict[str, Value]:
+    """Returns the kind, the attributes and the finished corners of a structure."""
+    found: dict[str, Value] = {"kind": s.kind}
+    for name, values in s.attributes.items():
+        found[f"@{name}"] = _plain(values) if values else True
+    for finish in s.finishes:
+        name, number = f"{finish.kind} of {finish.text}", 2
+        while name in found:
+            name, number = f"{finish.kind} {number} of {finish.text}", number + 1
+        found[name] = _plain(finish.sizes)
+    return found
+
+
+def _plain(values: tuple[Scalar, ...]) -> Value:
+    return values[0] if len(values) == 1 else values
+
+
+def sizes(s: SolvedStructure, region: Region | None) -> dict[str, Value]:
+    """Returns the size of the box and, for material or a hole, the measures of the region."""
+    found: dict[str, Value] = {}
+    if s.box is not None:
+        found |= {"width": s.box.width, "height": s.box.height}
+    if region:
+        measures = measure(region)
+        found |= {"area": measures.area, "perimeter": measures.perimeter, "centroid": measures.centroid}
+    return found
+
+
+def of_geometry(a: SolvedGeometry, b: SolvedGeometry, move: Move, tolerance: float) -> Changed:
+    """Returns the changed fields of a geometry that did not move as a whole; for an outline its corners and
+    radii.
+    """
+    if a.type != b.type:
+        return {"type": (a.type, b.type)}
+    first, last = _values(a), _values(b)
+    both = {name: first[name] for name in first if name in last}, {n: last[n] for n in last if n in first}
+    found = changed(*both, move, tolerance)
+    if found or not b.parts:
+        return found
+    corners = dict(_corners(a)), dict(_corners(b))
+    return changed(*corners, move, tolerance) | changed(dict(_radii(a)), dict(_radii(b)))
+
+
+def _values(g: SolvedGeometry) -> dict[str, Value]:
+    found: dict[str, Value] = {}
+    for name, value in g.values.items():
+        if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+            found |= {f"{name}[{i}]": p for i, p in enumerate(value) if isinstance(p, tuple)}
+        else:
+            found[name] = value  # type: ignore[assignment]
+    if isinstance(g.curve, Line):
+        x, y = (q - p for p, q in zip(g.curve.start, g.curve.end, strict=True))
+        found |= {"length": math.hypot(x, y), "angle": math.degrees(math.atan2(y, x))}
+    if isinstance(g.curve, Arc):
+        found["sweep"] = math.degrees(abs(g.curve.sweep))
+    return found
+
+
+def _corners(g: SolvedGeometry, prefix: str = "") -> Iterator[tuple[str, Value]]:
+    for part in g.parts:
+        if part.type == "point":
+            yield prefix + part.name, part.values["at"]  # type: ignore[misc]
+        yield from _corners(part, f"{prefix}{part.name}.")
+
+
+def _radii(g: SolvedGeometry, prefix: str = "") -> Iterator[tuple[str, Value]]:
+    for part in g.parts:
+        for name in ("radius", "rx", "ry"):
+            if name in part.values:
+                yield f"{prefix}{part.name}.{name}", part.values[name]  # type: ignore[misc]
+        yield from _radii(part, f"{prefix}{part.name}.")
+
+
+# --- Compares two trees from the root down: each structure relative to the motion of its parent.
 
 TOLERANCE = 1e-6
 _CANDIDATES = 3
@@ -85,7 +206,7 @@ def _is_same(a: Contact | None, b: Contact | None, tolerance: float) -> bool:
         return all(c is None or c.relation == "apart" for c in (a, b))
     if a.gap is not None and b.gap is not None:
         return abs(a.gap - b.gap) <= tolerance
-    return a.relation == b.relation and fields.is_same(a.area, b.area)
+    return a.relation == b.relation and is_same(a.area, b.area)
 
 
 @record()
@@ -114,8 +235,8 @@ class _Walk:
             move=None if move == expected else move,
             middle=_middle(a),
             sizes={} if whole and not pair.is_altered else self._sizes(pair, move, is_root, is_turned),
-            params=fields.changed(a.params, b.params),
-            settings=fields.changed(fields.settings(a), fields.settings(b)),
+            params=changed(a.params, b.params),
+            settings=changed(settings(a), settings(b)),
             geometry=geometry,
         )
         if told.is_one:
@@ -150,18 +271,18 @@ class _Walk:
         a, b = pair.before, pair.after
         if b.kind == "assembly" and not (is_root or pair.geometry):
             return {}  # that of its parts is told there
-        first = fields.sizes(a, self.before.drawing.regions.get(a.path))
-        last = fields.sizes(b, self.after.drawing.regions.get(b.path))
+        first = sizes(a, self.before.drawing.regions.get(a.path))
+        last = sizes(b, self.after.drawing.regions.get(b.path))
         if is_turned:  # the box of a turned thing is another one
             first, last = (
                 {n: v for n, v in f.items() if n not in ("width", "height")} for f in (first, last)
             )
-        return fields.changed(first, last, move, self.tolerance)
+        return changed(first, last, move, self.tolerance)
 
     def _sizes_alone(self, s: SolvedStructure, side: int) -> Fields:
         drawing = (self.before, self.after)[side].drawing
-        measured = fields.sizes(s, drawing.regions.get(s.path))
-        return fields.changed({}, measured) if side else fields.changed(measured, {})
+        measured = sizes(s, drawing.regions.get(s.path))
+        return changed({}, measured) if side else changed(measured, {})
 
     def _geometry(self, pair: StructurePair, expected: Move, settled: bool) -> Iterator[GeometryChange]:
         for g in pair.geometry:
@@ -176,9 +297,9 @@ class _Walk:
     def _one_geometry(self, g: GeometryPair, expected: Move, settled: bool) -> GeometryChange:
         a, b = g.before, g.after
         whole = expected if settled else g.pose.move(expected)
-        found = fields.changed({"construction": a.construction}, {"construction": b.construction})
+        found = changed({"construction": a.construction}, {"construction": b.construction})
         if whole is None:
-            found = fields.of_geometry(a, b, expected, self.tolerance) | found
+            found = of_geometry(a, b, expected, self.tolerance) | found
         move = None if whole == expected else whole
         return GeometryChange(b.name, b.type, "changed", g.was, move, found, is_outline_changed=whole is None)
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from aidl_lang.common.numbers import rounded
-from aidl_lang.export.comparison.changes import Comparison, Fields, GeometryChange, StructureChange
-from aidl_lang.export.comparison.move import Move
+from aidl_lang.export.comparison.changes import Comparison, Fields, GeometryChange, Move, StructureChange
 from aidl_lang.geometry.contacts import Contact
 
 VERSION = 1

@@ -14,7 +14,7 @@ import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
-from aidl_lang.export.comparison.move import STILL, Move, Pose, pose_of
+from aidl_lang.export.comparison.changes import STILL, Move, Pose, pose_of
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 _T = TypeVar("_T", SolvedGeometry, SolvedStructure)

@@ -14,11 +14,11 @@ from aidl_lang.export.comparison.changes import (
     ContactChange,
     Fields,
     GeometryChange,
+    Move,
     Sort,
     StructureChange,
     Value,
 )
-from aidl_lang.export.comparison.move import Move
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec
 

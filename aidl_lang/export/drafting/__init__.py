@@ -9,9 +9,21 @@ from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.export.drafting.contents import Content, View, contents
-from aidl_lang.export.drafting.lettering import WIDE, lines
-from aidl_lang.export.drafting.paper import SCALES, STANDARDS, Paper, Standard, papers, scale_text
-from aidl_lang.export.drafting.tables import TITLE_HEIGHT, WIDTH, Table, Title, title_block
+from aidl_lang.export.drafting.tables import (
+    SCALES,
+    STANDARDS,
+    TITLE_HEIGHT,
+    WIDE,
+    WIDTH,
+    Paper,
+    Standard,
+    Table,
+    Title,
+    lines,
+    papers,
+    scale_text,
+    title_block,
+)
 from aidl_lang.export.drafting.views import DrawnView, drawn_view
 from aidl_lang.export.marks import Group, Picture
 from aidl_lang.geometry.curves import Vec

@@ -1,23 +1,129 @@
-"""Tables of a drawing sheet: the title block (ISO 7200), the list of parts, the list of holes."""
+"""Paper, frames, scales, lettering and tables of a drawing sheet."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import field
 
+from aidl_lang.common.papers import PAPERS
 from aidl_lang.common.records import record
-from aidl_lang.export.drafting.lettering import (
-    BLACK,
-    LARGE,
-    NARROW,
-    SMALL,
-    WIDE,
-    lines,
-    width_of,
-    written,
+from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text
+from aidl_lang.geometry.curves import Circle, Line, Vec
+from aidl_lang.geometry.evaluate import Bounds
+
+# --- Paper, frames and scales of technical drawings: ISO 5457 and 5455, and what is usual beside them.
+
+SCALES = tuple(
+    sorted(
+        (
+            *((factor * ten, 1) for ten in (1, 10) for factor in (2, 5)),
+            (10, 1),
+            (1, 1),
+            *((1, factor * ten) for ten in (1, 10, 100, 1000) for factor in (2, 5, 10)),
+        ),
+        key=lambda scale: scale[1] / scale[0],
+    )
 )
-from aidl_lang.export.marks import Curves, Group, Ink, Mark
-from aidl_lang.geometry.curves import Circle, Vec
+"""The standard series, the largest first: millimetres on paper, and in the part."""
+
+_SMALL = frozenset({"a5", "a4", "letter", "legal"})
+_MARGIN = 10.0
+
+
+@record()
+class Standard:
+    """The habits of a country: its paper from the smallest, the margin on which sheets are bound, where views
+    from the side stand, and the language of the measure in the title block.
+    """
+
+    name: str
+    papers: tuple[str, ...]
+    binding: float
+    is_first_angle: bool
+
+
+STANDARDS = {
+    "iso": Standard("iso", ("a4", "a3", "a2", "a1", "a0"), 20.0, True),
+    "ansi": Standard("ansi", ("letter", "tabloid", "a2", "a1", "a0"), 10.0, False),
+}
+
+
+@record()
+class Paper:
+    """A sheet of paper as it lies before the reader."""
+
+    name: str
+    width: float
+    height: float
+    binding: float
+
+    @property
+    def label(self) -> str:
+        return self.name.upper() if self.name[0] == "a" and len(self.name) == 2 else self.name.capitalize()
+
+    @property
+    def box(self) -> Bounds:
+        return 0.0, 0.0, self.width, self.height
+
+    @property
+    def frame(self) -> Bounds:
+        return self.binding, _MARGIN, self.width - _MARGIN, self.height - _MARGIN
+
+    @property
+    def digits(self) -> float:
+        """Height of digits, mm: those of a small sheet are read from near."""
+        return 2.5 if self.name in _SMALL else 3.5
+
+
+def papers(standard: Standard, name: str | None, is_landscape: bool | None) -> Iterator[Paper]:
+    """Yields the papers that may be taken, the smaller ones first."""
+    for known in (name,) if name is not None else standard.papers:
+        short, long = PAPERS[known]
+        # A4 stands upright by habit, anything larger lies.
+        ways = (False, True) if known in _SMALL else (True, False)
+        for way in ways if is_landscape is None else (is_landscape,):
+            width, height = (long, short) if way else (short, long)
+            yield Paper(known, width, height, standard.binding)
+
+
+def scale_text(scale: tuple[int, int]) -> str:
+    return f"{scale[0]}:{scale[1]}"
+
+
+# --- Texts and lines of a drawing sheet, in mm on paper.
+
+BLACK, GREY = "#000000", "#555555"
+WIDE, NARROW = 0.35, 0.18
+"""Widths of lines: of outlines and the frame, and of everything else (ISO 128-2, group 0.35)."""
+SMALL, LARGE = 2.5, 3.5
+"""Heights of capitals (ISO 3098-1)."""
+CAPITAL = 0.73
+"""Height of capitals relative to the size of the font."""
+_CHARACTER = 0.62
+"""Width of a character relative to the size of the font, on the wide side."""
+_CUT = "…"
+
+
+def width_of(words: str, height: float) -> float:
+    return _CHARACTER * height / CAPITAL * len(words)
+
+
+def written(
+    words: str, at: Vec, height: float = SMALL, anchor: str = "start", room: float | None = None
+) -> Text:
+    """Returns a text, made smaller and then cut off where it has no more than some `room`."""
+    if room is not None and width_of(words, height) > room:
+        height = max(SMALL, height * room / width_of(words, height))
+        while len(words) > 1 and width_of(words, height) > room + 1e-9:
+            words = words.removesuffix(_CUT)[:-1].rstrip() + _CUT
+    return Text(at, words, height / CAPITAL, BLACK, anchor, halo=False)
+
+
+def lines(segments: Sequence[tuple[Vec, Vec]], width: float = NARROW, role: str = "") -> Curves:
+    return Curves(tuple(Line(*ends) for ends in segments), Ink(BLACK, width), role)
+
+
+# --- Tables of a drawing sheet: the title block (ISO 7200), the list of parts, the list of holes.
 
 WIDTH = 180.0
 """Width of the title block and of the tables that stand on it."""

@@ -10,7 +10,7 @@ from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import HEIGHT, Pen
 from aidl_lang.export.dimensioning import Callout, dimensioned_to_scale
 from aidl_lang.export.drafting.contents import View
-from aidl_lang.export.drafting.lettering import BLACK, CAPITAL, NARROW, SMALL, WIDE, width_of, written
+from aidl_lang.export.drafting.tables import BLACK, CAPITAL, NARROW, SMALL, WIDE, width_of, written
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Text
 from aidl_lang.export.scaling import Placing
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec

@@ -123,7 +123,7 @@ def _profile(name: str | None) -> Profile | None:
         near = did_you_mean(nearest(name, PROFILES))
         known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
         raise UseError("E0956", f"there is no profile `{name}`", *near, known)
-    from aidl_lang.export.profile_files import parsed
+    from aidl_lang.export.profiles import parsed
 
     try:
         return parsed(files.read(name).text, Path(name).name)

@@ -110,7 +110,7 @@ def _places(arguments: argparse.Namespace) -> _Places:
 
 def _task(arguments: argparse.Namespace) -> Task:
     from aidl_lang.tools.llm.generation import Task
-    from aidl_lang.tools.llm.images import ImageError, read_image
+    from aidl_lang.tools.llm.messages import ImageError, read_image
 
     try:
         image = read_image(arguments.image, files.reads) if arguments.image else None
@@ -190,7 +190,7 @@ class _Run:
     def _save(self, generation: Generation) -> None:
         import json
 
-        from aidl_lang.tools.llm.transcript import to_dict
+        from aidl_lang.tools.llm.generation import to_dict
 
         if self.places.transcript is None:
             return

@@ -1,4 +1,4 @@
-"""Options that several verbs have in common."""
+"""Options of the command: shared ones, and their values read from words."""
 
 from __future__ import annotations
 
@@ -6,13 +6,30 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from aidl_lang.tools.cli import sizes
 from aidl_lang.tools.cli.report import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.checking.variants import Variant
     from aidl_lang.tools.llm.messages import Sampling
     from aidl_lang.tools.llm.providers import Closable, Price
+
+
+def size(text: str) -> tuple[float, float]:
+    from aidl_lang.checking import sizes
+
+    try:
+        return sizes.size(text)
+    except ValueError as reason:
+        raise argparse.ArgumentTypeError(str(reason)) from None
+
+
+def length(text: str) -> float:
+    from aidl_lang.checking import sizes
+
+    try:
+        return sizes.length(text)
+    except ValueError as reason:
+        raise argparse.ArgumentTypeError(str(reason)) from None
 
 
 LONGEST_NESTING = 600
@@ -123,13 +140,13 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--sheet",
-        type=sizes.size,
+        type=size,
         metavar="SIZE",
         help="lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
     )
     parser.add_argument(
         "--spacing",
-        type=sizes.length,
+        type=length,
         default=3.0,
         metavar="MM",
         help="between parts on a sheet, and to its edge (default: 3)",
@@ -145,7 +162,7 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--kerf",
-        type=sizes.length,
+        type=length,
         default=0.0,
         metavar="MM",
         help="width of the cut: outlines grow by half of it, so that parts keep their size",
@@ -172,13 +189,13 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--tile",
-        type=sizes.size,
+        type=size,
         metavar="SIZE",
         help="print 1:1 over several pages of this size: a4, letter",
     )
     parser.add_argument(
         "--overlap",
-        type=sizes.length,
+        type=length,
         default=10.0,
         metavar="MM",
         help="of neighbouring pages (default: 10)",
@@ -287,7 +304,7 @@ def _thickness(text: str) -> float:
 
 
 def _tolerance(text: str) -> float:
-    value = sizes.length(text)
+    value = length(text)
     if not value > 0:
         raise argparse.ArgumentTypeError(f"expected a length above 0, such as 0.01 or 0.001in, not `{text}`")
     return value

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _rescue(served: Served) -> None:
     """Keeps what was typed and not saved, and tells where."""
-    from aidl_lang.tools.ide.refusing import CannotError
+    from aidl_lang.tools.ide.references import CannotError
 
     try:
         kept = served.rescue()

@@ -11,12 +11,20 @@ from typing import TYPE_CHECKING
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_look, add_params, add_program
 from aidl_lang.tools.cli.report import UseError, exit_code, show
-from aidl_lang.tools.terminal.protocols import GRAPHICS, PROTOCOLS, has_true_colour, protocol
-from aidl_lang.tools.terminal.screen import Extent, Screen, cell_size, fit
+from aidl_lang.tools.terminal.protocols import (
+    GRAPHICS,
+    PROTOCOLS,
+    Extent,
+    Screen,
+    cell_size,
+    fit,
+    has_true_colour,
+    protocol,
+)
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture, Text
-    from aidl_lang.tools.terminal.letters import Label
+    from aidl_lang.tools.terminal.characters import Label
 
 _PROMPT = 2
 """Rows left free: for the command, and for the prompt after it."""
@@ -91,15 +99,14 @@ def _screen(width: int | None) -> Screen:
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
     """Returns the picture in a protocol."""
-    from aidl_lang.export.coarse import coarse, framed
+    from aidl_lang.export.scaling import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)
     across, down = extent.pixels
     picture = framed(picture, across / down)
     if name not in GRAPHICS:
         return _characters(picture, name, extent)
-    from aidl_lang.tools.terminal.inline import iterm, kitty
-    from aidl_lang.tools.terminal.sixel import sixel
+    from aidl_lang.tools.terminal.protocols import iterm, kitty, sixel
 
     png = _png(coarse(picture, picture.width / across), max(across, down))
     if name == "sixel":
@@ -108,9 +115,8 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
 
 
 def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
-    from aidl_lang.export.coarse import coarse, outlined, separated
-    from aidl_lang.tools.terminal.characters import PIXELS, cells
-    from aidl_lang.tools.terminal.letters import text, written
+    from aidl_lang.export.scaling import coarse, outlined, separated
+    from aidl_lang.tools.terminal.characters import PIXELS, cells, text, written
 
     across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
     picture, texts = separated(picture if name == "blocks" else outlined(picture))
@@ -125,7 +131,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
     """Returns a text of the picture in cells. A turned one is written level, about its middle."""
     from aidl_lang.common.colors import rgb
-    from aidl_lang.tools.terminal.letters import Label
+    from aidl_lang.tools.terminal.characters import Label
 
     left, bottom, right, top = mark.box
     edge = {"start": left, "middle": (left + right) / 2, "end": right}

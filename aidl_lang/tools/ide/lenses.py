@@ -1,16 +1,188 @@
-"""Lenses above structures: whether each solves, and its remaining motions."""
+"""What stands beside a text: inlay hints, and lenses above structures and params."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from enum import StrEnum
 
+from aidl_lang.building.model import Knob
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.names import fold
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.solved import ConstraintReport, Motion, SolvedModel, SolvedStructure
-from aidl_lang.pipeline import Compiled
+from aidl_lang.geometry.solved import ConstraintReport, Motion, Scalar, SolvedModel, SolvedStructure
+from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools import ends
+from aidl_lang.tools.ends import Sweep, Turned
+from aidl_lang.tools.ends.wording import valued
+from aidl_lang.tools.ide.guesses import Guess, guesses, number_for
+from aidl_lang.tools.ide.workspace import View
+
+# --- Inlay hints: the solved values of first guesses, the chosen meaning of an ambiguous call, and values of
+# `param`s that were set from outside.
+
+_DECIMALS = 3
+_ARROW = "→"
+
+
+class InlayKind(StrEnum):
+    SOLVED = "what a number was solved to"
+    READING = "how an ambiguous call was taken"
+    PARAM = "what a param was set to from outside"
+
+
+@record()
+class Inlay:
+    """A hint shown at an offset; `edits` write it into the text, if that can be done."""
+
+    offset: int
+    text: str
+    kind: InlayKind
+    tooltip: str
+    edits: tuple[Edit, ...] = ()
+
+
+def inlays(view: View, span: Span | None = None) -> list[Inlay]:
+    """Returns the hints in a part of the text, or in all of it; none while another text is drawn."""
+    if view.outcome is None or view.outcome.model is None or view.is_stale:
+        return []
+    found = [*_solved(view), *_readings(view), *_set_from_outside(view)]
+    wanted = (i for i in found if span is None or span.start <= i.offset <= span.end)
+    return sorted(wanted, key=lambda inlay: inlay.offset)
+
+
+def _solved(view: View) -> Iterator[Inlay]:
+    for guess in guesses(view):
+        if guess.solved is None or not guess.is_off(guess.solved):
+            continue
+        text = f"{_ARROW} {_shown(guess.solved)}{guess.behind}"
+        edits = () if guess.is_shared else (Edit(guess.span, number_for(guess, guess.solved)),)
+        yield Inlay(guess.span.end, text, InlayKind.SOLVED, _told(guess), edits)
+
+
+def _told(guess: Guess) -> str:
+    kind = "a size that had to change" if guess.is_kept else "a first guess"
+    many = f", and of {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
+    written, solved = _shown(guess.written), fixed(guess.solved or 0.0)
+    return f"`{guess.path}`{many}: {kind}, written as {written} and solved to {solved}{guess.behind}"
+
+
+def _readings(view: View) -> Iterator[Inlay]:
+    assert view.outcome is not None
+    assert view.outcome.model is not None
+    for reading in view.outcome.model.readings:
+        if reading.span.source is view.source:
+            about = (
+                f"`{reading.span.one_line}` has several meanings. By what is written it is {reading.text}."
+            )
+            yield Inlay(reading.span.end, reading.text, InlayKind.READING, about)
+
+
+def _set_from_outside(view: View) -> Iterator[Inlay]:
+    """Yields the `param` values given to a run, if they differ from the text."""
+    assert view.outcome is not None
+    given = {fold(name.strip()) for name in view.params or ()}
+    values = {node.span: node.value for node in ast.walk(view.module) if isinstance(node, ast.Param)}
+    for knob in view.outcome.knobs if given else ():
+        value = values.get(knob.span) if knob.span is not None else None
+        root = view.outcome.model.root.path if view.outcome.model is not None else ""
+        if value is None or given.isdisjoint({fold(knob.path), fold(f"{root}.{knob.path}")}):
+            continue
+        if _as_written(value) != knob.value:
+            unit = f" {knob.unit}" if knob.unit else ""
+            text = f"{_ARROW} {_shown(knob.value)}{unit}"
+            yield Inlay(value.span.end, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
+
+
+def _as_written(node: ast.Expression) -> Scalar | None:
+    """Returns the value of a literal; None for any other expression."""
+    match node:
+        case ast.String(value=value) | ast.Boolean(value=value):
+            return value
+        case ast.Number(value=value, unit=unit):
+            return value * (UNITS[unit][0] if unit else 1.0)
+        case ast.Unary(operator="-", operand=ast.Number(value=value, unit=unit)):
+            return -value * (UNITS[unit][0] if unit else 1.0)
+        case _:
+            return None
+
+
+def _shown(value: Scalar) -> str:
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return f'"{value}"'
+        case _:
+            return fixed(value, _DECIMALS)
+
+
+# --- Lenses above params: the results of the program at the ends of their ranges, once tried.
+
+
+def can_be_tried(view: View) -> bool:
+    """True for a program that works as written, and has a param with a range."""
+    outcome = view.outcome
+    return outcome is not None and outcome.ok and any(ends.has_range(knob) for knob in outcome.knobs)
+
+
+def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Sweep:
+    """Tries a program at the ends of its params. Raises ValueError if it cannot be tried, and Cancelled if
+    the request was given up.
+    """
+    if view.outcome is None or not can_be_tried(view):
+        raise ValueError("the program has to work as it is written, and have a param with a range")
+    job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
+    return ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds)
+
+
+def end_lenses(view: View, found: Sweep | None) -> list[Lens]:
+    """Returns one lens above each param that was tried; before, one that offers to try."""
+    if not can_be_tried(view):
+        return []
+    return list(_offer(view) if found is None else _told_at_ends(view, found))
+
+
+def _offer(view: View) -> Iterator[Lens]:
+    assert view.outcome is not None
+    knobs = [k for k in view.outcome.knobs if ends.has_range(k)]
+    own = [k for k in knobs if _is_own(view, k)]
+    if own and own[0].span is not None:
+        count = len({k.path for k in knobs})
+        title = f"try the ends of {count} params" if count > 1 else "try the ends of this param"
+        yield Lens(own[0].span, title, tuple(k.path for k in knobs))
+
+
+def _is_own(view: View, knob: Knob) -> bool:
+    return knob.span is not None and knob.span.source is view.source
+
+
+def _told_at_ends(view: View, found: Sweep) -> Iterator[Lens]:
+    by_place: dict[Span, dict[str, list[Turned]]] = {}
+    for each in found.turned:
+        if each.knob.span is not None and _is_own(view, each.knob):
+            by_place.setdefault(each.knob.span, {}).setdefault(each.knob.path, []).append(each)
+    for span, by_path in by_place.items():
+        texts = dict.fromkeys(_title(turned, view.source.name) for turned in by_path.values())
+        yield Lens(span, " · ".join(texts), tuple(by_path))
+
+
+def _title(turned: Sequence[Turned], name: str) -> str:
+    """Returns the results of one param as a title."""
+    said = [text for each in turned if (text := ends.sentence(each, name))]
+    if said:
+        return " · ".join(said)
+    knob = turned[0].knob
+    if knob.low is None or knob.high is None or isinstance(knob.value, bool):
+        return f"works with {' and '.join(valued(knob, each.value) for each in turned)}"
+    return f"works from {valued(knob, knob.low)} to {valued(knob, knob.high)}"
+
+
+# --- Lenses above structures: whether each solves, and its remaining motions.
 
 _NAMED = 3
 """Most things that one title names, and most different statements in it."""
@@ -42,7 +214,7 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
     motions = [motion for motion in model.motions if motion.things != (model.root.path,)]
     for node in ast.walk(view.module):
         if isinstance(node, ast.Structure) and (found := made.get(node.span)):
-            title = _title(found, motions, model.constraints)
+            title = _title_of_structure(found, motions, model.constraints)
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
                 title = f"{_status(outcome, model)} · {title.replace(_HELD, as_whole)}"
@@ -61,7 +233,7 @@ def _status(outcome: Compiled, model: SolvedModel) -> str:
             return "does not solve"
 
 
-def _title(
+def _title_of_structure(
     found: Sequence[SolvedStructure], motions: Sequence[Motion], reports: Sequence[ConstraintReport]
 ) -> str:
     """Returns the title for the structures that one piece of text made."""

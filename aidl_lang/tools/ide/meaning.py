@@ -13,8 +13,8 @@ from aidl_lang.common.names import find, fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.nodes import around, scope_at
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.site import around, scope_at
+from aidl_lang.tools.ide.workspace import View
 
 Place: TypeAlias = tuple[Path, int]
 """The file and the offset of the first declaration of a symbol: the same in every view of a project."""

@@ -18,7 +18,7 @@ from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
 from aidl_lang.tools.discretion import Programs, Reader
-from aidl_lang.tools.llm import feedback
+from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.intent import Ledger, Loss, request
 from aidl_lang.tools.llm.language import Verdict
 from aidl_lang.tools.llm.messages import Image
@@ -106,7 +106,7 @@ class AidlConversation:
         compiled = self._compiled(mended.source)
         self.ledger.note(mended.source, compiled)
         verdict = self._verdict(mended.source, compiled, mended.fixes)
-        repairs = feedback.mended(program, mended.source.text, mended.fixes)
+        repairs = generation.mended(program, mended.source.text, mended.fixes)
         answer = self._answer(verdict, compiled)
         told = "\n\n".join(part for part in (repairs, answer) if part) if answer else ""
         return replace(verdict, feedback=told)
@@ -137,10 +137,10 @@ class AidlConversation:
     def _verdict(self, source: SourceFile, compiled: Compiled, fixes: tuple[str, ...]) -> Verdict:
         wrong = [d for d in compiled.diagnostics if d.is_error]
         warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
-        stage = feedback.stage_of(compiled.diagnostics)
+        stage = generation.stage_of(compiled.diagnostics)
         missing = self.ledger.missing
         is_partial = self.language.plans and compiled.ok and _is_partial(source, compiled)
-        distance = (int(not compiled.ok), -feedback.STAGES.index(stage) if wrong else 0, int(is_partial))
+        distance = (int(not compiled.ok), -generation.STAGES.index(stage) if wrong else 0, int(is_partial))
         picture = (Image("image/png", _picture(compiled)),) if is_partial else ()
         return Verdict(
             ok=compiled.ok and not is_partial,
@@ -162,15 +162,15 @@ class AidlConversation:
         losses = self._to_ask_for()
         asked = request(losses) if losses else ""
         if not compiled.ok:
-            return "\n\n".join(filter(None, (feedback.errors(compiled), asked, _WRONG)))
-        remarks = feedback.remarks(
+            return "\n\n".join(filter(None, (generation.errors(compiled), asked, _WRONG)))
+        remarks = generation.remarks(
             compiled, may_constrain=self.language.variant is not Variant.NO_CONSTRAINTS
         )
         remarks = remarks if remarks not in self.told else ""
         self.told.add(remarks)
         if verdict.is_partial:
             assert compiled.model is not None
-            return "\n\n".join(filter(None, (feedback.plan(compiled.model), remarks, asked, _PLANNED)))
+            return "\n\n".join(filter(None, (generation.plan(compiled.model), remarks, asked, _PLANNED)))
         said = "\n\n".join(filter(None, (remarks, asked)))
         return f"{said}\n\n{_VALID}" if said else ""
 

@@ -16,7 +16,7 @@ from pygls import uris
 from aidl_lang.common.records import record
 from aidl_lang.solver.memory import Memory
 from aidl_lang.tools.ide.positions import Positions, Unit
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import View
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Surrogate halves of characters, which JSON can hold and no text may."""

@@ -12,7 +12,7 @@ from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.common.records import record
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.preview import Preview, Writer, preview, with_handles
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import Show
 from aidl_lang.tools.lsp.server import Asked, Server

@@ -24,8 +24,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
-from aidl_lang.tools.ide.view import SETTINGS, View, look, run
-from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
 from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 from aidl_lang.tools.lsp.lane import Job, Lane, gave_up
 from aidl_lang.tools.lsp.tidying import Tidier

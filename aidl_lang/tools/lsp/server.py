@@ -17,16 +17,13 @@ from pygls.lsp.server import LanguageServer
 from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.positions import Unit
-from aidl_lang.tools.ide.project import Project
-from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.ide.workspace import Workspace
-from aidl_lang.tools.lsp.convert import Converter
+from aidl_lang.tools.ide.workspace import Project, View, Workspace
+from aidl_lang.tools.lsp.convert import Converter, Settings
 from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 from aidl_lang.tools.lsp.lane import Answers
 from aidl_lang.tools.lsp.protocol import Protocol, converter
 from aidl_lang.tools.lsp.publishing import Publisher, converted
 from aidl_lang.tools.lsp.running import LIMITS, Runner
-from aidl_lang.tools.lsp.settings import Settings
 from aidl_lang.version import __version__
 
 T = TypeVar("T")

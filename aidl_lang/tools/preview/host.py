@@ -21,15 +21,14 @@ from pygls.exceptions import JsonRpcInvalidParams
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.positions import Positions
-from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.ide.view import SETTINGS
+from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.workspace import SETTINGS
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.params import read
 from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.preview import files
-from aidl_lang.tools.preview.manuscript import Manuscript
-from aidl_lang.tools.preview.page import TOO_MUCH, Json, Page, Request
-from aidl_lang.tools.preview.typed import typed
+from aidl_lang.tools.preview.files import Manuscript
+from aidl_lang.tools.preview.page import TOO_MUCH, Json, Page, Request, typed
 
 LONGEST = 2_000_000
 """Most bytes of a page's message: it may hold what somebody pastes."""

@@ -17,10 +17,10 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from aidl_lang.tools.preview.files import watch
 from aidl_lang.tools.preview.host import LONGEST, Host
 from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
 from aidl_lang.tools.preview.page import Page
-from aidl_lang.tools.preview.watching import watch
 
 MOST_PAGES = 16
 """Most pages that are served at once."""

@@ -434,7 +434,7 @@ def test_a_busy_machine_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     clocks = SimpleNamespace(
         thread_time=time.thread_time, monotonic=hours, perf_counter=hours, time=hours, process_time=hours
     )
-    monkeypatch.setattr("aidl_lang.tools.llm.intent.probing.time", clocks)
+    monkeypatch.setattr("aidl_lang.tools.llm.intent.placing.time", clocks)
     ledger = Ledger()
     for source, result in programs:
         ledger.note(source, result)

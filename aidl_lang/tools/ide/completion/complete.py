@@ -9,19 +9,15 @@ from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.tools.ide.completion import names, words
-from aidl_lang.tools.ide.completion.arguments import named_arguments
 from aidl_lang.tools.ide.completion.constraints import constraints
-from aidl_lang.tools.ide.completion.context import Context, Use, context_of
-from aidl_lang.tools.ide.completion.draft import Draft, ranked
-from aidl_lang.tools.ide.completion.imports import importing
-from aidl_lang.tools.ide.completion.item import Completion
-from aidl_lang.tools.ide.completion.members import indices, members
+from aidl_lang.tools.ide.completion.context import CONDITION, Context, Use, context_of
+from aidl_lang.tools.ide.completion.draft import Completion, Draft, ranked
+from aidl_lang.tools.ide.completion.members import indices, members, named_arguments
+from aidl_lang.tools.ide.completion.names import importing
 from aidl_lang.tools.ide.completion.statements import clauses, kinds, statements, truths
-from aidl_lang.tools.ide.completion.wanted import CONDITION
 from aidl_lang.tools.ide.completion.words import Files
-from aidl_lang.tools.ide.nodes import around
-from aidl_lang.tools.ide.site import EditSite, Spot, Where, site_at, spot_at
-from aidl_lang.tools.ide.view import View, look
+from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spot_at
+from aidl_lang.tools.ide.workspace import View, look
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:

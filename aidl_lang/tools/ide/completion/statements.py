@@ -12,7 +12,7 @@ from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.constraints import constraints
 from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.completion.draft import Draft, written_out
-from aidl_lang.tools.ide.describing import of_public
+from aidl_lang.tools.ide.signatures import of_public
 from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import OF_WORD

@@ -19,8 +19,7 @@ from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.completion.draft import Draft, written_out
-from aidl_lang.tools.ide.describing import of_callable, of_public
-from aidl_lang.tools.ide.overloads import Reading
+from aidl_lang.tools.ide.signatures import Reading, of_callable, of_public
 from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import SNIPPETS

@@ -17,9 +17,9 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents.knobs import edit_at
 from aidl_lang.tools.agents.workspace import RefusalError
-from aidl_lang.tools.ide.dragging.grips import Grip, grips, is_somewhere
-from aidl_lang.tools.ide.refusing import Refusal
-from aidl_lang.tools.ide.view import View, hasty, run
+from aidl_lang.tools.ide.dragging.mobility import Grip, grips, is_somewhere
+from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.workspace import View, hasty, run
 
 MOST_KNOBS = 12
 _SECONDS = 0.6

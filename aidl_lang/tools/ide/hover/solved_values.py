@@ -24,7 +24,7 @@ from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.records import record
 from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import View
 
 MOST = 4
 """Most instances and turns that are listed."""

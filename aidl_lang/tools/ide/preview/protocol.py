@@ -10,7 +10,7 @@ from aidl_lang.common.numbers import rounded
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import View
 
 Json: TypeAlias = dict[str, Any]
 

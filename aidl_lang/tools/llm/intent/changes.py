@@ -7,8 +7,18 @@ from enum import StrEnum
 
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-from aidl_lang.tools.llm.intent.canonical import Key, Path, names_in, shape, translated
-from aidl_lang.tools.llm.intent.inventory import STATED, Inventory, Item, Kind, unnumbered
+from aidl_lang.tools.llm.intent.inventory import (
+    STATED,
+    Inventory,
+    Item,
+    Key,
+    Kind,
+    Path,
+    names_in,
+    shape,
+    translated,
+    unnumbered,
+)
 from aidl_lang.tools.llm.intent.matching import match_things
 
 

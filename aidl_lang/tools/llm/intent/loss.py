@@ -5,8 +5,7 @@ from __future__ import annotations
 from aidl_lang.common.records import record
 from aidl_lang.tools.llm.intent.changes import Fate
 from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
-from aidl_lang.tools.llm.intent.placing import dotted
-from aidl_lang.tools.llm.intent.probing import UNTRIED, Finding
+from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, dotted
 
 
 @record(eq=False)
@@ -51,6 +50,6 @@ class Loss:
     @property
     def phrase(self) -> str:
         """The loss in words."""
-        from aidl_lang.tools.llm.intent.wording import phrase
+        from aidl_lang.tools.llm.intent.ledger import phrase
 
         return phrase(self)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from aidl_lang.tools.llm.intent.canonical import Path, shape, translated
-from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
+from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, shape, translated
 
 _MOST = 50
 """Most new structures compared with one that may have been renamed."""

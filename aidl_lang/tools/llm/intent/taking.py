@@ -19,8 +19,18 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.expression_printer import ExpressionPrinter, format_expression
-from aidl_lang.tools.llm.intent.canonical import Key, Path, Reader, names_in, own_path
-from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Kind, Step
+from aidl_lang.tools.llm.intent.inventory import (
+    CONSTRAIN,
+    Inventory,
+    Item,
+    Key,
+    Kind,
+    Path,
+    Reader,
+    Step,
+    names_in,
+    own_path,
+)
 
 _OPERATIONS = frozenset({"rotate", "move", "translate", "scale", "fillet", "chamfer"})
 _WRONG = ("E01", "E02", "E03", "E04", "E05")

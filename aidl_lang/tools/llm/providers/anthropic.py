@@ -7,8 +7,7 @@ from typing import Any
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Sampling, Usage
 from aidl_lang.tools.llm.providers.connection import Connection
-from aidl_lang.tools.llm.providers.draft import Draft, count, dig, one_line, words
-from aidl_lang.tools.llm.providers.server import Server
+from aidl_lang.tools.llm.providers.server import Draft, Server, count, dig, one_line, words
 
 MAX_TOKENS = 8192
 """The default limit: the API wants one, and every model allows at least this."""
@@ -30,12 +29,12 @@ class Anthropic(Server):
     def __init__(self, connection: Connection) -> None:
         import anthropic
 
-        from aidl_lang.tools.llm.providers import http
+        from aidl_lang.tools.llm.providers import server
 
         client = anthropic.Anthropic(
             api_key=connection.key or "none",
             base_url=connection.base_url.removesuffix("/v1"),
-            **http.options(connection),
+            **server.options(connection),
         )
         super().__init__(anthropic, client, connection)
 

@@ -8,8 +8,7 @@ from urllib.parse import urlsplit
 
 from aidl_lang.tools.llm.messages import Finish, Message, Sampling, Usage
 from aidl_lang.tools.llm.providers.connection import Connection
-from aidl_lang.tools.llm.providers.draft import Draft, count, dig, dollars, one_line, words
-from aidl_lang.tools.llm.providers.server import Server
+from aidl_lang.tools.llm.providers.server import Draft, Server, count, dig, dollars, one_line, words
 
 _FINISH = {"length": Finish.CUT, "content_filter": Finish.REFUSED}
 _LIMITS = ("max_tokens", "max_completion_tokens")
@@ -28,12 +27,12 @@ class OpenAI(Server):
     def __init__(self, connection: Connection) -> None:
         import openai
 
-        from aidl_lang.tools.llm.providers import http
+        from aidl_lang.tools.llm.providers import server
 
         client = openai.OpenAI(
             api_key=connection.key or "none",
             base_url=connection.base_url,
-            **http.options(connection),
+            **server.options(connection),
         )
         host = urlsplit(connection.base_url).hostname or ""
         self._limit = _LIMITS[host.endswith(_NEWER)]

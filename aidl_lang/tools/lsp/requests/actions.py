@@ -10,7 +10,7 @@ from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcIn
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.actions import Action, actions
-from aidl_lang.tools.ide.refusing import CannotError
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.lsp import params as asking
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 

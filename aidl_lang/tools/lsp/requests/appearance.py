@@ -6,11 +6,17 @@ from itertools import count
 
 from lsprotocol import types
 
-from aidl_lang.tools.ide.colors import as_bytes, colors, spellings
-from aidl_lang.tools.ide.folding import folds
-from aidl_lang.tools.ide.formatting import format_document, format_range
-from aidl_lang.tools.ide.selection import selections
-from aidl_lang.tools.ide.semantic_tokens import MODIFIERS, TYPES, Colored, semantic_tokens
+from aidl_lang.tools.ide.outline import folds, selections
+from aidl_lang.tools.ide.positions import format_document, format_range
+from aidl_lang.tools.ide.semantic_tokens import (
+    MODIFIERS,
+    TYPES,
+    Colored,
+    as_bytes,
+    colors,
+    semantic_tokens,
+    spellings,
+)
 from aidl_lang.tools.lsp.convert import Converter
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.server import Asked, Server

@@ -14,7 +14,7 @@ from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcIn
 
 from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.tools.ends import Sweep, described
-from aidl_lang.tools.ide.ends import can_be_tried, tried
+from aidl_lang.tools.ide.lenses import can_be_tried, tried
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server

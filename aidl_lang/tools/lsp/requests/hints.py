@@ -6,9 +6,7 @@ from typing import Any
 
 from lsprotocol import types
 
-from aidl_lang.tools.ide.ends import end_lenses
-from aidl_lang.tools.ide.inlays import Inlay, InlayKind, inlays
-from aidl_lang.tools.ide.lenses import lenses
+from aidl_lang.tools.ide.lenses import Inlay, InlayKind, end_lenses, inlays, lenses
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.requests.ends import CHECK_ENDS, Ends
 from aidl_lang.tools.lsp.server import Asked, Server

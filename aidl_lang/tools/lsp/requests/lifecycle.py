@@ -8,9 +8,9 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.common.beside import DATA, PROGRAM
+from aidl_lang.tools.lsp.convert import Settings
 from aidl_lang.tools.lsp.documents import path_of
 from aidl_lang.tools.lsp.server import Server
-from aidl_lang.tools.lsp.settings import Settings
 
 _SECTION = "aidl"
 log = logging.getLogger(__name__)

@@ -9,12 +9,16 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.checking.resolving.symbols import SymbolKind
-from aidl_lang.tools.ide.definition import definitions
-from aidl_lang.tools.ide.links import links
-from aidl_lang.tools.ide.references import highlights, references
-from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.ide.rename import rename, renameable
-from aidl_lang.tools.ide.symbols import Entry, outline, search
+from aidl_lang.tools.ide.outline import Entry, outline, search
+from aidl_lang.tools.ide.references import (
+    CannotError,
+    definitions,
+    highlights,
+    links,
+    references,
+    rename,
+    renameable,
+)
 from aidl_lang.tools.lsp.convert import Converter
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 

@@ -22,8 +22,8 @@ from aidl_lang.export import FORMATS, ExportError, Options
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.dragging import drag
 from aidl_lang.tools.ide.preview import LAYERS, set_knob, tried, worked_out
-from aidl_lang.tools.ide.refusing import Refusal
-from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.lsp import exports
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from aidl_lang.common.papers import PAPERS
-from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.pdf import POINTS_PER_MM
+from aidl_lang.export.png import FAMILY, font_file
 from aidl_lang.tools.sweeping.rows import Row
 from aidl_lang.tools.sweeping.sheet.layout import on_paper, paint
 from aidl_lang.version import __version__

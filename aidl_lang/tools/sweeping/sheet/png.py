@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from aidl_lang.export.font import font_file
+from aidl_lang.export.png import font_file
 from aidl_lang.tools.sweeping.rows import Row
 from aidl_lang.tools.sweeping.sheet.layout import in_one, paint
 

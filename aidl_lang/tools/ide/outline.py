@@ -1,4 +1,4 @@
-"""The outline of a program, and the search for names in all programs of a project."""
+"""The shape of a text: its outline, what can be folded, and growing selections."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ from aidl_lang.common.names import fold, is_spelled_in
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.project import Project
-from aidl_lang.tools.ide.view import View
+from aidl_lang.syntax.tokens import Token
+from aidl_lang.tools.ide.site import around
+from aidl_lang.tools.ide.workspace import Project, View
+
+# --- The outline of a program, and the search for names in all programs of a project.
 
 MOST_FOUND = 200
 
@@ -124,3 +127,98 @@ def _entry(
 ) -> Entry:
     children = tuple(_entries(view, body.statements)) if body is not None else ()
     return Entry(name.text + indices, detail, kind, node.span, name.span, children)
+
+
+# --- Folding ranges: blocks, calls and lists over several lines, comments, imports.
+#
+# Brackets are paired in the text itself, so a program that does not parse folds too.
+
+_CLOSES = {"}": "{", "]": "[", ")": "("}
+
+
+@record()
+class Fold:
+    """Lines from `start`, which stays visible, to `end`, both from 1. `kind` is `region`, `comment` or
+    `imports`.
+    """
+
+    start: int
+    end: int
+    kind: str = "region"
+
+
+def folds(view: View) -> list[Fold]:
+    """Returns folds by their first line; of two that begin in one line the longer."""
+    tokens = view.tokens
+
+    def line(offset: int) -> int:
+        return view.source.position(offset)[0]
+
+    comments = [(line(c.span.start), line(c.span.end)) for c in tokens.comments]
+    imports = [(line(t.start), line(t.start)) for t in tokens.tokens if t.kind == "import"]
+    found: dict[int, Fold] = {}
+    for each in (
+        *(Fold(a, b, "comment") for a, b in _runs(comments)),
+        *(Fold(a, b, "imports") for a, b in _runs(imports)),
+        *(Fold(line(a), line(b) - 1) for a, b in _brackets(tokens.tokens)),
+    ):
+        if each.end > each.start and (known := found.get(each.start, each)).end <= each.end:
+            found[known.start] = each
+    return [found[start] for start in sorted(found)]
+
+
+def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
+    """Yields the offsets of paired brackets; a closing bracket without an open one is skipped."""
+    opened: list[tuple[str, int]] = []
+    for token in tokens:
+        if token.kind in _CLOSES.values() or token.kind == "CALL":
+            opened.append(("(" if token.kind == "CALL" else token.kind, token.start))
+        elif (wanted := _CLOSES.get(token.kind)) in [kind for kind, _ in opened]:
+            while (pair := opened.pop())[0] != wanted:
+                pass
+            yield pair[1], token.start
+
+
+def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """Joins adjacent ranges of lines."""
+    start = end = -1
+    for first, last in lines:
+        if first > end + 1:
+            if start >= 0:
+                yield start, end
+            start = first
+        end = last
+    if start >= 0:
+        yield start, end
+
+
+# --- Grows a selection from a word to the nodes around it.
+
+
+def selections(view: View, offset: int) -> list[Span]:
+    """Returns the ranges around an offset, each larger than the one before and around it, the whole file
+    last.
+    """
+    found: list[Span] = []
+    for node in reversed(around(view.module, offset)):
+        for span in (*_parts(node, offset), node.span):
+            is_around = span.start <= offset <= span.end
+            grows = not found or (span.start <= found[-1].start and span.end >= found[-1].end)
+            if is_around and grows and (not found or span != found[-1]):
+                found.append(span)
+    return found
+
+
+def _parts(node: ast.Node, offset: int) -> list[Span]:
+    """Returns the parts of a node that are no nodes: the name of a call or a member, the inside of a
+    block.
+    """
+    match node:
+        case ast.Call(callee=name) | ast.Member(name=name):
+            return [name.span]
+        case ast.Block(span=span) if span.text[:1] == "{" and span.end - span.start > 2:
+            inside = span.text[1:-1]
+            start = span.start + 1 + len(inside) - len(inside.lstrip())
+            return [Span(span.source, start, start + len(inside.strip()))] if inside.strip() else []
+        case _:
+            return []
