@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
 from aidl_lang.building.front import Front, Settings, build, read
@@ -18,13 +18,14 @@ from aidl_lang.checking.allowing import IDLE, Allowance, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
+from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Asked, Compiled
+from aidl_lang.compiled import Asked, Compiled, Facts
 from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.syntax import ast
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.solution import Solution
 
+_Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
     """Reads a text into a Program: parsed, resolved and type-checked. `compile` can go on from it."""
@@ -198,7 +200,7 @@ def compile(
         if has_errors(diagnostics):
             with watch("fixes"):
                 diagnostics = tries.answered(diagnostics, diagnostics, built.model)
-            made = Compiled("wrong", audible(diagnostics, built.allowances), watch.seconds, known)
+            made = Compiled("wrong", Facts(audible(diagnostics, built.allowances)), watch.seconds, known)
         else:
             made = _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
     made.asked = Asked(source, world, params or {}, settings)
@@ -239,28 +241,55 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
     Raises TooLongError, and ValueError if nothing was built.
     """
-    from aidl_lang.solver.analysis import analyse
-
-    if outcome.built is None:
+    built = outcome.built
+    if built is None:
         raise ValueError("the program is wrong, so there is nothing to draw")
     watch = Stopwatch()
     with working, within(outcome.limit, "drawing"):
-        with watch("freedom"):
-            freedom = analyse(lowered.problem, solution)
-        model, evaluator, drawing, notes = pictured(outcome.built, lowered, solution, freedom, watch)
-        found = _asserted(outcome.built, solution, model, drawing, evaluator, watch)
-    told = [*found, *_beside(notes, found)]
-    if outcome.asked is not None:
-        told = adapted(told, outcome.asked.settings.variant)
+        freedom = cache(partial(_freed, lowered, solution, watch, lambda _: None))
+        model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
+        found = _asserted(built, solution, model, drawing, evaluator, watch)
+
+    def facts(late: list[Diagnostic], drawn: list[Diagnostic]) -> Facts:
+        told = [*late, *found, *_beside(drawn, found)]
+        if outcome.asked is not None:
+            told = adapted(told, outcome.asked.settings.variant)
+        return Facts(ordered([*outcome.facts.standing, *audible(told, outcome.allowances)]))
+
+    find = partial(_examined, outcome.limit, lambda: ([], notes.everything()), facts)
     return replace(
         outcome,
         status=model.status,
-        diagnostics=ordered([*outcome.standing, *audible(told, outcome.allowances)]),
+        told=find() if outcome.errors or notes.errors or has_errors(found) else None,
+        find=find,
         timings=watch.seconds,
         model=model,
         drawing=drawing,
         evaluate=evaluator,
     )
+
+
+def _examined(
+    limit: float, noted: Callable[[], _Noted], facts: Callable[[list[Diagnostic], list[Diagnostic]], Facts]
+) -> Facts:
+    """Returns what there is to tell of what is noted; if noting it takes too long, that it does."""
+    with working:
+        try:
+            with within(limit, "examining"):
+                found = noted()
+        except TooLongError as reason:
+            checkpoint()  # it may have been the reader's time that ran out
+            found = [reason.diagnostic], []
+        return facts(*found)
+
+
+def _freed(
+    lowered: Lowered, solution: Solution, watch: Stopwatch, order: Callable[[Lowered], Sequence[int] | None]
+) -> Freedom:
+    from aidl_lang.solver.analysis import analyse
+
+    with working, watch("freedom"):
+        return analyse(lowered.problem, solution, order(lowered))
 
 
 @record()
@@ -324,7 +353,6 @@ def _finish(
 ) -> Compiled:
     from aidl_lang.building.lower import lower, preference
     from aidl_lang.solver import Status, solve
-    from aidl_lang.solver.analysis import analyse
 
     other: Rereading | None = None
     with watch("lower"):
@@ -337,55 +365,69 @@ def _finish(
             other, solution = reread(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
-    with watch("freedom"):
-        freedom = analyse(lowered.problem, solution, preference(lowered))
+    freedom = cache(partial(_freed, lowered, solution, watch, preference))
     tried = cache(partial(tries.trials, lowered, solution))
-    troubles = _Troubles()
+    troubles, is_solved = _Troubles(), solution.status is Status.SOLVED
     if other is not None or _is_troubled(solution):
         troubles = _explained(built, lowered, solution, other, settings, tried(), watch)
     try:
         with within(settings.drawing, "drawing"):
-            model, evaluator, drawing, found, notes = _drawn(
-                built, lowered, solution, freedom, troubles, watch
-            )
+            model, evaluator, drawing, drawn = pictured(built.model, lowered, solution, freedom, watch)
             asserted = _asserted(built.model, solution, model, drawing, evaluator, watch)
     except TooLongError as reason:
         found = [*audible(diagnostics, built.allowances), reason.diagnostic]
-        return Compiled("wrong", ordered(found), watch.seconds, known)
-    passing = {(d.code, d.span) for d in [*asserted, *notes]}
-    found = [*found, *asserted]
-    if settings.strict and troubles.given:
-        from aidl_lang.explaining.giving import as_error
+        return Compiled("wrong", Facts(ordered(found)), watch.seconds, known)
+    if model.changed:
+        from aidl_lang.explaining.giving import with_reasons
 
-        found = list(map(as_error, found))
-    if solution.status is not Status.SOLVED:
-        notes = []  # nothing to note on parts that are not in place
-    notes = list(_beside([*troubles.elsewhere, *notes], found))
-    told = adapted([*found, *notes], settings.variant)
-    if settings.solving.explain:
-        with watch("fixes"):
-            if any(d.fix is not None for d in told):
-                from aidl_lang.explaining.verifying import verified
+        model = with_reasons(model, troubles.given, lowered)
 
-                told = verified(told, [*diagnostics, *told], tried())
-            told = tries.answered(told, [*diagnostics, *told], built.model)
-    everything = _unsilenced(ordered([*diagnostics, *told]), built.allowances, settings, solution)
-    stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
+    def noted() -> _Noted:
+        """Returns the diagnostics on the solution, and those on the drawing if the parts are in place."""
+        from aidl_lang.explaining.outcome import solution_notes
+
+        count, root = freedom(), built.model.root
+        with watch("notes"):
+            found = solution_notes(
+                root, lowered, solution, count, model, troubles.given, troubles.failures
+            )
+        return found, drawn.everything() if is_solved else []
+
+    def facts(found: list[Diagnostic], notes: list[Diagnostic]) -> Facts:
+        passing = {(d.code, d.span) for d in [*asserted, *notes]}
+        found = [*found, *asserted]
+        if settings.strict and troubles.given:
+            from aidl_lang.explaining.giving import as_error
+
+            found = list(map(as_error, found))
+        told = adapted([*found, *_beside([*troubles.elsewhere, *notes], found)], settings.variant)
+        if settings.solving.explain:
+            with watch("fixes"):
+                if any(d.fix is not None for d in told):
+                    from aidl_lang.explaining.verifying import verified
+
+                    told = verified(told, [*diagnostics, *told], tried())
+                told = tries.answered(told, [*diagnostics, *told], built.model)
+        everything = _unsilenced(ordered([*diagnostics, *told]), built.allowances, settings, solution)
+        return Facts(everything, tuple(d for d in everything if (d.code, d.span) not in passing))
+
+    find = partial(_examined, settings.drawing, noted, facts)
+    is_wrong = not is_solved or drawn.errors or has_errors(asserted) or (settings.strict and troubles.given)
     return Compiled(
         model.status,
-        everything,
+        find() if is_wrong else None,
         watch.seconds,
         known,
         model,
         drawing,
         show,
-        stages,
+        tuple((lowered.groups[stage.group], stage) for stage in solution.stages),
         _conflicts(troubles.failures),
         _follows(lowered, solution),
         built.model,
         evaluator,
         settings.drawing,
-        standing=tuple(d for d in everything if (d.code, d.span) not in passing),
+        find=find,
     )
 
 
@@ -406,31 +448,6 @@ def _unsilenced(
     return ordered(audible([*found, *idle_notes], allowed))
 
 
-def _drawn(
-    built: Interpretation,
-    lowered: Lowered,
-    solution: Solution,
-    freedom: Freedom,
-    troubles: _Troubles,
-    watch: Stopwatch,
-) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
-    """Returns the solved model, its evaluator and drawing, the diagnostics on the solution, and those on the
-    drawing.
-    """
-    from aidl_lang.explaining.outcome import solution_notes
-
-    model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
-    with watch("asserts"):
-        if model.changed:
-            from aidl_lang.explaining.giving import with_reasons
-
-            model = with_reasons(model, troubles.given, lowered)
-        found = solution_notes(
-            built.model.root, lowered, solution, freedom, model, troubles.given, troubles.failures
-        )
-    return model, evaluator, drawing, found, notes
-
-
 def _asserted(
     built: Model,
     solution: Solution,
@@ -449,6 +466,7 @@ def _asserted(
 
 __all__ = [
     "Compiled",
+    "Facts",
     "Front",
     "Knob",
     "Settings",

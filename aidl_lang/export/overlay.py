@@ -311,16 +311,18 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     structures = list(at.model.root.walk())
-    free = _free_by_structure(structures, at.model.free)
+    mobility = at.model.mobility
+    free = _free_by_structure(structures, mobility.free)
     for structure in structures:
         box = _bounds(structure)
-        if box is not None and (structure.degrees or structure is at.model.root):
-            marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, palette.FREE, size))
-    count = at.model.degrees
+        degrees, _ = mobility.of(structure)
+        if box is not None and (degrees or structure is at.model.root):
+            marks.append(at.label(f"{structure.name}: {degrees} dof", box, palette.FREE, size))
+    count = mobility.degrees
     lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
         if names := free.get(structure.path):
-            lines.append((0, f"{structure.path}: {structure.degrees}"))
+            lines.append((0, f"{structure.path}: {mobility.of(structure)[0]}"))
             lines += [(1, name) for name in names]
     for indent, line in lines:
         marks.append(Text((left + indent * size, top), line, size, palette.FREE, halo=False))

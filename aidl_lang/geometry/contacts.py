@@ -1,13 +1,14 @@
 """The contacts between the bodies of a drawing: touching, apart or overlapping.
 
-Pairs that may touch are compared at once; how far others are apart is worked out when it is asked for. Up to
+All is worked out when it is asked for, pairs that may touch apart from how far others are apart. Up to
 `ALL_PAIRS` bodies every pair is listed. In larger drawings only pairs whose boxes are closer than `NEAR`
 times the size of the drawing are, so that hundreds of bodies stay cheap; a pair that is not listed is apart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field
 from functools import cached_property
 from itertools import combinations
 from operator import itemgetter
@@ -63,14 +64,21 @@ class Solid:
 
 @record()
 class Contacts:
-    """The pairs of some bodies. `near` has those that touch, overlap or are `UNNOTICED` apart at most;
-    `tolerance` and `size` are those of the drawing.
-    """
+    """The pairs of some bodies; `tolerance` and `size` are those of the drawing, `compare` makes `near`."""
 
     bodies: Sequence[tuple[str, Region, Bounds]] = ()
-    near: tuple[Contact, ...] = ()
+    compare: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
     tolerance: float = 0.0
     size: float = 0.0
+
+    def __getstate__(self) -> dict[str, object]:
+        """Returns what a pickle keeps: the pairs that are near are compared now."""
+        return vars(self) | {"near": self.near, "compare": tuple}
+
+    @cached_property
+    def near(self) -> tuple[Contact, ...]:
+        """The pairs that touch, overlap or are `UNNOTICED` apart at most."""
+        return self.compare()
 
     @cached_property
     def all(self) -> tuple[Contact, ...]:
@@ -105,9 +113,12 @@ class Contacts:
 
 def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
     """Returns the contacts between some bodies."""
-    margin = max(UNNOTICED, 2 * network.tolerance)
-    pairs = sorted(near_pairs([s.box for s in solids], margin))
-    near = tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+
+    def near() -> tuple[Contact, ...]:
+        margin = max(UNNOTICED, 2 * network.tolerance)
+        pairs = sorted(near_pairs([s.box for s in solids], margin))
+        return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+
     return Contacts(tuple((s.path, s.region, s.box) for s in solids), near, network.tolerance, network.size)
 
 

@@ -17,7 +17,7 @@ from aidl_lang.common.source import Span
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.lower import Lowered
-    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution
@@ -26,10 +26,10 @@ _HEAVY = "most of its curves are made here"
 
 
 def pictured(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
-) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
+    built: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom], watch: Stopwatch
+) -> tuple[SolvedModel, Evaluator, Drawing, Findings]:
     """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
-    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.drawing import Findings, draw
     from aidl_lang.geometry.placeless import with_places
     from aidl_lang.geometry.readout import read_out
 
@@ -38,13 +38,19 @@ def pictured(
     with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
         model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
         model, wrong = _completed(model)
-        drawing, notes = draw(model)
+        drawing, found = draw(model)
         if any(s.ground is not None for s in model.root.walk()):
             from aidl_lang.geometry.grounds import on_material
 
             model = on_material(model, drawing)
-            drawing, notes = draw(model)
-    return model, evaluator, drawing, [*placeless, *wrong, *notes]
+            drawing, found = draw(model)
+
+    def everything() -> list[Diagnostic]:
+        with watch("notes"), blaming(partial(_most_drawn, model), _HEAVY):
+            return [*placeless, *wrong, *found.everything()]
+
+    errors = [d for d in (*placeless, *wrong) if d.is_error]
+    return model, evaluator, drawing, Findings([*errors, *found.errors], everything)
 
 
 def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:

@@ -39,6 +39,7 @@ from aidl_lang.geometry.solved import (
     Change,
     ConstraintReport,
     Frame,
+    Mobility,
     Motion,
     Reading,
     Scalar,
@@ -58,27 +59,35 @@ _FULL_TURN = 2 * math.pi
 
 
 def read_out(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
+    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
 ) -> tuple[SolvedModel, Evaluator]:
-    """Returns the solved model, and the evaluator of its values for later checks."""
+    """Returns the solved model, and the evaluator of its values for later checks. Its `freedom` is worked out
+    when it is read.
+    """
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
     evaluator = Evaluator(values)
-    counts = dict(zip(model.root.walk(), freedom.group_degrees, strict=True))
-    states = dict(zip(counts, freedom.states, strict=True))
-    reader = _Reader(model, evaluator, counts, states)
     changed = tuple(_changes(lowered, solution))
-    free = tuple(lowered.unknowns[i].path for i in freedom.free)
     reports = tuple(_reports(model, lowered, solution))
-    root = reader.structure(model.root)
+    root = _Reader(model, evaluator).structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    describe = partial(_motions, model, lowered, solution, freedom)
-    floating = tuple(_floating(lowered, freedom))
-    solved = SolvedModel(
-        solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
+    count = partial(_mobility, model, lowered, solution, freedom)
+    return SolvedModel(solution.status.value, root, reports, changed, readings, count), evaluator
+
+
+def _mobility(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
+) -> Mobility:
+    found = freedom()
+    each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
+    return Mobility(
+        found.degrees,
+        tuple(lowered.unknowns[i].path for i in found.free),
+        tuple(_floating(lowered, found)),
+        {structure.path: (degrees, str(state)) for structure, degrees, state in each},
+        partial(_motions, model, lowered, solution, found),
     )
-    return solved, evaluator
 
 
 def _literal(model: Model, finish: Finish) -> ast.Number | None:
@@ -146,8 +155,6 @@ def report_of(stated: Constraint, residual: float, satisfied: bool) -> Constrain
 class _Reader:
     model: Model
     evaluate: Evaluator
-    degrees: Mapping[Structure, int | None]
-    states: Mapping[Structure, str]
 
     @cached_property
     def place(self) -> Placing[float]:
@@ -172,8 +179,6 @@ class _Reader:
             structures=children,
             box=self._box(s, geometry, children),
             is_empty=s.is_empty,
-            degrees=self.degrees[s],
-            state=str(self.states[s]),
             span=s.span,
             finishes=tuple(self._finish(s, f) for f in s.finishes),
             doc=s.doc,

@@ -6,7 +6,7 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Protocol, TypeAlias
 
@@ -135,11 +135,10 @@ class SolvedGeometry:
 class SolvedStructure:
     """A solved structure. `box` is None if there is nothing to bound. `orientation` is its own, or that of
     what is around it. `attributes`: name → argument values as written (`color`, `layer`, `thickness`,
-    `elevation`, `material`, `quantity`, `detached`, `note`, …). `degrees` is None if they could not be
-    counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
-    that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`. `clip`: the geometry that
-    all in it is drawn inside of; `inside` is what it encloses, as far as that lies in those around it, once
-    it is worked out. `ground`: the path of the solid on whose material alone a drawing is drawn.
+    `elevation`, `material`, `quantity`, `detached`, `note`, …). `is_empty`: no geometry of its own and no
+    children, so that `box` is that of the plan. `clip`: the geometry that all in it is drawn inside of;
+    `inside` is what it encloses, as far as that lies in those around it, once it is worked out. `ground`: the
+    path of the solid on whose material alone a drawing is drawn.
     """
 
     name: str
@@ -153,10 +152,8 @@ class SolvedStructure:
     structures: tuple[SolvedStructure, ...]
     box: Box | None
     is_empty: bool
-    degrees: int | None
     span: Span | None
     doc: str | None = None
-    state: str = "unknown"
     finishes: tuple[Finish, ...] = ()
     finished: tuple[SolvedGeometry, ...] | None = None
     clip: tuple[SolvedGeometry, ...] = ()
@@ -337,6 +334,29 @@ class Opening(Dimension):
         return "angle"
 
 
+@record()
+class Mobility:
+    """What can still move.
+
+    degrees   of freedom of the whole; None if they could not be counted
+    free      paths of the parameters that can
+    floating  structures that no constraint ties to what is around them, and that are where they were guessed
+    own       by the path of a structure its degrees of freedom, and the state of its constraints: `fully`,
+              `under`, `over`, `contradictory` or `unknown`
+    describe  works out the ways in which something can move
+    """
+
+    degrees: int | None = 0
+    free: tuple[str, ...] = ()
+    floating: tuple[str, ...] = ()
+    own: Mapping[str, tuple[int | None, str]] = field(default_factory=dict)
+    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
+
+    def of(self, structure: SolvedStructure) -> tuple[int | None, str]:
+        """Returns what `own` has of a structure."""
+        return self.own.get(structure.path, (0, "unknown"))
+
+
 def _unsized(model: SolvedModel) -> tuple[Dimension, ...]:
     return ()
 
@@ -345,15 +365,11 @@ def _unsized(model: SolvedModel) -> tuple[Dimension, ...]:
 class SolvedModel:
     status: str
     root: SolvedStructure
-    constraints: tuple[ConstraintReport, ...]
-    degrees: int | None
-    free: tuple[str, ...]
-    changed: tuple[Change, ...]
+    constraints: tuple[ConstraintReport, ...] = ()
+    changed: tuple[Change, ...] = ()
     readings: tuple[Reading, ...] = ()
-    floating: tuple[str, ...] = ()
-    """structures that no constraint ties to what is around them, and that are where they were guessed"""
-    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
-    """what `ways` is made by, when it is asked for"""
+    count: Callable[[], Mobility] = field(default=Mobility, repr=False, compare=False)
+    """what `mobility` is made by, when it is asked for"""
     size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
         default=_unsized, repr=False, compare=False
     )
@@ -361,8 +377,9 @@ class SolvedModel:
 
     def __getstate__(self) -> dict[str, object]:
         """Returns what a pickle keeps: what is worked out on demand is worked out now."""
-        worked_out = {"ways": self.ways, "sizes": self.sizes}
-        return vars(self) | worked_out | {"describe": tuple, "size_up": _unsized}
+        mobility = replace(self.mobility, describe=tuple)
+        worked_out = {"mobility": mobility, "ways": self.ways, "sizes": self.sizes}
+        return vars(self) | worked_out | {"count": Mobility, "size_up": _unsized}
 
     @property
     def is_unfinished(self) -> bool:
@@ -374,11 +391,23 @@ class SolvedModel:
         )
 
     @cached_property
+    def mobility(self) -> Mobility:
+        return self.count()
+
+    @property
+    def degrees(self) -> int | None:
+        return self.mobility.degrees
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        return self.mobility.free
+
+    @cached_property
     def ways(self) -> tuple[Motion, ...]:
         """Independent ways to move, the simplest that were found; the first hundreds of a large model. Last
         come those in which the whole drawing moves as one.
         """
-        return self.describe()
+        return self.mobility.describe()
 
     @cached_property
     def motions(self) -> tuple[Motion, ...]:

@@ -22,7 +22,7 @@ from aidl_lang.common.world import FileError, ReadFailure, World
 from aidl_lang.explaining.failures import Conflict, Party
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import parse
-from aidl_lang.pipeline import Compiled
+from aidl_lang.pipeline import Compiled, Facts
 
 _HIDDEN = "…"
 _QUOTED = re.compile(r"`[^`]*`")
@@ -77,7 +77,7 @@ class Reader:
         """Returns the outcome of a program, as its author may see it."""
         return replace(
             compiled,
-            diagnostics=self.diagnostics(compiled.diagnostics),
+            told=Facts(self.diagnostics(compiled.diagnostics)),
             model=compiled.model and self._model(compiled.model),
             conflicts=lambda: tuple(map(self._conflict, compiled.conflicts())),
         )

@@ -15,7 +15,7 @@ from aidl_lang.export.paths import face_path, loop_path, open_path
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.geometry.solved import Box, ConstraintReport, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import Box, ConstraintReport, Mobility, SolvedModel, SolvedStructure
 from tests.geometry.models import Stated, arc, circle, model, primitive, rectangle, structure
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -155,8 +155,8 @@ def explained() -> SolvedModel:
         ),
         ConstraintReport("part", "bore is far away " * 9, span, 3.25, False, Stated(("part.plate.bore.c",))),
     )
-    free = ("part.plate.bore.c.center.x", "part.marks.l.start.x")
-    return replace(model(ROOT), constraints=constraints, free=free, degrees=2)
+    mobility = Mobility(2, ("part.plate.bore.c.center.x", "part.marks.l.start.x"))
+    return replace(model(ROOT), constraints=constraints, count=lambda: mobility)
 
 
 def test_all_layers():

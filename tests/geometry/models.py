@@ -69,12 +69,12 @@ def structure(
     box = box or (Box(*union_bounds(boxes)) if boxes else None)
     frame = Frame(0.0, 0.0, 0.0)
     return SolvedStructure(
-        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, 0, span
+        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, span
     )
 
 
 def model(root: SolvedStructure) -> SolvedModel:
-    return SolvedModel("solved", _with_paths(root, ""), (), 0, (), ())
+    return SolvedModel("solved", _with_paths(root, ""))
 
 
 def _with_paths(s: SolvedStructure, prefix: str) -> SolvedStructure:

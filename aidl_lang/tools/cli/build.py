@@ -49,7 +49,7 @@ class BuildResult:
 
     @property
     def code(self) -> int:
-        return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
+        return exit_code(self.compiled.errors) or (0 if self.compiled.ok else 1)
 
     def motions(self, most: int) -> list[str]:
         """Returns the remaining motions, one sentence a line."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.memory import Memory
@@ -54,7 +54,7 @@ def preview(
 
 def _status(outcome: Compiled) -> str:
     """Returns how a program stands: one that solved may still be `wrong`, as when an `assert` fails."""
-    is_wrong = outcome.status == "solved" and has_errors(outcome.diagnostics)
+    is_wrong = outcome.status == "solved" and bool(outcome.errors)
     return "wrong" if is_wrong else outcome.status
 
 

@@ -36,7 +36,7 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     assert outcome.model is not None
     assert outcome.drawing is not None
     options = Options(frozenset(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
-    job = Job(outcome.model, outcome.drawing, tuple(outcome.diagnostics), options)
+    job = Job(outcome.model, outcome.drawing, options=options)
     painted = picture(job)
     groups = tuple(_numbered(group, elements) for group in painted.groups)
     text = to_svg(replace(painted, groups=groups))
