@@ -21,6 +21,7 @@ from aidl_lang.checking.subset import adapted
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
@@ -246,7 +247,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
         raise ValueError("the program is wrong, so there is nothing to draw")
     watch = Stopwatch()
     with working, within(outcome.limit, "drawing"):
-        freedom = cache(partial(_freed, lowered, solution, watch, lambda _: None))
+        freedom = Later(partial(_freed, lowered, solution, watch, lambda _: None))
         model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
         found = _asserted(built, solution, model, drawing, evaluator, watch)
 
@@ -365,7 +366,7 @@ def _finish(
             other, solution = reread(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
-    freedom = cache(partial(_freed, lowered, solution, watch, preference))
+    freedom = Later(partial(_freed, lowered, solution, watch, preference))
     tried = cache(partial(tries.trials, lowered, solution))
     troubles, is_solved = _Troubles(), solution.status is Status.SOLVED
     if other is not None or _is_troubled(solution):

@@ -68,7 +68,7 @@ def to_dict(
         "aidl": VERSION,
         "units": "mm",
         "status": model.status,
-        "root": _structure(model.root, model.mobility),
+        "root": _structure(model.root, model.mobility()),
         "constraints": [
             {
                 "path": c.path,
@@ -82,7 +82,7 @@ def to_dict(
             for c in model.constraints
         ],
         "dof": model.degrees,
-        "free": list(model.free),
+        "free": list(model.mobility().free),
         "motions": [
             {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
             | ({"against": m.against} if m.against else {})

@@ -311,7 +311,7 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     structures = list(at.model.root.walk())
-    mobility = at.model.mobility
+    mobility = at.model.mobility()
     free = _free_by_structure(structures, mobility.free)
     for structure in structures:
         box = _bounds(structure)

@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
@@ -64,26 +65,19 @@ class Solid:
 
 @record()
 class Contacts:
-    """The pairs of some bodies; `tolerance` and `size` are those of the drawing, `compare` makes `near`."""
+    """The pairs of some bodies. `near` works out those that touch, overlap or are `UNNOTICED` apart at most;
+    `tolerance` and `size` are those of the drawing.
+    """
 
     bodies: Sequence[tuple[str, Region, Bounds]] = ()
-    compare: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
+    near: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
     tolerance: float = 0.0
     size: float = 0.0
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns what a pickle keeps: the pairs that are near are compared now."""
-        return vars(self) | {"near": self.near, "compare": tuple}
-
-    @cached_property
-    def near(self) -> tuple[Contact, ...]:
-        """The pairs that touch, overlap or are `UNNOTICED` apart at most."""
-        return self.compare()
 
     @cached_property
     def all(self) -> tuple[Contact, ...]:
         """All pairs (see above), in the order of the bodies."""
-        known = {(contact.a, contact.b): contact for contact in self.near}
+        known = {(contact.a, contact.b): contact for contact in self.near()}
         pairs: Iterable[tuple[int, int]] = combinations(range(len(self.bodies)), 2)
         if len(self.bodies) > ALL_PAIRS:
             pairs = sorted(near_pairs([box for _, _, box in self.bodies], NEAR * self.size))
@@ -119,7 +113,8 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
         pairs = sorted(near_pairs([s.box for s in solids], margin))
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
-    return Contacts(tuple((s.path, s.region, s.box) for s in solids), near, network.tolerance, network.size)
+    bodies = tuple((s.path, s.region, s.box) for s in solids)
+    return Contacts(bodies, Later(near), network.tolerance, network.size)
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:

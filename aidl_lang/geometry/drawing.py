@@ -11,6 +11,7 @@ from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
+from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
@@ -194,10 +195,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += loose_piece_notes(root, walk, masses, solids, touching.near)
+        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
         notes += unseen
         notes += _covered_letters(root, walk, masses, ground, order)
-        notes += fallen_piece_notes(root, walk, masses, solids, touching.near)
+        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.thin import thin_wall_notes
@@ -211,7 +212,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
-    return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], everything)
+    return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
 
 def _closed(

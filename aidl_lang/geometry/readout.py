@@ -27,6 +27,7 @@ from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.later import Later
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
 from aidl_lang.geometry import curves
@@ -72,8 +73,8 @@ def read_out(
     reports = tuple(_reports(model, lowered, solution))
     root = _Reader(model, evaluator).structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    count = partial(_mobility, model, lowered, solution, freedom)
-    return SolvedModel(solution.status.value, root, reports, changed, readings, count), evaluator
+    mobility = Later(partial(_mobility, model, lowered, solution, freedom))
+    return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
 
 
 def _mobility(
@@ -86,7 +87,7 @@ def _mobility(
         tuple(lowered.unknowns[i].path for i in found.free),
         tuple(_floating(lowered, found)),
         {structure.path: (degrees, str(state)) for structure, degrees, state in each},
-        partial(_motions, model, lowered, solution, found),
+        Later(partial(_motions, model, lowered, solution, found)),
     )
 
 

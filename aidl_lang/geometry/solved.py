@@ -6,7 +6,7 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cached_property
 from typing import Protocol, TypeAlias
 
@@ -343,14 +343,15 @@ class Mobility:
     floating  structures that no constraint ties to what is around them, and that are where they were guessed
     own       by the path of a structure its degrees of freedom, and the state of its constraints: `fully`,
               `under`, `over`, `contradictory` or `unknown`
-    describe  works out the ways in which something can move
+    ways      works out independent ways to move, the simplest that were found; the first hundreds of a large
+              model. Last come those in which the whole drawing moves as one.
     """
 
     degrees: int | None = 0
     free: tuple[str, ...] = ()
     floating: tuple[str, ...] = ()
     own: Mapping[str, tuple[int | None, str]] = field(default_factory=dict)
-    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
+    ways: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
 
     def of(self, structure: SolvedStructure) -> tuple[int | None, str]:
         """Returns what `own` has of a structure."""
@@ -368,8 +369,7 @@ class SolvedModel:
     constraints: tuple[ConstraintReport, ...] = ()
     changed: tuple[Change, ...] = ()
     readings: tuple[Reading, ...] = ()
-    count: Callable[[], Mobility] = field(default=Mobility, repr=False, compare=False)
-    """what `mobility` is made by, when it is asked for"""
+    mobility: Callable[[], Mobility] = field(default=Mobility, repr=False, compare=False)
     size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
         default=_unsized, repr=False, compare=False
     )
@@ -377,9 +377,7 @@ class SolvedModel:
 
     def __getstate__(self) -> dict[str, object]:
         """Returns what a pickle keeps: what is worked out on demand is worked out now."""
-        mobility = replace(self.mobility, describe=tuple)
-        worked_out = {"mobility": mobility, "ways": self.ways, "sizes": self.sizes}
-        return vars(self) | worked_out | {"count": Mobility, "size_up": _unsized}
+        return vars(self) | {"sizes": self.sizes, "size_up": _unsized}
 
     @property
     def is_unfinished(self) -> bool:
@@ -390,26 +388,15 @@ class SolvedModel:
             g.recipe for g in self.root.walk_geometry()
         )
 
-    @cached_property
-    def mobility(self) -> Mobility:
-        return self.count()
-
     @property
     def degrees(self) -> int | None:
-        return self.mobility.degrees
+        return self.mobility().degrees
 
     @property
-    def free(self) -> tuple[str, ...]:
-        return self.mobility.free
-
-    @cached_property
     def ways(self) -> tuple[Motion, ...]:
-        """Independent ways to move, the simplest that were found; the first hundreds of a large model. Last
-        come those in which the whole drawing moves as one.
-        """
-        return self.mobility.describe()
+        return self.mobility().ways()
 
-    @cached_property
+    @property
     def motions(self) -> tuple[Motion, ...]:
         """The ways in which something moves against the rest, the most interesting first."""
         return tuple(way for way in self.ways if way.kind != "place")

@@ -57,7 +57,7 @@ def everything() -> SolvedModel:
     soft = replace(constraint, soft=True, residual=float("nan"), satisfied=False)
     changed = (Change("a.b.r.width", 9.0, 10.0, None),)
     mobility = Mobility(1, ("a.c.e.rx",))
-    return replace(model(root), constraints=(constraint, soft), changed=changed, count=lambda: mobility)
+    return replace(model(root), constraints=(constraint, soft), changed=changed, mobility=lambda: mobility)
 
 
 def test_the_document_follows_its_schema():

@@ -156,7 +156,7 @@ def explained() -> SolvedModel:
         ConstraintReport("part", "bore is far away " * 9, span, 3.25, False, Stated(("part.plate.bore.c",))),
     )
     mobility = Mobility(2, ("part.plate.bore.c.center.x", "part.marks.l.start.x"))
-    return replace(model(ROOT), constraints=constraints, count=lambda: mobility)
+    return replace(model(ROOT), constraints=constraints, mobility=lambda: mobility)
 
 
 def test_all_layers():

@@ -96,7 +96,7 @@ class Reader:
         return self.compiled.model.root
 
     def _count(self, structure: SolvedStructure) -> int | None:
-        return self.compiled.model.mobility.of(structure)[0] if self.compiled.model is not None else None
+        return self.compiled.model.mobility().of(structure)[0] if self.compiled.model is not None else None
 
     def _named(self, name: str) -> Value:
         return self.root if name == self.root.name else member(self.root, name)

@@ -209,7 +209,7 @@ def _summary(word: str, compiled: pipeline.Compiled) -> str:
         case "dof":
             return str(model.degrees)
         case "free":
-            return ", ".join(model.free) or "nothing"
+            return ", ".join(model.mobility().free) or "nothing"
         case "motions":
             return "; ".join(report(model)) or "none"
         case _:

@@ -196,7 +196,7 @@ def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]
         yield f"{name}: {found.kind}, {size}, {across}, {up}"
     else:
         yield f"{name}: {found.kind}, nothing drawn"
-    count, state = model.mobility.of(found)
+    count, state = model.mobility().of(found)
     degrees = f"{count} degrees of freedom" if count is not None else ""
     if count == 1:
         degrees = "1 degree of freedom"
