@@ -11,6 +11,7 @@ from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import within
+from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 
@@ -37,17 +38,7 @@ def _never(span: Span) -> bool:
     return False
 
 
-def _nothing() -> Facts:
-    return Facts([])
-
-
-_LEFT_BEHIND: dict[str, object] = {
-    "conflicts": tuple,
-    "follows": _never,
-    "built": None,
-    "evaluate": None,
-    "find": _nothing,
-}
+_LEFT_BEHIND: dict[str, object] = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None}
 
 
 @record()
@@ -74,13 +65,11 @@ class Facts:
 class Compiled:
     """The result of compiling a program. `model` and `drawing` are None if it is wrong before solving.
 
-    What there is to tell is worked out at once if there are errors, and else when it is read: there are none
-    among it then.
+    find  works out what there is to tell; it is called at once if there are errors
     """
 
     status: str
-    told: Facts | None
-    """What was worked out of it up to now."""
+    find: Later[Facts] = field(repr=False)
     timings: dict[str, float]
     knobs: tuple[Knob, ...] = ()
     model: SolvedModel | None = None
@@ -99,34 +88,24 @@ class Compiled:
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)
     allowances: tuple[Allowance, ...] = ()
-    find: Callable[[], Facts] = field(default=_nothing, repr=False)
-    """Works out what there is to tell."""
 
     def __getstate__(self) -> dict[str, object]:
         """Returns all but what works on the problem behind the solution, which a pickle does without."""
-        return {n: value for n, value in vars(self).items() if n not in _LEFT_BEHIND} | {"told": self.facts}
+        return {name: value for name, value in vars(self).items() if name not in _LEFT_BEHIND}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         vars(self).update(_LEFT_BEHIND)
         vars(self).update(state)
 
     @property
-    def facts(self) -> Facts:
-        """What there is to tell, worked out when it is first read, in whichever thread that is."""
-        find = self.find
-        if self.told is None:
-            self.told = find()
-            self.find = _nothing  # what it works on may be large
-        return self.told
-
-    @property
     def diagnostics(self) -> list[Diagnostic]:
-        return self.facts.diagnostics
+        """What there is to tell, worked out when it is read."""
+        return self.find().diagnostics
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """Those of the diagnostics that are errors."""
-        return [d for d in self.told.diagnostics if d.is_error] if self.told is not None else []
+        """Those of the diagnostics that are errors, for which nothing is worked out."""
+        return [d for d in self.find.known.diagnostics if d.is_error] if self.find.known else []
 
     @property
     def ok(self) -> bool:

@@ -82,9 +82,7 @@ def ours(plate: Plate) -> Callable[[], Result]:
         name: str, kind: str, own: list[SolvedGeometry], *below: SolvedStructure
     ) -> SolvedStructure:
         frame = Frame(0, 0, 0)
-        return SolvedStructure(
-            name, name, kind, "top", frame, {}, {}, tuple(own), below, None, False, None
-        )
+        return SolvedStructure(name, name, kind, "top", frame, {}, {}, tuple(own), below, None, False, None)
 
     corners = plate.corners
     sides = [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]

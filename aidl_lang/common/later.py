@@ -15,10 +15,8 @@ class Later(Generic[T]):
     is left of it when the process ends: the kernel of areas complains about those that outlive it.
     """
 
-    known: T | None = None
-
-    def __init__(self, work: Callable[[], T]) -> None:
-        self._work: Callable[[], T] | None = work
+    def __init__(self, work: Callable[[], T] | None, known: T | None = None) -> None:
+        self._work, self.known = work, known
         _waiting.add(self)
 
     def __call__(self) -> T:

@@ -77,9 +77,7 @@ def read_out(
     return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
 
 
-def _mobility(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
-) -> Mobility:
+def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]) -> Mobility:
     found = freedom()
     each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
     return Mobility(

@@ -16,6 +16,7 @@ from functools import cached_property
 from aidl_lang.checking import library
 from aidl_lang.common.beside import is_data
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
+from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World
@@ -77,7 +78,7 @@ class Reader:
         """Returns the outcome of a program, as its author may see it."""
         return replace(
             compiled,
-            told=Facts(self.diagnostics(compiled.diagnostics)),
+            find=Later(None, Facts(self.diagnostics(compiled.diagnostics))),
             model=compiled.model and self._model(compiled.model),
             conflicts=lambda: tuple(map(self._conflict, compiled.conflicts())),
         )
