@@ -11,8 +11,8 @@ from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import within
-from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:

@@ -21,9 +21,8 @@ from aidl_lang.checking.subset import adapted
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.common.drawing_time import TooLongError, within
-from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Stopwatch, working
+from aidl_lang.common.running import Later, Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
@@ -260,9 +259,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     )
 
 
-def _examined(
-    limit: float, noted: Callable[[], _Noted], facts: Callable[[list[Diagnostic], list[Diagnostic]], Facts]
-) -> Facts:
+def _examined(limit: float, noted: Callable[[], _Noted], facts: Callable[..., Facts]) -> Facts:
     """Returns what there is to tell of what is noted; if noting it takes too long, that it does."""
     with working:
         try:

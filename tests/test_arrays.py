@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from aidl_lang.common.arrays import each_once, others, scattered
+from aidl_lang.solver.arrays import each_once, others, scattered
 
 NUMBERS = st.lists(st.integers(-5, 5), max_size=12)
 

@@ -112,7 +112,6 @@ def to_dict(
 
 
 def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
-    degrees, state = mobility.of(s)
     frame: Json = {"x": float(s.frame.x), "y": float(s.frame.y), "rotation": float(s.frame.rotation)}
     if s.frame.mirrored:
         frame["mirrored"] = True
@@ -126,8 +125,7 @@ def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
         "params": dict(s.params),
         "geometry": {g.name: _geometry(g) for g in s.geometry},
         "structures": [_structure(c, mobility) for c in s.structures],
-        "dof": degrees,
-        "constrained": state,
+        **dict(zip(("dof", "constrained"), mobility.of(s), strict=True)),
     }
     attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
     if attributes:

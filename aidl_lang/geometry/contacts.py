@@ -16,8 +16,8 @@ from typing import Literal
 
 import numpy as np
 
-from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area

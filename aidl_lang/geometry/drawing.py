@@ -11,8 +11,8 @@ from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
-from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.cancelling import checkpoint, give_up
 from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.solver.arrays import each_once
 
 _AT_ONCE = 1 << 20
 """Number of candidates looked at in one step, which bounds the memory."""

@@ -36,8 +36,12 @@ def pictured(
     with watch("read out"):
         model, evaluator = read_out(built, lowered, solution, freedom)
     with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
-        model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
-        model, wrong = _completed(model)
+        model, notes = with_places(replace(model, size_up=partial(_sizes, built, evaluator)))
+        if model.is_unfinished:
+            from aidl_lang.geometry.outlines import complete
+
+            model, more = complete(model)
+            notes += more
         drawing, found = draw(model)
         if any(s.ground is not None for s in model.root.walk()):
             from aidl_lang.geometry.grounds import on_material
@@ -47,33 +51,17 @@ def pictured(
 
     def everything() -> list[Diagnostic]:
         with watch("notes"), blaming(partial(_most_drawn, model), _HEAVY):
-            return [*placeless, *wrong, *found.everything()]
+            return [*notes, *found.everything()]
 
-    errors = [d for d in (*placeless, *wrong) if d.is_error]
-    return model, evaluator, drawing, Findings([*errors, *found.errors], everything)
-
-
-def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """Returns the model with its derived outlines and finished corners; few programs have any to load code
-    for.
-    """
-    if not model.is_unfinished:
-        return model, []
-    from aidl_lang.geometry.outlines import complete
-
-    return complete(model)
+    errors = [*(d for d in notes if d.is_error), *found.errors]
+    return model, evaluator, drawing, Findings(errors, everything)
 
 
-def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
-    """Returns a function that finds the sizes of a solved model; its code is loaded when it is called."""
+def _sizes(built: Model, evaluator: Evaluator, solved: SolvedModel) -> tuple[Dimension, ...]:
+    from aidl_lang.geometry.dimensions import sizes
 
-    def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
-        from aidl_lang.geometry.dimensions import sizes
-
-        with working:
-            return sizes(built, solved, evaluator)
-
-    return sizes
+    with working:
+        return sizes(built, solved, evaluator)
 
 
 def _most_drawn(model: SolvedModel) -> Span | None:

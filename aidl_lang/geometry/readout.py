@@ -12,7 +12,6 @@ from aidl_lang.building.curves import pieces
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import (
-    Constraint,
     Finish,
     Geometry,
     Model,
@@ -27,9 +26,9 @@ from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
-from aidl_lang.common.later import Later
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described
@@ -133,21 +132,16 @@ def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[Con
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
-            yield report_of(stated, solution.residuals[index], solution.satisfied[index])
-
-
-def report_of(stated: Constraint, residual: float, satisfied: bool) -> ConstraintReport:
-    text = f"{stated.text} [{stated.label}]" if stated.label else stated.text
-    return ConstraintReport(
-        stated.holder.path,
-        text,
-        stated.span,
-        residual,
-        satisfied,
-        stated,
-        stated.weight is not None,
-        all(comparison.relation == "==" for comparison in stated.comparisons),
-    )
+            yield ConstraintReport(
+                stated.holder.path,
+                f"{stated.text} [{stated.label}]" if stated.label else stated.text,
+                stated.span,
+                solution.residuals[index],
+                solution.satisfied[index],
+                Later(partial(getattr, stated, "mentions")),
+                stated.weight is not None,
+                all(comparison.relation == "==" for comparison in stated.comparisons),
+            )
 
 
 @record(frozen=False)
@@ -297,7 +291,7 @@ class _Reader:
             at = self._at(finish.at, s)
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
-        literal = partial(_literal, self.model, finish)
+        literal = Later(partial(_literal, self.model, finish))
         return SolvedFinish(
             finish.kind, of, at, sizes, finish.text, finish.span, run=finish.run, literal=literal
         )

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
@@ -56,10 +56,6 @@ class Recipe:
     words: Mapping[str, str]
 
 
-def _unknown() -> None:
-    return None
-
-
 @record()
 class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
@@ -77,11 +73,7 @@ class Finish:
     span: Span
     corners: tuple[Vec, ...] = ()
     run: int = 0
-    literal: Callable[[], ast.Number | None] = field(default=_unknown, compare=False, repr=False)
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns all but the way to the text, which a pickle does without."""
-        return vars(self) | {"literal": _unknown}
+    literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
 
 
 @record()
@@ -179,22 +171,10 @@ class SolvedStructure:
         return next((s for s in self.walk() if s.path == path), None)
 
 
-class Relating(Protocol):
-    """Something that relates some geometry and structures."""
-
-    @property
-    def mentions(self) -> tuple[str, ...]: ...
-
-
-@record()
-class _Related:
-    mentions: tuple[str, ...]
-
-
 @record()
 class ConstraintReport:
-    """A constraint as written, the structure that holds it, and its violation. `stated` names the things it
-    relates; `exact`: it is made of equations alone.
+    """A constraint as written, the structure that holds it, and its violation. `mentions` finds the paths of
+    the geometry and structures whose unknowns it relates; `exact`: it is made of equations alone.
     """
 
     path: str
@@ -202,18 +182,9 @@ class ConstraintReport:
     span: Span
     residual: float
     satisfied: bool
-    stated: Relating = field(repr=False, compare=False)
+    mentions: Callable[[], tuple[str, ...]] = field(repr=False, compare=False)
     soft: bool = False
     exact: bool = False
-
-    @property
-    def mentions(self) -> tuple[str, ...]:
-        """Paths of the geometry and structures whose unknowns it relates."""
-        return self.stated.mentions
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns what a pickle keeps: of the constraint the paths alone."""
-        return vars(self) | {"stated": _Related(self.mentions)}
 
 
 @record()

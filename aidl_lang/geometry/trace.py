@@ -16,7 +16,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
@@ -26,6 +25,7 @@ from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section
+from aidl_lang.solver.arrays import each_once
 
 T = TypeVar("T")
 STRAIGHT = -3

@@ -13,8 +13,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once, others
 from aidl_lang.common.records import record
+from aidl_lang.solver.arrays import each_once, others
 from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
 from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility

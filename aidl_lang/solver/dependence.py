@@ -20,8 +20,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
+from aidl_lang.solver.arrays import each_once, others, scattered
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, linearise
 from aidl_lang.solver.operations import Floats, Ints

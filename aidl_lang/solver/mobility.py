@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
+from aidl_lang.solver.arrays import each_once
 from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, lots, stacked
 from aidl_lang.solver.operations import Bools, Floats, Ints
 

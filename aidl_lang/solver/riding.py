@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
 from aidl_lang.solver import expression
+from aidl_lang.solver.arrays import each_once
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Bools, Ints
 from aidl_lang.solver.problem import Problem

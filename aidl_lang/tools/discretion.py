@@ -2,8 +2,7 @@
 
 An unread program may import the AIDL programs below a folder, and use their definitions, but its author must
 not see their texts. So only whole programs are imported (`Programs`), and messages quote only the author's
-own
-text (`Reader`): for a mistake in an imported file they give the code and the line.
+own text (`Reader`): for a mistake in an imported file they give the code and the line.
 """
 
 from __future__ import annotations
@@ -16,8 +15,8 @@ from functools import cached_property
 from aidl_lang.checking import library
 from aidl_lang.common.beside import is_data
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
-from aidl_lang.common.later import Later
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World
 from aidl_lang.explaining.failures import Conflict, Party

@@ -25,7 +25,7 @@ from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import Box, Change, ConstraintReport, Mobility, SolvedModel
 from tests.compiled import EXAMPLES
 from tests.compiled import model as model_of
-from tests.geometry.models import Stated, arc, circle, compound, model, primitive, rectangle, structure
+from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
 SOURCE = SourceFile("x.aidl", "assembly a {\n    b.above(c)\n}\n")
@@ -53,7 +53,7 @@ def everything() -> SolvedModel:
         ),
         structure("solid", "plan", box=Box(0, 0, 10, 10)),
     )
-    constraint = ConstraintReport("a", "b.above(c)", SPAN, -0.0, True, Stated(("a.b", "a.c")))
+    constraint = ConstraintReport("a", "b.above(c)", SPAN, -0.0, True, lambda: ("a.b", "a.c"))
     soft = replace(constraint, soft=True, residual=float("nan"), satisfied=False)
     changed = (Change("a.b.r.width", 9.0, 10.0, None),)
     mobility = Mobility(1, ("a.c.e.rx",))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec
@@ -21,12 +20,6 @@ def arc(center: Vec, radius: float, first: float, last: float) -> Arc:
         return center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)
 
     return Arc(center, radius, at(first), at(last), math.radians(last - first))
-
-
-class Stated(NamedTuple):
-    """What a constraint speaks of."""
-
-    mentions: tuple[str, ...]
 
 
 def primitive(

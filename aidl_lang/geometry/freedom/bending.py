@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.arrays import each_once, scattered
+from aidl_lang.solver.arrays import each_once, scattered
 from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import Part
 from aidl_lang.solver.problem import Problem

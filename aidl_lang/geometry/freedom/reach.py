@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.building.expression import DEGREE
-from aidl_lang.common.arrays import scattered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.freedom.scene import (
     GEOMETRY,
@@ -25,6 +24,7 @@ from aidl_lang.geometry.freedom.scene import (
     X,
     Y,
 )
+from aidl_lang.solver.arrays import scattered
 from aidl_lang.solver.mobility import Part
 
 Flags: TypeAlias = NDArray[np.bool_]

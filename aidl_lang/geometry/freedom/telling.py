@@ -12,7 +12,6 @@ import numpy as np
 from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Model
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.numbers import short
 from aidl_lang.geometry.freedom.bending import Bending
 from aidl_lang.geometry.freedom.reach import POSSIBLE, Flags, Reach
@@ -30,6 +29,7 @@ from aidl_lang.geometry.freedom.scene import (
 )
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver.arrays import each_once
 from aidl_lang.solver.gradients import connected
 from aidl_lang.solver.solution import Solution
 

@@ -66,9 +66,8 @@ class BuildResult:
             freedom = f", {counted(model.degrees, 'degree')} of freedom"
         written = first_few(self.written, _MOST_NAMES)
         place, remark = (written, "") if written else (program, ", nothing written")
-        status = self.compiled.status
-        if status == "solved" and not self.compiled.ok:
-            status = "errors after solving"
+        is_off = self.compiled.status == "solved" and not self.compiled.ok
+        status = "errors after solving" if is_off else self.compiled.status
         return f"{place}: {status}{freedom}{remark}, {self.seconds:.2f} s"
 
 
