@@ -229,7 +229,7 @@ class Model:
         return f"{picture}<pre>{told}</pre>"
 
     def __repr__(self) -> str:
-        problems = sum(d.is_error for d in self.diagnostics)
+        problems = len(self._compiled.errors)
         return f"<aidl_lang.Model {self.status}, {problems} error{'s' * (problems != 1)}>"
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.cancelling import OutOfTime, limited_to
-from aidl_lang.common.diagnostics import AidlError, Diagnostic, has_errors
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import within
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
@@ -50,12 +51,25 @@ class Asked:
     settings: Settings
 
 
+@record()
+class Facts:
+    """What there is to tell of a program. `standing`: those of the diagnostics that do not depend on where
+    exactly the parts are.
+    """
+
+    diagnostics: list[Diagnostic]
+    standing: tuple[Diagnostic, ...] = ()
+
+
 @record(frozen=False)
 class Compiled:
-    """The result of compiling a program. `model` and `drawing` are None if it is wrong before solving."""
+    """The result of compiling a program. `model` and `drawing` are None if it is wrong before solving.
+
+    find  works out what there is to tell; it is called at once if there are errors
+    """
 
     status: str
-    diagnostics: list[Diagnostic]
+    find: Later[Facts] = field(repr=False)
     timings: dict[str, float]
     knobs: tuple[Knob, ...] = ()
     model: SolvedModel | None = None
@@ -74,8 +88,6 @@ class Compiled:
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)
     allowances: tuple[Allowance, ...] = ()
-    standing: tuple[Diagnostic, ...] = field(default=(), repr=False)
-    """Those of the diagnostics that do not depend on where exactly the parts are."""
 
     def __getstate__(self) -> dict[str, object]:
         """Returns all but what works on the problem behind the solution, which a pickle does without."""
@@ -86,8 +98,18 @@ class Compiled:
         vars(self).update(state)
 
     @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """What there is to tell, worked out when it is read."""
+        return self.find().diagnostics
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        """Those of the diagnostics that are errors, for which nothing is worked out."""
+        return [d for d in self.find.known.diagnostics if d.is_error] if self.find.known else []
+
+    @property
     def ok(self) -> bool:
-        return self.status == "solved" and not has_errors(self.diagnostics)
+        return self.status == "solved" and not self.errors
 
     def exported(self, suffix: str, options: Options | None = None) -> Exported:
         """Returns the drawing in the format of a file suffix (`.svg`), with the notes on writing it.
@@ -104,7 +126,7 @@ class Compiled:
         from aidl_lang.export import Exporter, Job, Options
 
         made = Options(self.show) if options is None else options
-        job = Job(*self._finished, tuple(self.diagnostics), made)
+        job = Job(*self._finished, lambda: self.diagnostics, made)
         return Exporting(Exporter(job) if progress is None else Exporter(job, progress), self)
 
     def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
@@ -112,7 +134,7 @@ class Compiled:
         from aidl_lang.export import Job, rendered
         from aidl_lang.export.drafting import drafted
 
-        job = Job(*self._finished, tuple(self.diagnostics), options)
+        job = Job(*self._finished, options=options)
         with within(self.limit, "drawing"):
             pages = drafted(job, draft)
             return [rendered(pages, suffix, options, job.model.root.path) for suffix in suffixes]
@@ -165,8 +187,7 @@ class Compiled:
 
     def refused(self, what: str) -> AidlError:
         """Returns what to raise, with the errors, if something cannot be done for them."""
-        wrong = [d for d in self.diagnostics if d.is_error]
-        return AidlError(*wrong, message=": ".join([what, *(d.message for d in wrong[:1])]))
+        return AidlError(*self.errors, message=": ".join([what, *(d.message for d in self.errors[:1])]))
 
 
 class Exporting:

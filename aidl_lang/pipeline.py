@@ -8,23 +8,24 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
 from aidl_lang.building.front import Front, Settings, build, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
-from aidl_lang.checking.allowing import IDLE, Allowance, audible, idle
+from aidl_lang.checking.allowing import IDLE, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
+from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Stopwatch, working
+from aidl_lang.common.running import Later, Stopwatch, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Asked, Compiled
+from aidl_lang.compiled import Asked, Compiled, Facts
 from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.syntax import ast
@@ -38,27 +39,19 @@ if TYPE_CHECKING:
     from aidl_lang.explaining.giving import GaveWay
     from aidl_lang.explaining.rereading import Rereading
     from aidl_lang.explaining.trials import Trials
-    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.solution import Solution
+
+_Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
     """Reads a text into a Program: parsed, resolved and type-checked. `compile` can go on from it."""
     with working:
         return read(source, world, settings, Stopwatch())
-
-
-def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, ...]]:
-    """Returns a function that works out the conflicts of a program when it is called."""
-
-    def conflicts() -> tuple[Conflict, ...]:
-        with working:
-            return tuple(failure.conflict for failure in failures)
-
-    return conflicts
 
 
 @record()
@@ -197,8 +190,8 @@ def compile(
         tries = _Tries(source, world, params or {}, settings)
         if has_errors(diagnostics):
             with watch("fixes"):
-                diagnostics = tries.answered(diagnostics, diagnostics, built.model)
-            made = Compiled("wrong", audible(diagnostics, built.allowances), watch.seconds, known)
+                told = audible(tries.answered(diagnostics, diagnostics, built.model), built.allowances)
+            made = Compiled("wrong", Later(None, Facts(told)), watch.seconds, known)
         else:
             made = _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
     made.asked = Asked(source, world, params or {}, settings)
@@ -239,23 +232,26 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
     Raises TooLongError, and ValueError if nothing was built.
     """
-    from aidl_lang.solver.analysis import analyse
-
     if outcome.built is None:
         raise ValueError("the program is wrong, so there is nothing to draw")
     watch = Stopwatch()
+    freedom = Later(partial(_freed, lowered, solution, watch))
     with working, within(outcome.limit, "drawing"):
-        with watch("freedom"):
-            freedom = analyse(lowered.problem, solution)
-        model, evaluator, drawing, notes = pictured(outcome.built, lowered, solution, freedom, watch)
-        found = _asserted(outcome.built, solution, model, drawing, evaluator, watch)
-    told = [*found, *_beside(notes, found)]
-    if outcome.asked is not None:
-        told = adapted(told, outcome.asked.settings.variant)
+        model, evaluator, drawing, notes, found = _drawn(outcome.built, lowered, solution, freedom, watch)
+
+    def facts(late: list[Diagnostic], drawn: list[Diagnostic]) -> Facts:
+        told = [*late, *found, *_beside(drawn, found)]
+        if outcome.asked is not None:
+            told = adapted(told, outcome.asked.settings.variant)
+        return Facts(ordered([*outcome.find().standing, *audible(told, outcome.allowances)]))
+
+    find = Later(partial(_examined, outcome.limit, lambda: ([], notes.everything()), facts))
+    if outcome.errors or notes.errors or has_errors(found):
+        find()
     return replace(
         outcome,
         status=model.status,
-        diagnostics=ordered([*outcome.standing, *audible(told, outcome.allowances)]),
+        find=find,
         timings=watch.seconds,
         model=model,
         drawing=drawing,
@@ -263,15 +259,24 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     )
 
 
-@record()
-class _Troubles:
-    """The troubles of a solution: constraints that gave way, failures, and those that hold only far from the
-    first guesses.
-    """
+def _examined(limit: float, noted: Callable[[], _Noted], facts: Callable[..., Facts]) -> Facts:
+    """Returns what there is to tell of what is noted; if noting it takes too long, that it does."""
+    with working:
+        try:
+            with within(limit, "examining"):
+                found = noted()
+        except TooLongError as reason:
+            checkpoint()  # it may have been the reader's time that ran out
+            found = [reason.diagnostic], []
+        return facts(*found)
 
-    given: tuple[GaveWay, ...] = ()
-    failures: Sequence[Explanation] = ()
-    elsewhere: Sequence[Diagnostic] = ()
+
+def _freed(lowered: Lowered, solution: Solution, watch: Stopwatch) -> Freedom:
+    from aidl_lang.building.lower import preference
+    from aidl_lang.solver.analysis import analyse
+
+    with working, watch("freedom"):
+        return analyse(lowered.problem, solution, preference(lowered))
 
 
 def _is_troubled(solution: Solution) -> bool:
@@ -285,31 +290,31 @@ def _explained(
     solution: Solution,
     other: Rereading | None,
     settings: Settings,
-    tried: Trials,
+    tried: Callable[[], Trials],
     watch: Stopwatch,
-) -> _Troubles:
+) -> tuple[Sequence[GaveWay], Sequence[Explanation], Sequence[Diagnostic]]:
+    """Returns what gave way, the failures, and notes on what holds only far from the first guesses."""
+    if other is None and not _is_troubled(solution):
+        return (), (), ()
     from aidl_lang.explaining.failures import explained
     from aidl_lang.explaining.giving import gave_way
     from aidl_lang.explaining.rereading import elsewhere_notes
 
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
-    failures = explained(lowered, solution, tried)
-    elsewhere = list(elsewhere_notes(built.model, lowered, solution, other, tried))
-    return _Troubles(given, failures, elsewhere)
+    failures = explained(lowered, solution, tried())
+    return given, failures, list(elsewhere_notes(built.model, lowered, solution, other, tried()))
 
 
-def _follows(lowered: Lowered, solution: Solution) -> Callable[[Span], bool]:
-    """Returns a function that tells whether the constraint at a place follows from the rest, loaded when it
-    is called.
-    """
+def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
+    from aidl_lang.explaining.repetitions import follows
 
-    def is_told(span: Span) -> bool:
-        from aidl_lang.explaining.repetitions import follows
+    return follows(lowered, solution, span)
 
-        return follows(lowered, solution, span)
 
-    return is_told
+def _conflicts(failures: Sequence[Explanation]) -> tuple[Conflict, ...]:
+    with working:
+        return tuple(failure.conflict for failure in failures)
 
 
 def _finish(
@@ -322,9 +327,8 @@ def _finish(
     memory: Memory | None,
     tries: _Tries,
 ) -> Compiled:
-    from aidl_lang.building.lower import lower, preference
+    from aidl_lang.building.lower import lower
     from aidl_lang.solver import Status, solve
-    from aidl_lang.solver.analysis import analyse
 
     other: Rereading | None = None
     with watch("lower"):
@@ -337,118 +341,92 @@ def _finish(
             other, solution = reread(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
-    with watch("freedom"):
-        freedom = analyse(lowered.problem, solution, preference(lowered))
+    freedom = Later(partial(_freed, lowered, solution, watch))
     tried = cache(partial(tries.trials, lowered, solution))
-    troubles = _Troubles()
-    if other is not None or _is_troubled(solution):
-        troubles = _explained(built, lowered, solution, other, settings, tried(), watch)
+    given, failures, elsewhere = _explained(built, lowered, solution, other, settings, tried, watch)
     try:
         with within(settings.drawing, "drawing"):
-            model, evaluator, drawing, found, notes = _drawn(
-                built, lowered, solution, freedom, troubles, watch
+            model, evaluator, drawing, drawn, asserted = _drawn(
+                built.model, lowered, solution, freedom, watch
             )
-            asserted = _asserted(built.model, solution, model, drawing, evaluator, watch)
     except TooLongError as reason:
-        found = [*audible(diagnostics, built.allowances), reason.diagnostic]
-        return Compiled("wrong", ordered(found), watch.seconds, known)
-    passing = {(d.code, d.span) for d in [*asserted, *notes]}
-    found = [*found, *asserted]
-    if settings.strict and troubles.given:
-        from aidl_lang.explaining.giving import as_error
+        found = ordered([*audible(diagnostics, built.allowances), reason.diagnostic])
+        return Compiled("wrong", Later(None, Facts(found)), watch.seconds, known)
+    if model.changed:
+        from aidl_lang.explaining.giving import with_reasons
 
-        found = list(map(as_error, found))
-    if solution.status is not Status.SOLVED:
-        notes = []  # nothing to note on parts that are not in place
-    notes = list(_beside([*troubles.elsewhere, *notes], found))
-    told = adapted([*found, *notes], settings.variant)
-    if settings.solving.explain:
-        with watch("fixes"):
-            if any(d.fix is not None for d in told):
-                from aidl_lang.explaining.verifying import verified
+        model = with_reasons(model, given, lowered)
+    is_solved = solution.status is Status.SOLVED
 
-                told = verified(told, [*diagnostics, *told], tried())
-            told = tries.answered(told, [*diagnostics, *told], built.model)
-    everything = _unsilenced(ordered([*diagnostics, *told]), built.allowances, settings, solution)
-    stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
+    def noted() -> _Noted:
+        """Returns the diagnostics on the solution, and those on the drawing if the parts are in place."""
+        from aidl_lang.explaining.outcome import solution_notes
+
+        root, free = built.model.root, freedom()
+        with watch("notes"):
+            found = solution_notes(root, lowered, solution, free, model, given, failures)
+        return found, drawn.everything() if is_solved else []
+
+    def facts(found: list[Diagnostic], notes: list[Diagnostic]) -> Facts:
+        passing = {(d.code, d.span) for d in [*asserted, *notes]}
+        found = [*found, *asserted]
+        if settings.strict and given:
+            from aidl_lang.explaining.giving import as_error
+
+            found = list(map(as_error, found))
+        told = adapted([*found, *_beside([*elsewhere, *notes], found)], settings.variant)
+        if settings.solving.explain:
+            with watch("fixes"):
+                if any(d.fix is not None for d in told):
+                    from aidl_lang.explaining.verifying import verified
+
+                    told = verified(told, [*diagnostics, *told], tried())
+                told = tries.answered(told, [*diagnostics, *told], built.model)
+        told, allowed = ordered([*diagnostics, *told]), built.allowances
+        if settings.solving.explain and is_solved and not has_errors(told):
+            told += (idle_notes := idle(told, [each for each in allowed if each.code != IDLE]))
+            told = ordered([*told, *idle(idle_notes, [each for each in allowed if each.code == IDLE])])
+        told = audible(told, allowed)
+        return Facts(told, tuple(d for d in told if (d.code, d.span) not in passing))
+
+    find = Later(partial(_examined, settings.drawing, noted, facts))
+    if not is_solved or drawn.errors or has_errors(asserted) or (settings.strict and given):
+        find()
     return Compiled(
         model.status,
-        everything,
+        find,
         watch.seconds,
         known,
         model,
         drawing,
         show,
-        stages,
-        _conflicts(troubles.failures),
-        _follows(lowered, solution),
+        tuple((lowered.groups[stage.group], stage) for stage in solution.stages),
+        partial(_conflicts, failures),
+        partial(_follows, lowered, solution),
         built.model,
         evaluator,
         settings.drawing,
-        standing=tuple(d for d in everything if (d.code, d.span) not in passing),
     )
 
 
-def _unsilenced(
-    found: list[Diagnostic], allowed: Sequence[Allowance], settings: Settings, solution: Solution
-) -> list[Diagnostic]:
-    """Returns what is to be told of all that was found, and which allowances are idle, if all was found that
-    there is.
-    """
-    from aidl_lang.solver import Status
-
-    if not allowed:
-        return found
-    idle_notes: list[Diagnostic] = []
-    if settings.solving.explain and solution.status is Status.SOLVED and not has_errors(found):
-        idle_notes = idle(found, [each for each in allowed if each.code != IDLE])
-        idle_notes += idle(idle_notes, [each for each in allowed if each.code == IDLE])
-    return ordered(audible([*found, *idle_notes], allowed))
-
-
 def _drawn(
-    built: Interpretation,
-    lowered: Lowered,
-    solution: Solution,
-    freedom: Freedom,
-    troubles: _Troubles,
-    watch: Stopwatch,
-) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
-    """Returns the solved model, its evaluator and drawing, the diagnostics on the solution, and those on the
-    drawing.
+    built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
+) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
+    """Returns the solved model, its evaluator and drawing, what there is to tell of the drawing, and the
+    assertions that fail.
     """
-    from aidl_lang.explaining.outcome import solution_notes
-
-    model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
-    with watch("asserts"):
-        if model.changed:
-            from aidl_lang.explaining.giving import with_reasons
-
-            model = with_reasons(model, troubles.given, lowered)
-        found = solution_notes(
-            built.model.root, lowered, solution, freedom, model, troubles.given, troubles.failures
-        )
-    return model, evaluator, drawing, found, notes
-
-
-def _asserted(
-    built: Model,
-    solution: Solution,
-    model: SolvedModel,
-    drawing: Drawing,
-    evaluator: Evaluator,
-    watch: Stopwatch,
-) -> list[Diagnostic]:
-    """Returns the diagnostics on assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
 
+    model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
     with watch("asserts"):
-        is_solved = solution.status.value == "solved"
-        return assertion_notes(built, model, drawing, evaluator, solved_fully=is_solved)
+        is_solved = model.status == "solved"
+        found = assertion_notes(built, model, drawing, evaluator, solved_fully=is_solved)
+    return model, evaluator, drawing, notes, found
 
 
 __all__ = [
     "Compiled",
+    "Facts",
     "Front",
     "Knob",
     "Settings",

@@ -82,16 +82,14 @@ def ours(plate: Plate) -> Callable[[], Result]:
         name: str, kind: str, own: list[SolvedGeometry], *below: SolvedStructure
     ) -> SolvedStructure:
         frame = Frame(0, 0, 0)
-        return SolvedStructure(
-            name, name, kind, "top", frame, {}, {}, tuple(own), below, None, False, 0, None
-        )
+        return SolvedStructure(name, name, kind, "top", frame, {}, {}, tuple(own), below, None, False, None)
 
     corners = plate.corners
     sides = [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
     body = geometry("body", None, *(geometry(f"body{k}", side) for k, side in enumerate(sides)))
     rims = [geometry(f"rim{k}", Circle((x, y), r)) for k, (x, y, r) in enumerate(plate.circles)]
     root = structure("plate", "solid", [body], structure("plate.h", "hole", rims))
-    model = SolvedModel("solved", root, (), 0, (), ())
+    model = SolvedModel("solved", root)
 
     def work() -> Result:
         region = draw(model)[0].regions["plate"]

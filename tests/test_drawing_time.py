@@ -54,6 +54,21 @@ def view() -> View:
     return run(look(Path("plates.aidl").absolute(), PLATES, MemoryWorld({})))
 
 
+def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
+    within = pipeline.within
+    monkeypatch.setattr(pipeline, "within", lambda limit, doing: within(limit * (doing == "drawing"), doing))
+    found = pipeline.compile(SourceFile("plates.aidl", PLATES))
+    assert found.ok
+    (told,) = found.diagnostics
+    assert (told.code, told.message, told.hints) == (
+        "E0805",
+        "examining what this program says takes more than 0 seconds",
+        (HINT,),
+    )
+    assert (found.errors, found.ok) == ([told], False)
+    assert found.export(".svg")
+
+
 def test_drawing_itself() -> None:
     found = pipeline.compile(SourceFile("plates.aidl", PLATES), settings=replace(Settings(), drawing=0.0))
     assert (found.status, found.drawing) == ("wrong", None)

@@ -1,16 +1,22 @@
-"""The surroundings of a run of a program: the time of its stages, room for nesting, no pauses."""
+"""The surroundings of a run of a program: the time of its stages, room for nesting, no pauses; and what is
+left to work out when it ended.
+"""
 
 from __future__ import annotations
 
+import atexit
 import gc
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any, Generic, TypeVar
+from weakref import WeakSet
 
 from aidl_lang.common.cancelling import checkpoint
 
+T = TypeVar("T")
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls are reached sooner."""
 
@@ -61,3 +67,26 @@ class _Working:
 
 
 working = _Working()
+
+
+class Later(Generic[T]):
+    """A function that works a value out when it is first called, or copied. `work` is dropped then, and what
+    is left of it when the process ends: the kernel of areas complains about those that outlive it.
+    """
+
+    def __init__(self, work: Callable[[], T] | None, known: T | None = None) -> None:
+        self._work, self.known = work, known
+        _waiting.add(self)
+
+    def __call__(self) -> T:
+        if (work := self._work) is not None:  # two threads may both do it
+            self.known = work()
+            self._work = None
+        return self.known  # type: ignore[return-value]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"known": self(), "_work": None}
+
+
+_waiting: WeakSet[Later[Any]] = WeakSet()
+atexit.register(lambda: [vars(each).update(_work=None) for each in _waiting])

@@ -26,7 +26,7 @@ from aidl_lang.geometry.evaluate import bounds, inward
 from aidl_lang.geometry.measures import area, perimeter
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.solved import SolvedModel
+from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
 
@@ -97,7 +97,7 @@ def assertion_notes(
     """
     if not solved_fully:
         return []
-    evaluator.measure = measure = _Measure(solved, drawing)
+    evaluator.measure = measure = _Measure(solved.root, drawing)
     asked = [a for a in model.assertions if a.outline is None or measure.is_drawn(a.outline)]
     return [d for a in asked if (d := assertion_note(a, evaluator)) is not None]
 
@@ -281,8 +281,8 @@ def measured(kind: str, regions: Sequence[Region], size: float) -> float:
 class _Measure:
     """Measures what only the drawing knows: areas, perimeters, clearances, overlaps."""
 
-    def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
-        self.model = model
+    def __init__(self, root: SolvedStructure, drawing: Drawing) -> None:
+        self.root = root
         self.drawing = drawing
 
     def __call__(self, payload: object) -> float:
@@ -297,7 +297,7 @@ class _Measure:
         """
         assert payload.here is not None
         curves = self._curves(payload.of[0].path)
-        frames, here = [], self.model.root
+        frames, here = [], self.root
         while here.path != payload.here.path:
             here = next(s for s in here.structures if f"{payload.here.path}.".startswith(f"{s.path}."))
             frames.append(here.frame)
@@ -315,7 +315,7 @@ class _Measure:
         return bool(self._curves(outline.path))
 
     def _curves(self, path: str) -> list[Piece]:
-        found = [g for g in all_geometry(self.model.root) if g.path == path]
+        found = [g for g in all_geometry(self.root) if g.path == path]
         return [c for g in found for c in replace(g, construction=False).curves()]
 
     def _region(self, thing: Structure | Geometry) -> Region:
@@ -324,4 +324,4 @@ class _Measure:
         """
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
-        return region_alone(self.model, thing.path)
+        return region_alone(self.root, thing.path)

@@ -9,10 +9,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 from aidl_lang.building.boxes import box_of, source_unknowns
-from aidl_lang.building.expression import Evaluator, Unknown
+from aidl_lang.building.expression import Evaluator, Expression, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Geometry, Structure
-from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.numbers import short
@@ -44,13 +43,13 @@ def staying_notes(
     after = dict(zip(lowered.unknowns, map(float, solution.values), strict=True))
     before = dict(zip(lowered.unknowns, map(float, lowered.problem.initial), strict=True))
     moved = {u for u in after if abs(after[u] - before[u]) > _STILL}
-    now, then = Evaluator(after), Evaluator(before)
+    now = Evaluator(after)
     for structure in root.walk():
         things: list[Geometry | Structure] = [
             *(g for g in structure.own() if g.type != "point" and not g.construction),
             *structure.children,
         ]
-        seen = [_Seen(thing, structure, then, now, naming) for thing in things if thing.source is None]
+        seen = [_Seen(thing, structure, now, naming) for thing in things if thing.source is None]
         if any(not moved.isdisjoint(one.unknowns) for one in seen):
             yield from _left_inside([one for one in seen if one.is_placed], structure)
     yield from _lost_form(moved, before, after, naming)
@@ -62,7 +61,6 @@ class _Seen:
 
     thing: Geometry | Structure
     here: Structure
-    then: Evaluator
     now: Evaluator
     naming: Naming
 
@@ -77,26 +75,23 @@ class _Seen:
 
     @cached_property
     def written(self) -> Sides:
-        return self._sides(self.then)
+        left, bottom, right, top = (side.value for side in self._sides)
+        return left, bottom, right, top
 
     @cached_property
     def solved(self) -> Sides:
-        return self._sides(self.now)
+        left, bottom, right, top = map(self.now, self._sides)
+        return left, bottom, right, top
+
+    @cached_property
+    def _sides(self) -> Sequence[Expression]:
+        box = box_of(self.thing, self.here)
+        assert box is not None
+        return [box.side(name) for name in _SIDES]
 
     @property
     def is_placed(self) -> bool:
         return all(map(math.isfinite, (*self.written, *self.solved)))
-
-    def _sides(self, evaluate: Evaluator) -> Sides:
-        box = box_of(self.thing, self.here)
-        assert box is not None
-        found = []
-        for name in _SIDES:
-            side = box.field(name)
-            assert isinstance(side, Num)
-            found.append(evaluate(side.expression))
-        left, bottom, right, top = found
-        return left, bottom, right, top
 
     @property
     def extent(self) -> float:

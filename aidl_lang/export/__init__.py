@@ -100,7 +100,7 @@ class Job:
 
     model: SolvedModel
     drawing: Drawing
-    diagnostics: tuple[Diagnostic, ...] = ()
+    diagnostics: Callable[[], Sequence[Diagnostic]] = tuple
     options: Options = field(default_factory=Options)
     whole: Job | None = None
     is_flat: bool = False
@@ -378,7 +378,7 @@ def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
 def _json(job: Job) -> Exported:
     from aidl_lang.export.json import to_json
 
-    return Exported(to_json(job.model, job.drawing, job.diagnostics, job.options.timings).encode())
+    return Exported(to_json(job.model, job.drawing, job.diagnostics(), job.options.timings).encode())
 
 
 def _dxf(job: Job) -> Exported:

@@ -20,7 +20,7 @@ from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.measures import Measures
 from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.geometry.solved import Box, Finish, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import Box, Finish, Mobility, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.tessellate import face_polygons
 
 VERSION = 1
@@ -68,7 +68,7 @@ def to_dict(
         "aidl": VERSION,
         "units": "mm",
         "status": model.status,
-        "root": _structure(model.root),
+        "root": _structure(model.root, model.mobility()),
         "constraints": [
             {
                 "path": c.path,
@@ -82,7 +82,7 @@ def to_dict(
             for c in model.constraints
         ],
         "dof": model.degrees,
-        "free": list(model.free),
+        "free": list(model.mobility().free),
         "motions": [
             {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
             | ({"against": m.against} if m.against else {})
@@ -111,7 +111,7 @@ def to_dict(
     return result
 
 
-def _structure(s: SolvedStructure) -> Json:
+def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
     frame: Json = {"x": float(s.frame.x), "y": float(s.frame.y), "rotation": float(s.frame.rotation)}
     if s.frame.mirrored:
         frame["mirrored"] = True
@@ -124,9 +124,8 @@ def _structure(s: SolvedStructure) -> Json:
         "bb": None if s.box is None else _box(s.box),
         "params": dict(s.params),
         "geometry": {g.name: _geometry(g) for g in s.geometry},
-        "structures": [_structure(c) for c in s.structures],
-        "dof": s.degrees,
-        "constrained": s.state,
+        "structures": [_structure(c, mobility) for c in s.structures],
+        **dict(zip(("dof", "constrained"), mobility.of(s), strict=True)),
     }
     attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
     if attributes:

@@ -262,7 +262,7 @@ def _wrapped(text: str) -> list[str]:
 
 def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
     """Returns a place between the things that a constraint mentions."""
-    boxes = [box for path in constraint.mentions if (box := _box_of(model.root, path)) is not None]
+    boxes = [box for path in constraint.mentions() if (box := _box_of(model.root, path)) is not None]
     if not boxes:
         boxes = [box for box in [_box_of(model.root, constraint.path)] if box is not None]
     if not boxes:
@@ -310,17 +310,17 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns the degrees of freedom at each structure that has any, and the free parameters in a list."""
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
-    structures = list(at.model.root.walk())
-    free = _free_by_structure(structures, at.model.free)
+    structures, mobility = list(at.model.root.walk()), at.model.mobility()
+    free = _free_by_structure(structures, mobility.free)
     for structure in structures:
-        box = _bounds(structure)
-        if box is not None and (structure.degrees or structure is at.model.root):
-            marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, themes.FREE, size))
-    count = at.model.degrees
+        box, (degrees, _) = _bounds(structure), mobility.of(structure)
+        if box is not None and (degrees or structure is at.model.root):
+            marks.append(at.label(f"{structure.name}: {degrees} dof", box, themes.FREE, size))
+    count = mobility.degrees
     lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
         if names := free.get(structure.path):
-            lines.append((0, f"{structure.path}: {structure.degrees}"))
+            lines.append((0, f"{structure.path}: {mobility.of(structure)[0]}"))
             lines += [(1, name) for name in names]
     for indent, line in lines:
         marks.append(Text((left + indent * size, top), line, size, themes.FREE, halo=False))

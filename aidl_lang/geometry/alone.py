@@ -10,14 +10,13 @@ from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
 
-def region_alone(model: SolvedModel, path: str) -> Region:
+def region_alone(root: SolvedStructure, path: str) -> Region:
     """Returns the region that a geometry would cover as a solid of its own."""
-    found = (g for g in all_geometry(model.root) if g.path == path)
+    found = (g for g in all_geometry(root) if g.path == path)
     geometry = tuple(replace(g, construction=False) for g in found)
     frame = Frame(0.0, 0.0, 0.0)
-    alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, 0, None)
-    drawing, _ = draw(SolvedModel(model.status, alone, (), 0, (), ()))
-    return drawing.regions.get("it", Region(()))
+    alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, None)
+    return draw(SolvedModel("solved", alone))[0].regions.get("it", Region(()))
 
 
 def all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:

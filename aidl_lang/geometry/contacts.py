@@ -1,13 +1,14 @@
 """The contacts between the bodies of a drawing: touching, apart or overlapping.
 
-Pairs that may touch are compared at once; how far others are apart is worked out when it is asked for. Up to
+All is worked out when it is asked for, pairs that may touch apart from how far others are apart. Up to
 `ALL_PAIRS` bodies every pair is listed. In larger drawings only pairs whose boxes are closer than `NEAR`
 times the size of the drawing are, so that hundreds of bodies stay cheap; a pair that is not listed is apart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field
 from functools import cached_property
 from itertools import combinations
 from operator import itemgetter
@@ -16,6 +17,7 @@ from typing import Literal
 import numpy as np
 
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area
@@ -63,19 +65,19 @@ class Solid:
 
 @record()
 class Contacts:
-    """The pairs of some bodies. `near` has those that touch, overlap or are `UNNOTICED` apart at most;
+    """The pairs of some bodies. `near` works out those that touch, overlap or are `UNNOTICED` apart at most;
     `tolerance` and `size` are those of the drawing.
     """
 
     bodies: Sequence[tuple[str, Region, Bounds]] = ()
-    near: tuple[Contact, ...] = ()
+    near: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
     tolerance: float = 0.0
     size: float = 0.0
 
     @cached_property
     def all(self) -> tuple[Contact, ...]:
         """All pairs (see above), in the order of the bodies."""
-        known = {(contact.a, contact.b): contact for contact in self.near}
+        known = {(contact.a, contact.b): contact for contact in self.near()}
         pairs: Iterable[tuple[int, int]] = combinations(range(len(self.bodies)), 2)
         if len(self.bodies) > ALL_PAIRS:
             pairs = sorted(near_pairs([box for _, _, box in self.bodies], NEAR * self.size))
@@ -105,10 +107,14 @@ class Contacts:
 
 def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
     """Returns the contacts between some bodies."""
-    margin = max(UNNOTICED, 2 * network.tolerance)
-    pairs = sorted(near_pairs([s.box for s in solids], margin))
-    near = tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
-    return Contacts(tuple((s.path, s.region, s.box) for s in solids), near, network.tolerance, network.size)
+
+    def near() -> tuple[Contact, ...]:
+        margin = max(UNNOTICED, 2 * network.tolerance)
+        pairs = sorted(near_pairs([s.box for s in solids], margin))
+        return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+
+    bodies = tuple((s.path, s.region, s.box) for s in solids)
+    return Contacts(bodies, Later(near), network.tolerance, network.size)
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:

@@ -5,13 +5,14 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
@@ -131,35 +132,30 @@ class Drawing:
         return max(self.box[2] - self.box[0], self.box[3] - self.box[1]) or 1.0
 
 
-def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
+@record()
+class Findings:
+    """What there is to tell of a drawing: the errors, and what works out all of it, these among it."""
+
+    errors: Sequence[Diagnostic]
+    everything: Callable[[], list[Diagnostic]]
+
+
+def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
-    notes: list[Diagnostic] = []
-    curves, boxes, shapes, engraved = _collect(model.root, notes)
-    clips, around = clip_shapes(model.root, len(curves))
+    root, unusable = model.root, list[Diagnostic]()
+    curves, boxes, shapes, engraved = _collect(root, unusable)
+    clips, around = clip_shapes(root, len(curves))
     network = Network([*curves, *around], [*boxes, *map(bounds, around)])
-    styles = styles_of(model.root)
+    styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
-    network, walk, masses, traced, gaps = _closed(model.root, network, shapes, clips, blind)
-    notes += [gap_note(gap) for gap in gaps]
-    notes += crossing_notes(network, model.root, shapes)
+    network, walk, masses, traced, gaps = _closed(root, network, shapes, clips, blind)
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
-    notes += [
-        upright_note(s)
-        for s in model.root.walk()
-        if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
-    ]
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
     touching = contacts(network, solids)
-    found = [
-        f for f in walk.findings if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams)
-    ]
-    notes += [note for f in found for note in finding_notes(f, network)]
-    notes += detached_notes(model.root, [b.path for b in bodies], touching)
-    notes += loose_piece_notes(model.root, walk, masses, solids, touching.near)
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
@@ -171,34 +167,52 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    order = {structure.path: place for place, structure in enumerate(stacked(model.root))}
+    order = {structure.path: place for place, structure in enumerate(stacked(root))}
     lying = [
         StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
-    drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
+    drawings = [s.path for s in root.walk() if s.kind == "drawing"]
     on_parts = [shape for path in drawings for shape in shapes[path]] + [
         s for e in engraved.values() for s in e
     ]
     inked = [number for shape in on_parts for number in shape.numbers]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
-    strokes = tuple(_strokes(model.root, shapes, engraved, walk, styles, regions, ground, notes))
-    notes += _covered_letters(model.root, walk, masses, ground, order)
-    notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
-    notes += overhanging_notes(model.root, bodies, strokes)
-    if any(body.style.material for body in bodies):
-        from aidl_lang.geometry.thin import thin_wall_notes
-
-        notes += thin_wall_notes(model.root, [(b.path, b.region, b.style.material) for b in bodies])
-    notes += idle_looks(model.root, [b.path for b in bodies], styles)
-    notes += idle_orders(model.root, [b.path for b in bodies])
+    unseen: list[Diagnostic] = []
+    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground, unseen))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
-    notes += empty_clips(model.root, drawn)
-    plans = tuple(_plans(model.root))
+    empty = list(empty_clips(root, drawn))
+
+    def everything() -> list[Diagnostic]:
+        paths = [b.path for b in bodies]
+        notes = [*unusable, *map(gap_note, gaps), *crossing_notes(network, root, shapes)]
+        notes += [
+            upright_note(s)
+            for s in root.walk()
+            if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
+        ]
+        for f in walk.findings:
+            if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
+                notes += finding_notes(f, network)
+        notes += detached_notes(root, paths, touching)
+        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
+        notes += unseen
+        notes += _covered_letters(root, walk, masses, ground, order)
+        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
+        notes += overhanging_notes(root, bodies, strokes)
+        if any(body.style.material for body in bodies):
+            from aidl_lang.geometry.thin import thin_wall_notes
+
+            notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
+        notes += idle_looks(root, paths, styles)
+        notes += idle_orders(root, paths)
+        return ordered(by_statement([*notes, *empty]))
+
+    plans = tuple(_plans(root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
-    return drawing, ordered(by_statement(notes))
+    return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
 
 def _closed(

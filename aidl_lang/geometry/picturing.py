@@ -17,7 +17,7 @@ from aidl_lang.common.source import Span
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.lower import Lowered
-    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution
@@ -26,48 +26,42 @@ _HEAVY = "most of its curves are made here"
 
 
 def pictured(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
-) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
+    built: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom], watch: Stopwatch
+) -> tuple[SolvedModel, Evaluator, Drawing, Findings]:
     """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
-    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.drawing import Findings, draw
     from aidl_lang.geometry.placeless import with_places
     from aidl_lang.geometry.readout import read_out
 
     with watch("read out"):
         model, evaluator = read_out(built, lowered, solution, freedom)
     with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
-        model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
-        model, wrong = _completed(model)
-        drawing, notes = draw(model)
+        model, notes = with_places(replace(model, size_up=partial(_sizes, built, evaluator)))
+        if model.is_unfinished:
+            from aidl_lang.geometry.outlines import complete
+
+            model, more = complete(model)
+            notes += more
+        drawing, found = draw(model)
         if any(s.ground is not None for s in model.root.walk()):
             from aidl_lang.geometry.grounds import on_material
 
             model = on_material(model, drawing)
-            drawing, notes = draw(model)
-    return model, evaluator, drawing, [*placeless, *wrong, *notes]
+            drawing, found = draw(model)
+
+    def everything() -> list[Diagnostic]:
+        with watch("notes"), blaming(partial(_most_drawn, model), _HEAVY):
+            return [*notes, *found.everything()]
+
+    errors = [*(d for d in notes if d.is_error), *found.errors]
+    return model, evaluator, drawing, Findings(errors, everything)
 
 
-def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """Returns the model with its derived outlines and finished corners; few programs have any to load code
-    for.
-    """
-    if not model.is_unfinished:
-        return model, []
-    from aidl_lang.geometry.outlines import complete
+def _sizes(built: Model, evaluator: Evaluator, solved: SolvedModel) -> tuple[Dimension, ...]:
+    from aidl_lang.geometry.dimensions import sizes
 
-    return complete(model)
-
-
-def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
-    """Returns a function that finds the sizes of a solved model; its code is loaded when it is called."""
-
-    def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
-        from aidl_lang.geometry.dimensions import sizes
-
-        with working:
-            return sizes(built, solved, evaluator)
-
-    return sizes
+    with working:
+        return sizes(built, solved, evaluator)
 
 
 def _most_drawn(model: SolvedModel) -> Span | None:

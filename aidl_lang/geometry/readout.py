@@ -12,7 +12,6 @@ from aidl_lang.building.curves import pieces
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import (
-    Constraint,
     Finish,
     Geometry,
     Model,
@@ -29,6 +28,7 @@ from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described
@@ -39,6 +39,7 @@ from aidl_lang.geometry.solved import (
     Change,
     ConstraintReport,
     Frame,
+    Mobility,
     Motion,
     Reading,
     Scalar,
@@ -58,27 +59,33 @@ _FULL_TURN = 2 * math.pi
 
 
 def read_out(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
+    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
 ) -> tuple[SolvedModel, Evaluator]:
-    """Returns the solved model, and the evaluator of its values for later checks."""
+    """Returns the solved model, and the evaluator of its values for later checks. Its `freedom` is worked out
+    when it is read.
+    """
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
     evaluator = Evaluator(values)
-    counts = dict(zip(model.root.walk(), freedom.group_degrees, strict=True))
-    states = dict(zip(counts, freedom.states, strict=True))
-    reader = _Reader(model, evaluator, counts, states)
     changed = tuple(_changes(lowered, solution))
-    free = tuple(lowered.unknowns[i].path for i in freedom.free)
     reports = tuple(_reports(model, lowered, solution))
-    root = reader.structure(model.root)
+    root = _Reader(model, evaluator).structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    describe = partial(_motions, model, lowered, solution, freedom)
-    floating = tuple(_floating(lowered, freedom))
-    solved = SolvedModel(
-        solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
+    mobility = Later(partial(_mobility, model, lowered, solution, freedom))
+    return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
+
+
+def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]) -> Mobility:
+    found = freedom()
+    each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
+    return Mobility(
+        found.degrees,
+        tuple(lowered.unknowns[i].path for i in found.free),
+        tuple(_floating(lowered, found)),
+        {structure.path: (degrees, str(state)) for structure, degrees, state in each},
+        Later(partial(_motions, model, lowered, solution, found)),
     )
-    return solved, evaluator
 
 
 def _literal(model: Model, finish: Finish) -> ast.Number | None:
@@ -125,29 +132,22 @@ def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[Con
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
-            yield report_of(stated, solution.residuals[index], solution.satisfied[index])
-
-
-def report_of(stated: Constraint, residual: float, satisfied: bool) -> ConstraintReport:
-    text = f"{stated.text} [{stated.label}]" if stated.label else stated.text
-    return ConstraintReport(
-        stated.holder.path,
-        text,
-        stated.span,
-        residual,
-        satisfied,
-        stated,
-        stated.weight is not None,
-        all(comparison.relation == "==" for comparison in stated.comparisons),
-    )
+            yield ConstraintReport(
+                stated.holder.path,
+                f"{stated.text} [{stated.label}]" if stated.label else stated.text,
+                stated.span,
+                solution.residuals[index],
+                solution.satisfied[index],
+                Later(partial(getattr, stated, "mentions")),
+                stated.weight is not None,
+                all(comparison.relation == "==" for comparison in stated.comparisons),
+            )
 
 
 @record(frozen=False)
 class _Reader:
     model: Model
     evaluate: Evaluator
-    degrees: Mapping[Structure, int | None]
-    states: Mapping[Structure, str]
 
     @cached_property
     def place(self) -> Placing[float]:
@@ -172,8 +172,6 @@ class _Reader:
             structures=children,
             box=self._box(s, geometry, children),
             is_empty=s.is_empty,
-            degrees=self.degrees[s],
-            state=str(self.states[s]),
             span=s.span,
             finishes=tuple(self._finish(s, f) for f in s.finishes),
             doc=s.doc,
@@ -293,7 +291,7 @@ class _Reader:
             at = self._at(finish.at, s)
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
-        literal = partial(_literal, self.model, finish)
+        literal = Later(partial(_literal, self.model, finish))
         return SolvedFinish(
             finish.kind, of, at, sizes, finish.text, finish.span, run=finish.run, literal=literal
         )

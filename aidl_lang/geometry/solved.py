@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
@@ -56,10 +56,6 @@ class Recipe:
     words: Mapping[str, str]
 
 
-def _unknown() -> None:
-    return None
-
-
 @record()
 class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
@@ -77,11 +73,7 @@ class Finish:
     span: Span
     corners: tuple[Vec, ...] = ()
     run: int = 0
-    literal: Callable[[], ast.Number | None] = field(default=_unknown, compare=False, repr=False)
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns all but the way to the text, which a pickle does without."""
-        return vars(self) | {"literal": _unknown}
+    literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
 
 
 @record()
@@ -135,11 +127,10 @@ class SolvedGeometry:
 class SolvedStructure:
     """A solved structure. `box` is None if there is nothing to bound. `orientation` is its own, or that of
     what is around it. `attributes`: name → argument values as written (`color`, `layer`, `thickness`,
-    `elevation`, `material`, `quantity`, `detached`, `note`, …). `degrees` is None if they could not be
-    counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
-    that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`. `clip`: the geometry that
-    all in it is drawn inside of; `inside` is what it encloses, as far as that lies in those around it, once
-    it is worked out. `ground`: the path of the solid on whose material alone a drawing is drawn.
+    `elevation`, `material`, `quantity`, `detached`, `note`, …). `is_empty`: no geometry of its own and no
+    children, so that `box` is that of the plan. `clip`: the geometry that all in it is drawn inside of;
+    `inside` is what it encloses, as far as that lies in those around it, once it is worked out. `ground`: the
+    path of the solid on whose material alone a drawing is drawn.
     """
 
     name: str
@@ -153,10 +144,8 @@ class SolvedStructure:
     structures: tuple[SolvedStructure, ...]
     box: Box | None
     is_empty: bool
-    degrees: int | None
     span: Span | None
     doc: str | None = None
-    state: str = "unknown"
     finishes: tuple[Finish, ...] = ()
     finished: tuple[SolvedGeometry, ...] | None = None
     clip: tuple[SolvedGeometry, ...] = ()
@@ -182,22 +171,10 @@ class SolvedStructure:
         return next((s for s in self.walk() if s.path == path), None)
 
 
-class Relating(Protocol):
-    """Something that relates some geometry and structures."""
-
-    @property
-    def mentions(self) -> tuple[str, ...]: ...
-
-
-@record()
-class _Related:
-    mentions: tuple[str, ...]
-
-
 @record()
 class ConstraintReport:
-    """A constraint as written, the structure that holds it, and its violation. `stated` names the things it
-    relates; `exact`: it is made of equations alone.
+    """A constraint as written, the structure that holds it, and its violation. `mentions` finds the paths of
+    the geometry and structures whose unknowns it relates; `exact`: it is made of equations alone.
     """
 
     path: str
@@ -205,18 +182,9 @@ class ConstraintReport:
     span: Span
     residual: float
     satisfied: bool
-    stated: Relating = field(repr=False, compare=False)
+    mentions: Callable[[], tuple[str, ...]] = field(repr=False, compare=False)
     soft: bool = False
     exact: bool = False
-
-    @property
-    def mentions(self) -> tuple[str, ...]:
-        """Paths of the geometry and structures whose unknowns it relates."""
-        return self.stated.mentions
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns what a pickle keeps: of the constraint the paths alone."""
-        return vars(self) | {"stated": _Related(self.mentions)}
 
 
 @record()
@@ -337,6 +305,30 @@ class Opening(Dimension):
         return "angle"
 
 
+@record()
+class Mobility:
+    """What can still move.
+
+    degrees   of freedom of the whole; None if they could not be counted
+    free      paths of the parameters that can
+    floating  structures that no constraint ties to what is around them, and that are where they were guessed
+    own       by the path of a structure its degrees of freedom, and the state of its constraints: `fully`,
+              `under`, `over`, `contradictory` or `unknown`
+    ways      works out independent ways to move, the simplest that were found; the first hundreds of a large
+              model. Last come those in which the whole drawing moves as one.
+    """
+
+    degrees: int | None = 0
+    free: tuple[str, ...] = ()
+    floating: tuple[str, ...] = ()
+    own: Mapping[str, tuple[int | None, str]] = field(default_factory=dict)
+    ways: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
+
+    def of(self, structure: SolvedStructure) -> tuple[int | None, str]:
+        """Returns what `own` has of a structure."""
+        return self.own.get(structure.path, (0, "unknown"))
+
+
 def _unsized(model: SolvedModel) -> tuple[Dimension, ...]:
     return ()
 
@@ -345,15 +337,10 @@ def _unsized(model: SolvedModel) -> tuple[Dimension, ...]:
 class SolvedModel:
     status: str
     root: SolvedStructure
-    constraints: tuple[ConstraintReport, ...]
-    degrees: int | None
-    free: tuple[str, ...]
-    changed: tuple[Change, ...]
+    constraints: tuple[ConstraintReport, ...] = ()
+    changed: tuple[Change, ...] = ()
     readings: tuple[Reading, ...] = ()
-    floating: tuple[str, ...] = ()
-    """structures that no constraint ties to what is around them, and that are where they were guessed"""
-    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
-    """what `ways` is made by, when it is asked for"""
+    mobility: Callable[[], Mobility] = field(default=Mobility, repr=False, compare=False)
     size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
         default=_unsized, repr=False, compare=False
     )
@@ -361,8 +348,7 @@ class SolvedModel:
 
     def __getstate__(self) -> dict[str, object]:
         """Returns what a pickle keeps: what is worked out on demand is worked out now."""
-        worked_out = {"ways": self.ways, "sizes": self.sizes}
-        return vars(self) | worked_out | {"describe": tuple, "size_up": _unsized}
+        return vars(self) | {"sizes": self.sizes, "size_up": _unsized}
 
     @property
     def is_unfinished(self) -> bool:
@@ -373,14 +359,15 @@ class SolvedModel:
             g.recipe for g in self.root.walk_geometry()
         )
 
-    @cached_property
-    def ways(self) -> tuple[Motion, ...]:
-        """Independent ways to move, the simplest that were found; the first hundreds of a large model. Last
-        come those in which the whole drawing moves as one.
-        """
-        return self.describe()
+    @property
+    def degrees(self) -> int | None:
+        return self.mobility().degrees
 
-    @cached_property
+    @property
+    def ways(self) -> tuple[Motion, ...]:
+        return self.mobility().ways()
+
+    @property
     def motions(self) -> tuple[Motion, ...]:
         """The ways in which something moves against the rest, the most interesting first."""
         return tuple(way for way in self.ways if way.kind != "place")

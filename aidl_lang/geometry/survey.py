@@ -215,7 +215,7 @@ class _Surveyor:
         """Returns the part at a path, written with or without the name of the root."""
         path, kind = self._find(written)
         if kind == "geometry":
-            region = region_alone(self.model, path)
+            region = region_alone(self.model.root, path)
             if not region:
                 raise self._missing(written, "encloses no area: its curves do not close")
             return _measured(path, kind, region)

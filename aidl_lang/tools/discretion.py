@@ -2,8 +2,7 @@
 
 An unread program may import the AIDL programs below a folder, and use their definitions, but its author must
 not see their texts. So only whole programs are imported (`Programs`), and messages quote only the author's
-own
-text (`Reader`): for a mistake in an imported file they give the code and the line.
+own text (`Reader`): for a mistake in an imported file they give the code and the line.
 """
 
 from __future__ import annotations
@@ -17,12 +16,13 @@ from aidl_lang.checking import library
 from aidl_lang.common.beside import is_data
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World
 from aidl_lang.explaining.failures import Conflict, Party
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import parse
-from aidl_lang.pipeline import Compiled
+from aidl_lang.pipeline import Compiled, Facts
 
 _HIDDEN = "…"
 _QUOTED = re.compile(r"`[^`]*`")
@@ -77,7 +77,7 @@ class Reader:
         """Returns the outcome of a program, as its author may see it."""
         return replace(
             compiled,
-            diagnostics=self.diagnostics(compiled.diagnostics),
+            find=Later(None, Facts(self.diagnostics(compiled.diagnostics))),
             model=compiled.model and self._model(compiled.model),
             conflicts=lambda: tuple(map(self._conflict, compiled.conflicts())),
         )

@@ -106,8 +106,8 @@ def _alone(group: Group) -> SolvedModel:
     geometry = tuple(part for part in group if isinstance(part, SolvedGeometry))
     solids = tuple(part for part in group if isinstance(part, SolvedStructure))
     nowhere = Frame(0.0, 0.0, 0.0)
-    it = SolvedStructure("it", "it", "solid", "top", nowhere, {}, {}, geometry, solids, None, False, 0, None)
-    return SolvedModel("solved", it, (), 0, (), ())
+    it = SolvedStructure("it", "it", "solid", "top", nowhere, {}, {}, geometry, solids, None, False, None)
+    return SolvedModel("solved", it)
 
 
 def _boxes(part: Part) -> Iterator[Bounds]:

@@ -38,7 +38,7 @@ EXACT = Options(dxf="splines")
 
 
 def written(m: SolvedModel, options: Options | None = None) -> tuple[Document, tuple[Diagnostic, ...]]:
-    made = export(Job(m, draw(m)[0], (), options or Options()), ".dxf")
+    made = export(Job(m, draw(m)[0], options=options or Options()), ".dxf")
     document = ezdxf.read(io.StringIO(made.data.decode()))
     auditor = document.audit()
     assert not auditor.errors

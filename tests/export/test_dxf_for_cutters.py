@@ -200,7 +200,7 @@ def test_what_is_cut_is_worked_out_once_for_all_files() -> None:
     result, told = compiled("gear_pair"), list[tuple[int, int]]()
     assert result.model is not None
     assert result.drawing is not None
-    job = Job(result.model, result.drawing, (), Options(kerf=0.2, sheet=(600, 400)))
+    job = Job(result.model, result.drawing, options=Options(kerf=0.2, sheet=(600, 400)))
     exporter = Exporter(job, lambda done, count: told.append((done, count)))
     first, *others = (exporter.write(suffix).data for suffix in (".svg", ".pdf", ".dxf", ".svg"))
     count = len(result.drawing.regions)

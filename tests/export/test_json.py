@@ -22,10 +22,10 @@ from aidl_lang.export import Job, export
 from aidl_lang.export.json import to_dict, to_json
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.solved import Box, Change, ConstraintReport, SolvedModel
+from aidl_lang.geometry.solved import Box, Change, ConstraintReport, Mobility, SolvedModel
 from tests.compiled import EXAMPLES
 from tests.compiled import model as model_of
-from tests.geometry.models import Stated, arc, circle, compound, model, primitive, rectangle, structure
+from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
 SOURCE = SourceFile("x.aidl", "assembly a {\n    b.above(c)\n}\n")
@@ -53,21 +53,20 @@ def everything() -> SolvedModel:
         ),
         structure("solid", "plan", box=Box(0, 0, 10, 10)),
     )
-    constraint = ConstraintReport("a", "b.above(c)", SPAN, -0.0, True, Stated(("a.b", "a.c")))
+    constraint = ConstraintReport("a", "b.above(c)", SPAN, -0.0, True, lambda: ("a.b", "a.c"))
     soft = replace(constraint, soft=True, residual=float("nan"), satisfied=False)
     changed = (Change("a.b.r.width", 9.0, 10.0, None),)
-    return replace(
-        model(root), constraints=(constraint, soft), free=("a.c.e.rx",), changed=changed, degrees=1
-    )
+    mobility = Mobility(1, ("a.c.e.rx",))
+    return replace(model(root), constraints=(constraint, soft), changed=changed, mobility=lambda: mobility)
 
 
 def test_the_document_follows_its_schema():
     m = everything()
-    drawing, notes = draw(m)
+    drawing, found = draw(m)
     place = Diagnostic(
         "E0101", "wrong", SPAN, "here", (Label(SPAN, "there"),), ("do",), Fix("mend", (Edit(SPAN, "x"),))
     )
-    document = json.loads(to_json(m, drawing, [*notes, place], {"solve": 0.25}))
+    document = json.loads(to_json(m, drawing, [*found.everything(), place], {"solve": 0.25}))
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     jsonschema.validate(document, SCHEMA)
     assert document["timings"] == {"solve": 0.25}

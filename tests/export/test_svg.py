@@ -15,8 +15,8 @@ from aidl_lang.export.svg import face_path, loop_path, open_path
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.geometry.solved import Box, ConstraintReport, SolvedModel, SolvedStructure
-from tests.geometry.models import Stated, arc, circle, model, primitive, rectangle, structure
+from aidl_lang.geometry.solved import Box, ConstraintReport, Mobility, SolvedModel, SolvedStructure
+from tests.geometry.models import arc, circle, model, primitive, rectangle, structure
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -151,12 +151,12 @@ def explained() -> SolvedModel:
     span = Span(SourceFile("x", "\n"), 0, 0)
     constraints = (
         ConstraintReport(
-            "part", "plate.left >= 0 & 1 < 2", span, 0.0, True, Stated(("part.plate.r.edges[0].start",))
+            "part", "plate.left >= 0 & 1 < 2", span, 0.0, True, lambda: ("part.plate.r.edges[0].start",)
         ),
-        ConstraintReport("part", "bore is far away " * 9, span, 3.25, False, Stated(("part.plate.bore.c",))),
+        ConstraintReport("part", "bore is far away " * 9, span, 3.25, False, lambda: ("part.plate.bore.c",)),
     )
-    free = ("part.plate.bore.c.center.x", "part.marks.l.start.x")
-    return replace(model(ROOT), constraints=constraints, free=free, degrees=2)
+    mobility = Mobility(2, ("part.plate.bore.c.center.x", "part.marks.l.start.x"))
+    return replace(model(ROOT), constraints=constraints, mobility=lambda: mobility)
 
 
 def test_all_layers():

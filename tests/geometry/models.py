@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec
@@ -21,12 +20,6 @@ def arc(center: Vec, radius: float, first: float, last: float) -> Arc:
         return center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)
 
     return Arc(center, radius, at(first), at(last), math.radians(last - first))
-
-
-class Stated(NamedTuple):
-    """What a constraint speaks of."""
-
-    mentions: tuple[str, ...]
 
 
 def primitive(
@@ -69,12 +62,12 @@ def structure(
     box = box or (Box(*union_bounds(boxes)) if boxes else None)
     frame = Frame(0.0, 0.0, 0.0)
     return SolvedStructure(
-        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, 0, span
+        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, span
     )
 
 
 def model(root: SolvedStructure) -> SolvedModel:
-    return SolvedModel("solved", _with_paths(root, ""), (), 0, (), ())
+    return SolvedModel("solved", _with_paths(root, ""))
 
 
 def _with_paths(s: SolvedStructure, prefix: str) -> SolvedStructure:

@@ -58,7 +58,7 @@ def test_only_pairs_that_come_near_are_compared_before_they_are_asked_for():
     shapes = [circle("c", x, 0, 1) for x in (0, 2, 5, 7.0005)]
     solids = [structure("solid", f"p{i}", shape) for i, shape in enumerate(shapes)]
     found = draw(model(structure("assembly", "a", *solids)))[0].contacts
-    assert [(pair.a, pair.b, pair.is_close) for pair in found.near] == [
+    assert [(pair.a, pair.b, pair.is_close) for pair in found.near()] == [
         ("a.p0", "a.p1", True),
         ("a.p2", "a.p3", True),
     ]

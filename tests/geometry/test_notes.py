@@ -13,7 +13,7 @@ from tests.geometry.models import arc, circle, compound, model, primitive, recta
 
 
 def notes(root: SolvedStructure) -> list[Diagnostic]:
-    return draw(model(root))[1]
+    return draw(model(root))[1].everything()
 
 
 def only(root: SolvedStructure) -> Diagnostic:
@@ -110,7 +110,7 @@ def test_a_hole_that_removes_nothing():
 
 def test_a_hole_at_the_root_cuts_nothing_and_is_outlined():
     drawing, found = draw(model(structure("hole", "h", circle("c", 0, 0, 2))))
-    assert [n.code for n in found] == ["W0703"]
+    assert [n.code for n in found.everything()] == ["W0703"]
     assert [s.role for s in drawing.strokes] == ["hole"]
 
 
@@ -172,13 +172,13 @@ def test_the_fix_marks_the_part():
 )
 def test_what_has_no_extent_is_not_drawn(shape):
     drawing, found = draw(model(structure("solid", "s", shape)))
-    assert [n.code for n in found] == ["W0706"]
+    assert [n.code for n in found.everything()] == ["W0706"]
     assert not drawing.bodies
 
 
 def test_nothing_at_all():
     drawing, found = draw(model(structure("assembly", "a")))
-    assert (drawing.bodies, drawing.box, found) == ((), (0, 0, 0, 0), [])
+    assert (drawing.bodies, drawing.box, found.everything()) == ((), (0, 0, 0, 0), [])
 
 
 def test_free_loops_inside_a_shape_are_reported_together():

@@ -28,7 +28,7 @@ def drawn(root: SolvedStructure) -> Drawing:
 
 
 def codes(root: SolvedStructure) -> list[str]:
-    return [d.code for d in draw(model(root))[1]]
+    return [d.code for d in draw(model(root))[1].everything()]
 
 
 def region_of(*members: SolvedGeometry | SolvedStructure) -> Region:

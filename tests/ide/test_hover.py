@@ -98,7 +98,7 @@ def test_structures_tell_their_box_and_freedom() -> None:
     assert plate is not None
     assert plate.box is not None
     assert f"{plate.box.width:g} × {plate.box.height:g} mm" in said
-    assert f"{plate.degrees} degrees of freedom" in said
+    assert f"{model.mobility().of(plate)[0]} degrees of freedom" in said
 
 
 def test_what_can_move_is_free_and_what_cannot_is_not() -> None:

@@ -95,13 +95,16 @@ class Reader:
             raise Missing("the program was not solved")
         return self.compiled.model.root
 
+    def _count(self, structure: SolvedStructure) -> int | None:
+        return self.compiled.model.mobility().of(structure)[0] if self.compiled.model is not None else None
+
     def _named(self, name: str) -> Value:
         return self.root if name == self.root.name else member(self.root, name)
 
     def _call(self, name: str, values: list[Value]) -> float:
         match name, values:
-            case "dof", [SolvedStructure() as structure] if structure.degrees is not None:
-                return structure.degrees
+            case "dof", [SolvedStructure() as structure] if (count := self._count(structure)) is not None:
+                return count
             case (("area" | "perimeter"), [SolvedStructure() as structure]) if self.compiled.drawing:
                 return float(getattr(self.compiled.drawing.measures[structure.path], name))
             case "distance", [a, b]:

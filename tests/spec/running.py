@@ -10,9 +10,11 @@ import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.render import render
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.geometry.freedom import report
+from aidl_lang.pipeline import Facts
 from tests.spec.parts import Case, Expectation, Line, Program
 from tests.spec.readings import Missing, Reader, shown
 
@@ -52,7 +54,8 @@ def run(case: Case) -> Outcome:
         _check_each_fix(case, source, plain.diagnostics, outcome)
     if case.message is not None:
         _check_message(case, [d for d in plain.diagnostics if d.is_error], outcome)
-        plain = replace(plain, diagnostics=[d for d in plain.diagnostics if not d.is_error])
+        kept = [d for d in plain.diagnostics if not d.is_error]
+        plain = replace(plain, find=Later(None, Facts(kept)))
     own = [e for e in case.expectations if not e.is_variant]
     _check_diagnostics(case, own, plain.diagnostics, source, outcome)
     unexplained = case.message is None and not any(d.is_error for d in plain.diagnostics)
@@ -209,7 +212,7 @@ def _summary(word: str, compiled: pipeline.Compiled) -> str:
         case "dof":
             return str(model.degrees)
         case "free":
-            return ", ".join(model.free) or "nothing"
+            return ", ".join(model.mobility().free) or "nothing"
         case "motions":
             return "; ".join(report(model)) or "none"
         case _:

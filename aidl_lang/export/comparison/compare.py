@@ -157,14 +157,14 @@ def compare(before: Version, after: Version) -> Comparison:
         root = match(before.model.root, after.model.root, TOLERANCE * size)
         structures = tuple(_Walk(before, after, TOLERANCE * size).changes(root, STILL, is_root=True))
     names = {pair.before.path: pair.after.path for pair in root.walk()}
-    free = {_renamed(path, names): None for path in before.model.free}
-    still_free = set(after.model.free)
+    free = {_renamed(path, names): None for path in before.model.mobility().free}
+    still_free = set(after.model.mobility().free)
     return Comparison(
         before,
         after,
         structures,
         tuple(_contact_changes(before, after, names, TOLERANCE * size)),
-        tuple(path for path in after.model.free if path not in free),
+        tuple(path for path in after.model.mobility().free if path not in free),
         tuple(path for path in free if path not in still_free),
         size,
     )

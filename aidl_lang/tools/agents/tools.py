@@ -178,7 +178,7 @@ class Tools:
 
         _, compiled, reader = self._compiled(program, params, files)
         if not compiled.ok:
-            raise RefusalError(*(d for d in compiled.diagnostics if d.is_error))
+            raise RefusalError(*compiled.errors)
         try:
             found = compiled.surveyed([path] if path else [])
         except (NothingThereError, TooLongError) as reason:
@@ -221,7 +221,7 @@ class Tools:
         """
         source, before, _ = self._compiled(program, None, files)
         if before.status == "wrong":
-            raise RefusalError(*(d for d in before.diagnostics if d.is_error))
+            raise RefusalError(*before.errors)
         edit = knobs.edit_of(knobs.find(before.knobs, name), source, value)
         text = _edited(source, edit)
         changed, after, _ = self._compiled(text, None, files)

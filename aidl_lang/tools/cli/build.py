@@ -49,7 +49,7 @@ class BuildResult:
 
     @property
     def code(self) -> int:
-        return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
+        return exit_code(self.compiled.errors) or (0 if self.compiled.ok else 1)
 
     def motions(self, most: int) -> list[str]:
         """Returns the remaining motions, one sentence a line."""
@@ -66,9 +66,8 @@ class BuildResult:
             freedom = f", {counted(model.degrees, 'degree')} of freedom"
         written = first_few(self.written, _MOST_NAMES)
         place, remark = (written, "") if written else (program, ", nothing written")
-        status = self.compiled.status
-        if status == "solved" and not self.compiled.ok:
-            status = "errors after solving"
+        is_off = self.compiled.status == "solved" and not self.compiled.ok
+        status = "errors after solving" if is_off else self.compiled.status
         return f"{place}: {status}{freedom}{remark}, {self.seconds:.2f} s"
 
 

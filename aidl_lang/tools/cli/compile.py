@@ -32,7 +32,8 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     outcome = build(arguments)
-    show([*outcome.compiled.diagnostics, *outcome.notes], arguments.quiet)
+    told = outcome.compiled.errors if arguments.quiet else outcome.compiled.diagnostics
+    show([*told, *outcome.notes], arguments.quiet)
     if arguments.trace_solve:
         _show_stages(outcome.compiled.stages)
     if arguments.timings:

@@ -99,8 +99,8 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
         if may_be_used and compiled.model is not None and compiled.drawing is not None:
             versions.append(compiled)
         else:
-            show([*compiled.diagnostics, _refusal(name, compiled)], quiet=True)
-            code = max(code, exit_code(compiled.diagnostics), 1)
+            show([*compiled.errors, _refusal(name, compiled)], quiet=True)
+            code = max(code, exit_code(compiled.errors), 1)
     return code or versions[0].compared(versions[1])
 
 

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     show(compiled.diagnostics)
     may_be_shown = compiled.ok or arguments.best_effort
     if may_be_shown and compiled.model is not None and compiled.drawing is not None:
-        drawn = picture(Job(compiled.model, compiled.drawing, tuple(compiled.diagnostics), options))
+        drawn = picture(Job(compiled.model, compiled.drawing, options=options))
         name = _protocol() if arguments.protocol == "auto" else arguments.protocol
         files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))
     return exit_code(compiled.diagnostics) or int(not compiled.ok)

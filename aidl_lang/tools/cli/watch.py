@@ -62,7 +62,7 @@ def _once(arguments: argparse.Namespace, memory: Memory) -> frozenset[Path]:
     except UseError as reason:
         say(f"{clock} {one_line(reason.diagnostic)}")
         return frozenset()
-    errors = [d for d in outcome.compiled.diagnostics if d.is_error]
+    errors = outcome.compiled.errors
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     say(f"{clock} {one_line(errors[0])}{more}" if errors else f"{clock} {outcome.line(arguments.file)}")
     return outcome.read

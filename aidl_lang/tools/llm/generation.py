@@ -84,7 +84,7 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
 
 def floats(model: SolvedModel) -> tuple[str, ...]:
     """Returns paths, without the root, of structures that no constraint places."""
-    return tuple(path.removeprefix(f"{model.root.path}.") for path in model.floating)
+    return tuple(path.removeprefix(f"{model.root.path}.") for path in model.mobility().floating)
 
 
 def _freedom(model: SolvedModel) -> str:

@@ -69,15 +69,13 @@ class Runner:
         limits: Settings = LIMITS,
     ) -> None:
         self.documents, self.workspace, self.listener = documents, workspace, listener
-        self.limits = limits
-        self.delay = 0.0
+        self.limits, self.delay = limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
         self._tidier = Tidier(loop, lambda: self.looking.is_busy or self.solving.is_busy)
         self.looking = Lane("looking", loop, self._tidier.note)
         self.solving = Lane("solving", loop, self._tidier.note)
-        self._loop = loop
-        self._is_closing = False
+        self._loop, self._is_closing = loop, False
 
     def warm_up(self) -> None:
         """Loads what the first run and the first questions need while nobody waits for it."""
@@ -206,7 +204,9 @@ class Runner:
 
         with cancelled_when(is_unwanted):
             last = document.ran.view if document.ran is not None else None
-            return run(known.view, last, document.memory, settings=self.limits)
+            view = run(known.view, last, document.memory, settings=self.limits)
+            _ = view.diagnostics  # worked out where it can be given up: the loop's thread reads them
+            return view
 
     def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
         if not document.is_open or self._is_closing:

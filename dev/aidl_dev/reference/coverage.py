@@ -162,8 +162,8 @@ def _judged(report: ConstraintReport | None, number: int, first: str, second: st
         return "without effect"
     # A `var` belongs to the drawing; everything else is mentioned under its own name.
     wanted = {n for n, kind in (("a", first), ("b", second)) if kind not in ("", "number")}
-    names = {path.removeprefix(f"all.cell{number}.").split(".")[0].split("[")[0] for path in report.mentions}
-    if not report.mentions or not wanted <= names:
+    names = {p.removeprefix(f"all.cell{number}.").split(".")[0].split("[")[0] for p in report.mentions()}
+    if not names or not wanted <= names:
         return "without effect on " + " and ".join(sorted(wanted - names))
     return "works" if report.satisfied else f"not satisfied: {report.residual:g}"
 

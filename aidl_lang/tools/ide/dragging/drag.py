@@ -424,9 +424,9 @@ def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: 
     grip = _grips_of(again).get(dragged._grip.id)
     if grip is None or again.outcome.evaluate is None:
         return False
-    errors = {d.code for d in again.outcome.diagnostics if d.is_error}
+    errors = {d.code for d in again.outcome.errors}
     shown = dragged.view.outcome
-    known = (*view.outcome.diagnostics, *(shown.diagnostics if shown is not None else ()))
+    known = (*view.outcome.errors, *(shown.errors if shown is not None else ()))
     if not errors <= {d.code for d in known}:
         return False
     if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:

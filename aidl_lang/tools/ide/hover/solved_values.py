@@ -61,7 +61,7 @@ class Solved:
 
     @cached_property
     def free(self) -> frozenset[str]:
-        return frozenset(self.outcome.model.free) if self.outcome.model is not None else frozenset()
+        return frozenset(self.outcome.model.mobility().free) if self.outcome.model else frozenset()
 
     def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[BuiltValue]:
         """Returns the values of an expression, the first of many; `path` are the nodes around it, outermost

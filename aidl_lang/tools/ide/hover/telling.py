@@ -186,7 +186,7 @@ def _box_size(solved: Solved, thing: Geometry, env: Env) -> str | None:
 def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]:
     model = solved.outcome.model
     found = model.root.find(structure.path) if model is not None else None
-    if found is None:
+    if model is None or found is None:
         return
     if found.box is not None:
         box = found.box
@@ -196,10 +196,11 @@ def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]
         yield f"{name}: {found.kind}, {size}, {across}, {up}"
     else:
         yield f"{name}: {found.kind}, nothing drawn"
-    degrees = f"{found.degrees} degrees of freedom" if found.degrees is not None else ""
-    if found.degrees == 1:
+    count, state = model.mobility().of(found)
+    degrees = f"{count} degrees of freedom" if count is not None else ""
+    if count == 1:
         degrees = "1 degree of freedom"
-    said = ", ".join(filter(None, (_STATES.get(found.state, ""), degrees)))
+    said = ", ".join(filter(None, (_STATES.get(state, ""), degrees)))
     if said:
         yield f"{name}: {said}"
 

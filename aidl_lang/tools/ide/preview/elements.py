@@ -266,4 +266,4 @@ def _constrained(view: View, found: Elements, place: Span) -> list[int]:
         if span is not None and span.source is place.source and span.start <= place.start <= span.end:
             around.append((span.end - span.start, report))
     least = min((length for length, _ in around), default=0)
-    return found.all_near(path for length, r in around if length == least for path in r.mentions)
+    return found.all_near(path for length, r in around if length == least for path in r.mentions())

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.export import Job, Options
@@ -44,7 +44,7 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     assert outcome.model is not None
     assert outcome.drawing is not None
     options = Options(frozenset(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
-    job = Job(outcome.model, outcome.drawing, tuple(outcome.diagnostics), options)
+    job = Job(outcome.model, outcome.drawing, options=options)
     painted = picture(job)
     groups = tuple(_numbered(group, elements) for group in painted.groups)
     text = to_svg(replace(painted, groups=groups))
@@ -177,7 +177,7 @@ def preview(
 
 def _status(outcome: Compiled) -> str:
     """Returns how a program stands: one that solved may still be `wrong`, as when an `assert` fails."""
-    is_wrong = outcome.status == "solved" and has_errors(outcome.diagnostics)
+    is_wrong = outcome.status == "solved" and bool(outcome.errors)
     return "wrong" if is_wrong else outcome.status
 
 

@@ -208,8 +208,7 @@ class _Finder:
         """Returns the elements written, or constrained, in the places that a diagnostic names.
 
         If several share a place, as the turns of a loop do, only those whose paths the message quotes, before
-        it
-        names what is beside them.
+        it names what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
         here = [k for span in spans for k in self._at(span)]
@@ -223,5 +222,5 @@ class _Finder:
     def related(self, span: Span, holder: str | None = None) -> list[int]:
         """Returns the elements that the constraints in a place relate; only those of `holder`, if given."""
         reports = self.constraints.get(span, [])
-        paths = [path for r in reports if holder in (None, r.path) for path in r.mentions]
+        paths = [path for r in reports if holder in (None, r.path) for path in r.mentions()]
         return self.elements.all_near(paths)

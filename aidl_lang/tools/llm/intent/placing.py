@@ -336,7 +336,7 @@ def stands(compiled: Compiled | None) -> bool:
     """True for a program that solves; an assert of it may fail."""
     if compiled is None or compiled.model is None or compiled.status != "solved":
         return False
-    return not any(d.is_error and d.code != _FAILED for d in compiled.diagnostics)
+    return all(d.code == _FAILED for d in compiled.errors)
 
 
 def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[Diagnostic]:
