@@ -8,11 +8,10 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from aidl_lang.building.model import Knob, Model
-from aidl_lang.common.cancelling import OutOfTime, limited_to
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import within
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Later
+from aidl_lang.common.running import Later, OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:

@@ -26,10 +26,10 @@ from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import NOTHING, Namespace
 from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
-from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.records import record
+from aidl_lang.common.running import limited_to
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 

@@ -18,11 +18,10 @@ from aidl_lang.checking.allowing import IDLE, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Later, Stopwatch, working
+from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts

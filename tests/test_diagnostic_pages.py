@@ -9,7 +9,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.checking.variants import Variant
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
@@ -39,7 +39,7 @@ def test_every_page_has_a_code() -> None:
 def test_page_has_its_parts(code: str) -> None:
     text = (PAGES / f"{code}.md").read_text(encoding="utf-8")
     assert re.match(rf"# {code}: \S.*\n", text)
-    assert pages.title(code)
+    assert resources.title(code)
     shown = {block.heading for block in blocks(PAGES / f"{code}.md")}
     assert shown >= {MISTAKE, MENDED}
 

@@ -11,8 +11,8 @@ import pytest
 
 from aidl_lang import compile as compiled_model
 from aidl_lang import diff, pipeline
-from aidl_lang.common.cancelling import OutOfTime
 from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import ExportError

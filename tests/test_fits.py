@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.common.fits import is_fit, limits
+from aidl_lang.common.materials import is_fit, limits
 
 PUBLISHED = """
 H6 30 0 13 | H7 3 0 10 | H7 10 0 15 | H7 20 0 21 | H7 50 0 25 | H7 100 0 35 | H7 200 0 46 | H7 500 0 63

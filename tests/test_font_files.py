@@ -18,9 +18,9 @@ from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 
 from aidl_lang import pipeline
-from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.resources import resource
+from aidl_lang.common.running import limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure
 from aidl_lang.geometry.measures import area

@@ -263,11 +263,11 @@ def test_full_guide_holds_every_entry() -> None:
 
 
 def test_codes_in_the_guide_exist() -> None:
-    from aidl_lang.common import pages
+    from aidl_lang.common import resources
 
     codes = set(re.findall(r"\b[EWN]\d{4}\b", guide()))
     assert codes
-    assert codes <= set(pages.codes())
+    assert codes <= set(resources.codes())
 
 
 def test_forms_are_written_as_few() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads
 from aidl_lang.common.world import (
     DiskWorld,
     FileError,

@@ -10,7 +10,7 @@ from aidl_lang.building.model import Constraint, Geometry, Structure
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import Nothing, Num, PointVal, TextVal, Value
 from aidl_lang.building.wording import Wording
-from aidl_lang.common.fits import is_fit
+from aidl_lang.common.materials import is_fit
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 

@@ -27,8 +27,7 @@ from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
-from aidl_lang.common.numbers import literal
-from aidl_lang.common.prose import did_you_mean, first_few, ticked
+from aidl_lang.common.prose import did_you_mean, first_few, literal, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 

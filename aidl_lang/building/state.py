@@ -17,9 +17,9 @@ from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, TextVal
 from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
-from aidl_lang.common.cancelling import OutOfTime, checkpoint
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label
 from aidl_lang.common.records import record
+from aidl_lang.common.running import OutOfTime, checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program

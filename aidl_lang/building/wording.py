@@ -13,8 +13,8 @@ from typing import TypeVar
 from aidl_lang.building.model import Comparison, Condition, Geometry, Structure
 from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.building.values import Num, PointVal, Value, members
-from aidl_lang.common.cancelling import limited_to
 from aidl_lang.common.records import record
+from aidl_lang.common.running import limited_to
 from aidl_lang.syntax import ast
 
 _Tree = TypeVar("_Tree", bound=ast.Node)

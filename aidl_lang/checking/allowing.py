@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
@@ -60,7 +60,7 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
         for argument in attribute.arguments:
             value = argument.value
             code = value.value if isinstance(value, ast.String) else value.span.text
-            if code in pages.codes() and not code.startswith("E"):
+            if code in resources.codes() and not code.startswith("E"):
                 is_alone = len(attribute.arguments) == 1
                 may_come = code in _LATER or not (code.startswith(_OF_TEXT) or _is_still(modules))
                 allowed.append(
@@ -99,10 +99,11 @@ def _without_code(attribute: ast.Attribute) -> Diagnostic:
 
 def _unknown(code: str, place: Span) -> Diagnostic:
     """Returns what is wrong with a code that cannot be allowed."""
-    if code in pages.codes():
+    if code in resources.codes():
         message = f"`{code}` is an error, and only notes and warnings can be allowed"
         return Diagnostic("E0216", message, place, hints=(f"mend it: `aidl explain {code}` tells how",))
-    alike = [c for c in (code.upper(), *pages.near(code.upper())) if c in pages.codes() and c[0] != "E"]
+    codes = resources.codes()
+    alike = [c for c in (code.upper(), *resources.near(code.upper())) if c in codes and c[0] != "E"]
     near = sorted(alike, key=lambda c: c[0] != code[:1].upper())[:1]
     return Diagnostic(
         "E0216",

@@ -26,8 +26,7 @@ from aidl_lang.checking.types import (
 )
 from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.lexicon import WORDS
-from aidl_lang.common.names import fold, is_slip, nearest
+from aidl_lang.common.names import WORDS, fold, is_slip, nearest
 from aidl_lang.common.prose import ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast

@@ -6,7 +6,7 @@ import math
 import re
 
 from aidl_lang.checking.units import LENGTH, UNITS
-from aidl_lang.common.papers import PAPERS
+from aidl_lang.common.materials import PAPERS
 
 LARGEST = 1e5
 """Largest side of a sheet, mm."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from aidl_lang.common.cancelling import OutOfTime, limited_to
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import Span
 
 

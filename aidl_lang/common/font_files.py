@@ -17,7 +17,7 @@ from io import BytesIO
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.running import checkpoint
 
 if TYPE_CHECKING:
     from fontTools.ttLib import TTFont

@@ -12,7 +12,7 @@ from enum import StrEnum
 from pathlib import Path, PurePosixPath
 from typing import Protocol
 
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads
 
 _REASONS = {
     errno.ENOENT: "MISSING",

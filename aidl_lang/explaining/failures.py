@@ -16,8 +16,7 @@ from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import listed
+from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers

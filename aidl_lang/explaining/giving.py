@@ -11,8 +11,7 @@ from aidl_lang.building.expression import Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Structure
 from aidl_lang.common.diagnostics import Diagnostic, Label
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import listed
+from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.failures import NAMED

@@ -16,7 +16,7 @@ from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import fixed, rough
+from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.leaving import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
@@ -257,7 +257,7 @@ def _false_parts(
 
 
 def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
-    from aidl_lang.common.numbers import short
+    from aidl_lang.common.prose import short
 
     left, right = evaluate(comparison.left), evaluate(comparison.right)
     return f"{short(left)} is not {comparison.relation} {short(right)}"

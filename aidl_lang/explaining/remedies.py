@@ -18,7 +18,7 @@ import numpy as np
 
 from aidl_lang.building.model import Constraint
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial

@@ -16,8 +16,7 @@ from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Constraint, Model
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import listed, named, ticked
+from aidl_lang.common.prose import listed, named, short, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.failures import NAMED

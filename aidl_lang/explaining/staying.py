@@ -14,8 +14,7 @@ from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Geometry, Structure
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import named, short
 from aidl_lang.common.records import record
 from aidl_lang.solver import Solution
 from aidl_lang.syntax import ast

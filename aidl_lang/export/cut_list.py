@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.csv_text import csv_text
-from aidl_lang.common.numbers import fixed
-from aidl_lang.common.prose import first_few
+from aidl_lang.common.files import csv_text
+from aidl_lang.common.prose import first_few, fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, themes
 from aidl_lang.export.cuts import outlines

@@ -11,7 +11,7 @@ from itertools import count, groupby
 
 import numpy as np
 
-from aidl_lang.common.numbers import significant
+from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united

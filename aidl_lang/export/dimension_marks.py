@@ -12,9 +12,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec

@@ -8,12 +8,12 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings.dxf import ENGRAVED
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.export import UNITS, Exported, Job
 from aidl_lang.export.cut_list import labels

@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import rounded
-from aidl_lang.common.render.data import to_dict as diagnostic_dict
+from aidl_lang.common.prose import rounded
+from aidl_lang.common.render.compact import to_dict as diagnostic_dict
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.described import described

@@ -12,10 +12,10 @@ import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.solids import PlacedBody, Recess, thick_bodies
 from aidl_lang.export.themes import body_fill

@@ -13,8 +13,8 @@ from typing import TypeGuard
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.marks import Dot, Frame, Mark, Text
 from aidl_lang.geometry.curves import Piece, Vec

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.colors import rgb
-from aidl_lang.common.numbers import size_text
+from aidl_lang.common.prose import size_text
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import ExportError
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.png import FAMILY, font_file

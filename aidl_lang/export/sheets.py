@@ -7,8 +7,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import fixed, size_text
-from aidl_lang.common.prose import counted, listed, named
+from aidl_lang.common.prose import counted, fixed, listed, named, size_text
 from aidl_lang.export import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark

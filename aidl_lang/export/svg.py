@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import UNITS, themes
 from aidl_lang.export.marks import (
     HALO,

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.numbers import fixed, size_text
+from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import ExportError, themes
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Line, Piece, Vec

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import fixed
-from aidl_lang.common.prose import listed, named, ticked
+from aidl_lang.common.prose import fixed, listed, named, ticked
 from aidl_lang.export import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_unlined

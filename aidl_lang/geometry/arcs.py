@@ -14,8 +14,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, ends, point, points, round_range
 from aidl_lang.geometry.finishing import direction

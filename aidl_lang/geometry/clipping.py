@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, part, point
 from aidl_lang.geometry.intersect import intersections

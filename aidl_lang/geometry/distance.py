@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, nearest, point, points, second_derivative
 from aidl_lang.geometry.region import Region

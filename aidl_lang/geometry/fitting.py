@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Work, finish, largest
 

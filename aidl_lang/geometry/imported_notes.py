@@ -9,8 +9,7 @@ from dataclasses import replace
 from itertools import combinations, islice
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import counted, named
+from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.geometry.bodies import CrossedOutline, Finding, LooseCurves
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import ends

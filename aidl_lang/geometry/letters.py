@@ -10,8 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.font_files import Curve
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import common, without
 from aidl_lang.geometry.curves import Bezier, Line, Piece
 from aidl_lang.geometry.evaluate import ends, points, reverse

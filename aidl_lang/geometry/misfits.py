@@ -10,8 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Piece

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once
-from aidl_lang.common.cancelling import checkpoint, give_up
+from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.evaluate import Bounds
 
 _AT_ONCE = 1 << 20

@@ -16,8 +16,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.tessellate import Polygon, polygon_area
 

@@ -17,8 +17,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint, give_up
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
     TAU,

@@ -9,8 +9,7 @@ from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import named, ticked
+from aidl_lang.common.prose import named, rough, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, IdleHole, InnerLoop, LooseCurves, OwnFinding
 from aidl_lang.geometry.contacts import Contacts

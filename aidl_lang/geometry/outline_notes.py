@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
-from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import named, rough
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Corner, arms_at, corners_of
 from aidl_lang.geometry.notes import at

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import rough
+from aidl_lang.common.prose import rough
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.evaluate import points
 from aidl_lang.geometry.nearness import inside

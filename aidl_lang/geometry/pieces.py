@@ -12,8 +12,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass

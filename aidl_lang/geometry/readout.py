@@ -24,11 +24,10 @@ from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Later
+from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described

@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece
 from aidl_lang.geometry.evaluate import ends, round_range
 

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.materials import density, similar
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.alone import region_alone
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece
 from aidl_lang.geometry.evaluate import TAU, ends, points, round_range
 from aidl_lang.geometry.measures import loop_area

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.materials import least_wall
-from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import short
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.walls import thin_wall

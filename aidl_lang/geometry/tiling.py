@@ -17,8 +17,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import clearance, within
 from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec, image

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, locate, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area

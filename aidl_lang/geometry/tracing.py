@@ -14,9 +14,9 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from aidl_lang.building.model import Geometry
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings.drawing import Element
 from aidl_lang.common.drawings.strokes import Bow, Stroke
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, image
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.network import Network, Use

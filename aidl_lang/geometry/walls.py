@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.chords import ANGLE, Chords, chords, joined
 from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.distance import piece_distance

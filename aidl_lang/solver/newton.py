@@ -19,8 +19,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.solver.linear import Matrix, damped_steps, nearest, with_slacks
 from aidl_lang.solver.operations import Floats
 

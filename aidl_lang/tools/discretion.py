@@ -13,8 +13,8 @@ from dataclasses import replace
 from functools import cached_property
 
 from aidl_lang.checking import library
-from aidl_lang.common.beside import is_data
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
+from aidl_lang.common.files import is_data
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span

@@ -21,7 +21,7 @@ from aidl_eval.regions import Part, Regions
 from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.processes import Guarded, Limit, LimitError, limit_met
-from aidl_lang.common.render.text import escape
+from aidl_lang.common.render.excerpt import escape
 from aidl_lang.geometry.curves import Line, Piece
 from aidl_lang.geometry.sections import Polygon
 from aidl_lang.geometry.tessellate import polygon_area

@@ -14,8 +14,7 @@ from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
 from shapely.geometry import LineString, MultiLineString
 
-from aidl_lang.common.drawings.drawing import OutlineFile
-from aidl_lang.common.drawings.reading import outlines
+from aidl_lang.common.drawings.drawing import OutlineFile, outlines
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.measures import length

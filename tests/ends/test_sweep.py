@@ -10,7 +10,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.building.state import BuildingLimits
-from aidl_lang.common.cancelling import Cancelled, cancelled_when
+from aidl_lang.common.running import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.tools.ends import Sweep, SweepJob, searching, sentence, sweep

@@ -16,7 +16,7 @@ import shapely.geometry
 
 import aidl_lang
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import fixed, significant
+from aidl_lang.common.prose import fixed, significant
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import Job, export
 from aidl_lang.export.json import to_dict, to_json

@@ -29,12 +29,11 @@ import ezdxf
 from pygls.exceptions import JsonRpcInternalError
 
 from aidl_lang import pipeline
-from aidl_lang.common.cancelling import OutOfTime, limited_to
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawings.drawing import DrawingError
-from aidl_lang.common.drawings.reading import outlines
+from aidl_lang.common.drawings.drawing import DrawingError, outlines
+from aidl_lang.common.files import Reads
 from aidl_lang.common.font_files import FontError, FontFile
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.tools.lsp import wire

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.numbers import shortest
+from aidl_lang.common.prose import shortest
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.tools.ide.guesses import can_write_back, guesses, write_back
 from aidl_lang.tools.ide.lenses import inlays

@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang import pipeline
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.source import SourceFile
 from tests.lsp.editor import EXAMPLES, TELEPHONE, Editor, edited, offset, place, stretch
 
@@ -62,7 +62,7 @@ async def test_diagnostics_lead_to_their_pages_and_places(editor: Editor) -> Non
     page = unused.code_description.href
     assert page.startswith("file:///")
     assert page.endswith("/docs/diagnostics/W0201.md")
-    assert pages.page("W0201")
+    assert resources.page("W0201")
     editor.close(uri)
 
 

@@ -18,7 +18,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.common.cancelling import Cancelled, OutOfTime, cancelled_when, limited_to
 from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.running import Cancelled, OutOfTime, cancelled_when, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
 from aidl_lang.export import SHOW, Options

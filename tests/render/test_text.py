@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.common.render.text import escape, lay_out, width_of, window
+from aidl_lang.common.render.excerpt import escape, lay_out, width_of, window
 
 
 @pytest.mark.parametrize(

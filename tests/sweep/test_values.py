@@ -9,7 +9,7 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.sweeping.axes import axis, from_values
 from aidl_lang.tools.sweeping.orders import read_table

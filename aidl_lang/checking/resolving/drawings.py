@@ -15,9 +15,8 @@ from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.drawings import WHOLE
-from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace
-from aidl_lang.common.drawings.reading import outlines
-from aidl_lang.common.numbers import rough
+from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace, outlines
+from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast

@@ -15,9 +15,9 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking.resolving.cuts import with_placed_cuts
-from aidl_lang.common.beside import PROGRAM
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.drawings import is_drawing
+from aidl_lang.common.files import PROGRAM
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World, relative_to

@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings import xml
 from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
 from aidl_lang.common.drawings.strokes import (
@@ -22,18 +21,20 @@ from aidl_lang.common.drawings.strokes import (
     mapped,
     product,
 )
-from aidl_lang.common.drawings.svg_shapes import SHAPES, outline
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
+    SHAPES,
     ValueMistake,
     declarations,
     numbers,
+    outline,
     pixels,
     transform,
 )
 from aidl_lang.common.drawings.xml import Node
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 
 _MOST_USES = 20_000
 _DEEPEST = 150

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from dataclasses import field
 from xml.parsers import expat
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawings.drawing import DrawingError
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 
 MOST_NODES = 100_000
 DEEPEST = 100

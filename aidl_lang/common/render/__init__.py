@@ -1,9 +1,7 @@
 """Diagnostics as people and programs read them: an excerpt for the terminal, a dictionary for JSON."""
 
-from aidl_lang.common.render.compact import compact
-from aidl_lang.common.render.data import to_dict
-from aidl_lang.common.render.style import TerminalStyle, wants_colour
+from aidl_lang.common.render.compact import compact, to_dict
+from aidl_lang.common.render.excerpt import TerminalStyle, escape, wants_colour
 from aidl_lang.common.render.terminal import one_line, render, summary
-from aidl_lang.common.render.text import escape
 
 __all__ = ["TerminalStyle", "compact", "escape", "one_line", "render", "summary", "to_dict", "wants_colour"]

@@ -9,8 +9,8 @@ from typing import TypeGuard
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export.comparison.changes import (
     STILL,
     Comparison,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from aidl_lang.common.numbers import rounded
+from aidl_lang.common.prose import rounded
 from aidl_lang.export.comparison.changes import Comparison, Fields, GeometryChange, Move, StructureChange
 from aidl_lang.geometry.contacts import Contact
 

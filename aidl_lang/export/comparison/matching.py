@@ -12,8 +12,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export.comparison.changes import STILL, Move, Pose, pose_of
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain, groupby
 
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.export.drafting.contents import Content, View, contents

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from textwrap import wrap
 
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import Pen, Sheet
 from aidl_lang.export.dimensioning import visible

@@ -17,9 +17,9 @@ from aidl_lang.building.expression import ZERO, Evaluator, Expression, constant
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure, convert, convert_angle
 from aidl_lang.building.values import NOTHING, Array, ListVal, Num, PointVal, TextVal, Value, members
 from aidl_lang.building.wording import Wording
-from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.common.fits import limits as fit_limits
+from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.features import (
     angle_of,

@@ -16,8 +16,8 @@ from aidl_lang.building.model import Geometry, Model, Structure, convert_angle
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.dimensions.features import (
     angle_of,

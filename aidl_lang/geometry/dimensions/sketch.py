@@ -20,8 +20,8 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.features import meeting
 from aidl_lang.geometry.evaluate import Bounds, derivative, ends

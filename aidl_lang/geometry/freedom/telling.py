@@ -13,7 +13,7 @@ from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Model
 from aidl_lang.common.arrays import each_once
-from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import short
 from aidl_lang.geometry.freedom.bending import Bending
 from aidl_lang.geometry.freedom.reach import POSSIBLE, Flags, Reach
 from aidl_lang.geometry.freedom.relations import Relations, pattern

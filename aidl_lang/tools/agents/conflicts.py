@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, Fix, apply_fixes
-from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import short
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.explaining import failures

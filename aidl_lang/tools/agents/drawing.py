@@ -9,8 +9,7 @@ from typing import cast
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import nearest
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import did_you_mean
+from aidl_lang.common.prose import did_you_mean, short
 from aidl_lang.common.render import compact
 from aidl_lang.geometry.survey import Part, some_of
 from aidl_lang.pipeline import Compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.tools.agents.results import Hit
 from aidl_lang.tools.reference.collect import Entry
 from aidl_lang.tools.reference.pages import forms
@@ -25,8 +25,8 @@ def _of_entry(entry: Entry) -> Hit:
 
 
 def _of_code(code: str) -> Hit:
-    mended = _MENDED.search(pages.page(code))
-    return Hit(code, "diagnostic", pages.title(code), [], _short(mended[1] if mended else ""))
+    mended = _MENDED.search(resources.page(code))
+    return Hit(code, "diagnostic", resources.title(code), [], _short(mended[1] if mended else ""))
 
 
 def _short(example: str) -> str:

@@ -9,7 +9,7 @@ from dataclasses import field
 from typing import Any, Literal, TypeAlias
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.numbers import rounded
+from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 

@@ -14,7 +14,7 @@ from mcp.server.mcpserver.exceptions import ResourceNotFoundError
 from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
 from mcp_types import Tool as McpTool
 
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.resources import resource
 from aidl_lang.tools.agents.schema import for_mcp
 from aidl_lang.tools.agents.tools import Tools
@@ -86,13 +86,13 @@ def _schema() -> str:
 
 
 def _codes() -> str:
-    return "\n".join(f"- {code}: {pages.title(code)}" for code in pages.codes())
+    return "\n".join(f"- {code}: {resources.title(code)}" for code in resources.codes())
 
 
 def _page(code: str) -> str:
-    if code.upper() not in pages.codes():
+    if code.upper() not in resources.codes():
         raise ResourceNotFoundError(f"there is no code `{code[:60]}`; aidl://diagnostics lists all")
-    return pages.page(code.upper())
+    return resources.page(code.upper())
 
 
 def _page_of_name(name: str) -> str:

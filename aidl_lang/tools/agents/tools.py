@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from aidl_lang import pipeline
 from aidl_lang.checking.variants import Variant
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Edit, has_errors
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.prose import did_you_mean, ticked
@@ -158,13 +158,13 @@ class Tools:
         from aidl_lang.tools.reference.pages import entry_blocks
 
         code = name.strip("[] ").upper()
-        if code in pages.codes():
-            return Page(code, pages.page(code))
+        if code in resources.codes():
+            return Page(code, resources.page(code))
         known = reference()
         entry = known.find(name.strip()) or known.misspelt(name.strip())
         if entry is not None:
             return Page(entry.name, joined(entry_blocks(entry, "#")))
-        hints = did_you_mean([*known.near(name[:100]), *pages.near(code[:100])][:6])
+        hints = did_you_mean([*known.near(name[:100]), *resources.near(code[:100])][:6])
         raise refusal("E0912", f"there is no `{name[:100]}` to tell about", *hints, "`search` finds names")
 
     def measure(

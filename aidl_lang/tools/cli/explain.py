@@ -13,16 +13,16 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_lang.common import pages
+    from aidl_lang.common import resources
 
     if arguments.code is None:
-        for code in pages.codes():
-            print(f"{code}  {pages.title(code)}")
+        for code in resources.codes():
+            print(f"{code}  {resources.title(code)}")
         return 0
     code = arguments.code.strip("[]").upper()
-    if code not in pages.codes():
-        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(pages.near(code)))
-    print(pages.page(code).rstrip())
+    if code not in resources.codes():
+        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(resources.near(code)))
+    print(resources.page(code).rstrip())
     return 0
 
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.reading import MAX_BYTES, Reads, require_fitting
-from aidl_lang.common.replacing import replace
+from aidl_lang.common.files import MAX_BYTES, Reads, replace, require_fitting
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli.report import UseError
 

@@ -222,7 +222,7 @@ def _mass(grams: float) -> str:
 def _print_json(compiled: Compiled, found: Survey) -> None:
     import json
 
-    from aidl_lang.common.numbers import rounded
+    from aidl_lang.common.prose import rounded
     from aidl_lang.common.render import to_dict
 
     document = {

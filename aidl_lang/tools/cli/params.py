@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.numbers import literal
+from aidl_lang.common.prose import literal
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import exit_code, show

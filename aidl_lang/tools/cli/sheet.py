@@ -7,7 +7,7 @@ import re
 import time
 from pathlib import Path
 
-from aidl_lang.common.papers import PAPERS
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_outputs, add_params, add_pixels, add_program
 from aidl_lang.tools.cli.report import UseError, exit_code, say, show

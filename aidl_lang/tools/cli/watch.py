@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.beside import is_data, may_be_read
+from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.build import build, targets
 from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant

@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.processes import Guarded, count
+from aidl_lang.common.running import checkpoint
 from aidl_lang.tools.ends.results import Sweep, Tried, Turned
 from aidl_lang.tools.ends.trying import SweepJob, tried
 from aidl_lang.tools.ends.values import Value, ends, limit

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from aidl_lang.building.model import Knob
-from aidl_lang.common.numbers import literal
-from aidl_lang.common.prose import first_few
+from aidl_lang.common.prose import first_few, literal
 from aidl_lang.tools.ends.results import Sweep, Tried, Turned
 from aidl_lang.tools.ends.values import Value
 from aidl_lang.tools.sweeping.faults import Fault

@@ -16,7 +16,7 @@ from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import ExportError

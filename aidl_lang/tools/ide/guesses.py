@@ -12,7 +12,7 @@ from aidl_lang.building.expression import Evaluator, Expression, Unknown
 from aidl_lang.building.model import Literal
 from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.numbers import shortest
+from aidl_lang.common.prose import shortest
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.pipeline import Compiled

@@ -9,8 +9,7 @@ from aidl_lang.building.model import Knob
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import fold
-from aidl_lang.common.numbers import fixed
-from aidl_lang.common.prose import counted, first_few
+from aidl_lang.common.prose import counted, first_few, fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import ConstraintReport, Motion, Scalar, SolvedModel, SolvedStructure

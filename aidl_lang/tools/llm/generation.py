@@ -9,8 +9,7 @@ from itertools import groupby
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.numbers import short
-from aidl_lang.common.prose import counted, first_few, ticked
+from aidl_lang.common.prose import counted, first_few, short, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.geometry.freedom import report

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from contextlib import suppress
 from functools import partial
 from typing import Any, Generic, TypeVar
 
-from aidl_lang.common.cancelling import Cancelled, cancelled_when
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Cancelled, cancelled_when
 
 T = TypeVar("T")
 

@@ -8,8 +8,8 @@ from dataclasses import field, replace
 from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
-from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Cancelled
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.tools.ide.workspace import View

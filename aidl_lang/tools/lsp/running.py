@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from aidl_lang.common import resources
-from aidl_lang.common.beside import is_data
-from aidl_lang.common.cancelling import Cancelled, cancelled_when, checkpoint
+from aidl_lang.common.files import is_data
+from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast

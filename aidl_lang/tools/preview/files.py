@@ -8,9 +8,8 @@ from pathlib import Path
 
 from watchfiles import Change, awatch
 
-from aidl_lang.common.beside import may_be_read
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads, may_be_read
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.positions import applied

@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cache
 
-from aidl_lang.common import pages
+from aidl_lang.common import resources
 from aidl_lang.common.records import record
 from aidl_lang.tools.reference.collect import Entry, reference
 
@@ -89,7 +89,7 @@ def _scored(query: str) -> list[tuple[Entry | str, float]]:
 
 @cache
 def _documents() -> tuple[_Document, ...]:
-    return (*map(_of_entry, reference().entries.values()), *map(_of_code, pages.codes()))
+    return (*map(_of_entry, reference().entries.values()), *map(_of_code, resources.codes()))
 
 
 @cache
@@ -111,7 +111,7 @@ def _of_entry(entry: Entry) -> _Document:
 
 
 def _of_code(code: str) -> _Document:
-    title, page = pages.title(code), pages.page(code)
+    title, page = resources.title(code), resources.page(code)
     prose = page.partition("\n## ")[0].partition("\n")[2]
     return _Document(code, frozenset({code.casefold()}), _weighed((_SUMMARY, title), (_TEXT, prose)))
 

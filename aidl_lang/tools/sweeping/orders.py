@@ -8,9 +8,9 @@ from pathlib import Path
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.files import Reads
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, named, ticked
-from aidl_lang.common.reading import Reads
 from aidl_lang.tools.sweeping.axes import MOST, Value, value
 from aidl_lang.tools.sweeping.plan import Rows
 

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePath
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.reading import Reads
+from aidl_lang.common.files import Reads, replace
 from aidl_lang.common.records import record
-from aidl_lang.common.replacing import replace
 from aidl_lang.export import FORMATS, file_names, require, suffix_of
 from aidl_lang.tools.sweeping.naming import Pattern, distinct, has_fields, pattern
 from aidl_lang.tools.sweeping.outcome import Outcome

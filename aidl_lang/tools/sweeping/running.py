@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.processes import Engine
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import Bundle, Gathering, digest_of, patience
 from aidl_lang.tools.sweeping.faults import Fault, limit_fault

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.csv_text import csv_text
+from aidl_lang.common.files import csv_text
 from aidl_lang.export import require
 from aidl_lang.tools.sweeping.axes import shown
 from aidl_lang.tools.sweeping.rows import Cell, Columns, Row, as_mapping

@@ -11,7 +11,7 @@ from dataclasses import replace
 from aidl_lang import pipeline
 from aidl_lang.checking import library
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
-from aidl_lang.common.numbers import significant
+from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
 from aidl_lang.export import Exported, Options

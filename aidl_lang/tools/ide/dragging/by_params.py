@@ -12,7 +12,7 @@ from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import fold
-from aidl_lang.common.numbers import shortest
+from aidl_lang.common.prose import shortest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents.knobs import edit_at

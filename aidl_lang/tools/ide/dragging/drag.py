@@ -17,8 +17,7 @@ from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Model
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.drawing_time import TooLongError
-from aidl_lang.common.numbers import shortest
-from aidl_lang.common.prose import first_few, ticked
+from aidl_lang.common.prose import first_few, shortest, ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.pipeline import Compiled

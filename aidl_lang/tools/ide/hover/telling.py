@@ -15,7 +15,7 @@ from aidl_lang.building.state import Env
 from aidl_lang.building.values import Exactness, Num, PointVal, TextVal, Value
 from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
-from aidl_lang.common.numbers import fixed
+from aidl_lang.common.prose import fixed
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.hover.solved_values import BuiltValue, Solved, items_of, spelled

@@ -6,7 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec

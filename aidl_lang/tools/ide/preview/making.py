@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.picture import picture

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from aidl_lang.common.numbers import rounded
+from aidl_lang.common.prose import rounded
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way

@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
 
-from aidl_lang.common.cancelling import Cancelled
+from aidl_lang.common.running import Cancelled
 from aidl_lang.tools.ends import Sweep, described
 from aidl_lang.tools.ide.lenses import can_be_tried, tried
 from aidl_lang.tools.lsp.documents import Document, VersionedView

@@ -7,7 +7,7 @@ import logging
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from aidl_lang.common.beside import DATA, PROGRAM
+from aidl_lang.common.files import DATA, PROGRAM
 from aidl_lang.tools.lsp.convert import Settings
 from aidl_lang.tools.lsp.documents import path_of
 from aidl_lang.tools.lsp.server import Server

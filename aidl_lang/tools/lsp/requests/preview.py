@@ -16,8 +16,8 @@ from pygls.exceptions import (
     JsonRpcRequestCancelled,
 )
 
-from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.common.running import Cancelled
 from aidl_lang.export import FORMATS, ExportError, Options
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.dragging import drag

@@ -6,7 +6,7 @@ import io
 from collections.abc import Sequence
 from typing import Any
 
-from aidl_lang.common.papers import PAPERS
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.export.pdf import POINTS_PER_MM
 from aidl_lang.export.png import FAMILY, font_file
 from aidl_lang.tools.sweeping.rows import Row

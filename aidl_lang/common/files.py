@@ -1,14 +1,21 @@
-"""Reads regular files of bounded size, and remembers which: what was read is not to be overwritten."""
+"""Files: regular ones of bounded size read, written whole or not at all, tables without formulas."""
 
 from __future__ import annotations
 
+import csv
 import errno
+import io
 import os
+import re
 import stat
 from collections.abc import Iterable
-from pathlib import Path
+from contextlib import suppress
+from pathlib import Path, PurePath
 
+from aidl_lang.common import drawings, font_files
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
+
+# --- Reads regular files of bounded size, and remembers which: what was read is not to be overwritten.
 
 MAX_BYTES = 10_000_000
 """Most bytes of a file; a program is far smaller."""
@@ -73,3 +80,66 @@ def _opened(path: Path, below: Path | None) -> int:
         return os.open(name, _FLAGS | os.O_NOFOLLOW, dir_fd=folder)
     finally:
         os.close(folder)
+
+
+# --- Writes files whole or not at all.
+
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
+
+def replace(path: Path, data: bytes) -> None:
+    """Writes beside the file and moves into place once all is on the disk, so that whoever reads it has the
+    old or the new one, also after a loss of power. Raises OSError, also for a file that is write-protected.
+    """
+    mode = path.stat().st_mode if path.exists() else None
+    if mode is not None and not (stat.S_IMODE(mode) & _WRITABLE and os.access(path, os.W_OK)):
+        raise PermissionError(errno.EACCES, "it is write-protected", str(path))
+    temporary = path.with_name(f".{path.name}.{os.urandom(8).hex()}")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            os.chmod(temporary, mode)
+        os.replace(temporary, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+# --- Writes tables as CSV of which no cell is taken for a formula by the program that opens it.
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+def csv_text(rows: Iterable[Iterable[object]], end: str = "\n") -> str:
+    """Returns rows of cells as CSV. A text that begins as formulas do, and is no number, gets a mark: `'`."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator=end)
+    writer.writerows([_harmless(cell) for cell in row] for row in rows)
+    return out.getvalue()
+
+
+def _harmless(cell: object) -> object:
+    is_formula = isinstance(cell, str) and cell.startswith(_FORMULA) and not _NUMBER.fullmatch(cell)
+    return f"'{cell}" if is_formula else cell
+
+
+# --- The kinds of files that a program may read beside itself, by their suffixes.
+
+PROGRAM = ".aidl"
+DATA = (*font_files.SUFFIXES, *drawings.SUFFIXES)
+"""What is read as bytes: no message quotes it."""
+
+
+def is_data(path: str | PurePath) -> bool:
+    """Tells whether a file is a font or a drawing of another program."""
+    return PurePath(path).suffix.lower() in DATA
+
+
+def may_be_read(path: str | PurePath) -> bool:
+    """Tells whether a program may read a file of this name."""
+    return PurePath(path).suffix == PROGRAM or is_data(path)
