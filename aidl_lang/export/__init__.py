@@ -326,7 +326,7 @@ def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
     """Returns the pages of the cut list that are asked for."""
     if "list" not in jobs[0].options.show:
         return []
-    from aidl_lang.export.cut_list import pages
+    from aidl_lang.export.cut_list_files import pages
 
     return pages(jobs)
 
@@ -392,7 +392,7 @@ def _csv(job: Job) -> Exported:
 
 
 def _csv_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.cut_list import to_csv
+    from aidl_lang.export.cut_list_files import to_csv
 
     return to_csv(jobs)
 

@@ -1,4 +1,4 @@
-"""The list of what is to be cut: parts by themselves, their numbers and labels, as CSV and as pages."""
+"""The list of what is to be cut: each part that differs from the others, and how many pieces of it."""
 
 from __future__ import annotations
 
@@ -6,99 +6,14 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from aidl_lang.common.files import csv_text
-from aidl_lang.common.prose import first_few, fixed
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.records import record
-from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, themes
+from aidl_lang.export import ON_SHEETS, ExportError, Job
 from aidl_lang.export.cuts import outlines
-from aidl_lang.export.drafting.tables import LARGE, WIDTH, Table, written
-from aidl_lang.export.marks import CHARACTER, Group, Picture, Text
 from aidl_lang.export.profiles import CUTS, PLAIN
-from aidl_lang.geometry.curves import Vec
-from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.engraving import boxes_meet
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.parts import COARSE, Motion, Part, Size, alike, drawn, parts_of, smallest_size
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.tessellate import piece_points, region_polygons
-
-# --- Names and numbers of parts on sheets, each where its part has room for it.
-
-LABELS = frozenset({"names", "numbers"})
-"""What `--show` may ask for of parts on sheets."""
-SIZE = 5.0
-"""Largest font size, mm."""
-_BASELINE = 0.3
-"""How far below its middle the baseline of a text runs, relative to its size."""
-_STEPS = 15
-"""Places looked at along each side of a part."""
-_AIR = 0.9
-"""Share of the room that a text takes."""
-
-
-def labels(job: Job) -> Iterator[Text]:
-    """Yields a text for each part, as large as it allows, up to what is read easily."""
-    asked = job.options.show & LABELS
-    if not asked or job.options.sheet is None:
-        return
-    root, numbers = job.model.root.path, job.cut_list.numbers if "numbers" in asked else {}
-    for body in job.drawing.bodies:
-        words = [str(numbers[body.path])] if numbers else []
-        words += [body.path.removeprefix(f"{root}.")] if "names" in asked else []
-        label = " ".join(words)
-        middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
-        at = middle[0], middle[1] - _BASELINE * size
-        yield Text(at, label, size, themes.NAME, "middle", halo=False)
-
-
-def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
-    """Returns what is engraved about a body, as polylines."""
-    near = (s.pieces for s in drawing.strokes)
-    boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
-    return [piece_points(piece, COARSE) for piece, box in boxes if boxes_meet(box, body.box)]
-
-
-def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
-    """Returns the middle and the size of the largest text, so many times as wide as high, that lies in the
-    material beside what is engraved, as near to the middle of the part as there is room.
-    """
-    shrunk = [polygon / (width, 1.0) for polygon in region_polygons(region, COARSE)]
-    sides = [_sides(np.concatenate((polygon, polygon[:1]))) for polygon in shrunk]
-    sides += [_sides(line / (width, 1.0)) for line in engraved]
-    outline = np.concatenate(shrunk)
-    low, high = outline.min(axis=0), outline.max(axis=0)
-    shares = (np.arange(_STEPS) + 0.5) / _STEPS
-    spots = low + np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2) * (high - low)
-    spots = np.concatenate(([(low + high) / 2], spots))
-    spots = spots[np.argsort(np.hypot(*((spots - spots[0]) * (width, 1.0)).T), kind="stable")]
-    spots = spots[within] if (within := inside(shrunk, spots)).any() else spots[:1]
-    # A square lies in a circle: where a text is as high as wide, its room is that of a square.
-    sizes = _AIR * np.sqrt(2) * _clearance(spots, np.concatenate(sides))
-    best = int(np.argmax(np.minimum(sizes, SIZE)))
-    x, y = spots[best] * (width, 1.0)
-    return (float(x), float(y)), float(min(sizes[best], SIZE))
-
-
-def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns start and end of each side of a polyline, a row each."""
-    return np.concatenate((line[:-1], line[1:]), axis=1)
-
-
-def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the distance of each point to the nearest side."""
-    start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
-    square = np.maximum((way**2).sum(axis=1), 1e-30)
-    least = np.full(len(spots), np.inf)
-    for k, spot in enumerate(spots):
-        t = np.clip(((spot - start) * way).sum(axis=1) / square, 0, 1)
-        least[k] = np.hypot(*(spot - start - t[:, None] * way).T).min()
-    return least
-
+from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
 
 # --- Parts each by itself: a job for every part that differs from the others.
 
@@ -246,99 +161,3 @@ def sheets(found: CutList, jobs: Sequence[Job]) -> Iterator[Sheet]:
 def _size(drawing: Drawing) -> Size:
     left, bottom, right, top = drawing.box
     return right - left, top - bottom
-
-
-# --- The cut list as CSV, and as pages of a picture.
-
-_DECIMALS, _SHOWN = 3, 1
-"""Of lengths and areas in CSV and on pages."""
-_ROWS = 42
-"""Lines of a table on a page."""
-_MARGIN, _TITLE = 10.0, 8.0
-"""Around the table on a page, and above it, mm."""
-
-_PARTS = (
-    *(
-        "number",
-        "part",
-        "quantity",
-        "material",
-        "thickness_mm",
-        "width_mm",
-        "height_mm",
-        "area_mm2",
-        "cut_mm",
-    ),
-)
-_SHEETS = ("sheet", "material", "thickness_mm", "pieces", "numbers", "used_percent", "cut_mm")
-
-
-def to_csv(jobs: Sequence[Job]) -> Exported:
-    """Writes the list; below it, where parts are laid on sheets, a line for each sheet. Raises ExportError
-    if there is no part.
-    """
-    found = jobs[0].cut_list
-    if not found.items:
-        raise ExportError(
-            "E0924", "there is no part to list", "only a `solid` is cut; a `drawing` is engraved on it"
-        )
-    rows = [_PARTS, *(_line(item, _DECIMALS) for item in found.items)]
-    if jobs[0].options.sheet is not None:
-        rows += [(), _SHEETS, *(_sheet_line(sheet, _DECIMALS) for sheet in sheets(found, jobs))]
-    return Exported(csv_text(rows, end="\r\n").encode("utf-8-sig"))
-
-
-def pages(jobs: Sequence[Job]) -> list[Picture]:
-    """Returns the list as pages."""
-    found = jobs[0].cut_list
-    return [
-        *_pages(
-            "cut-list",
-            "Parts",
-            ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut"),
-            [_line(item, _SHOWN) for item in found.items],
-            frozenset({0, 2, 4, 5, 6, 7, 8}),
-        ),
-        *_pages(
-            "sheets",
-            "Sheets",
-            ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
-            [_sheet_line(sheet, _SHOWN) for sheet in sheets(found, jobs)],
-            frozenset({0, 2, 3, 5, 6}),
-        ),
-    ]
-
-
-def _line(item: Item, decimals: int) -> tuple[str, ...]:
-    lengths = (item.thickness, *item.size, item.area, item.cut)
-    numbers = (_number(value, decimals) for value in lengths)
-    return (str(item.number), item.name, str(item.quantity), item.material, *numbers)
-
-
-def _sheet_line(sheet: Sheet, decimals: int) -> tuple[str, ...]:
-    return (
-        str(sheet.number),
-        sheet.material,
-        _number(sheet.thickness, decimals),
-        str(sheet.pieces.total()),
-        " ".join(map(str, sorted(sheet.pieces))),
-        _number(100 * sheet.used, 1),
-        _number(sheet.cut, decimals),
-    )
-
-
-def _number(value: float | None, decimals: int) -> str:
-    return "" if value is None else fixed(value, decimals)
-
-
-def _pages(
-    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
-) -> Iterator[Picture]:
-    for first in range(0, len(rows), _ROWS):
-        table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
-        width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN
-        title = written(
-            f"{title_of}: lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE
-        )
-        groups = (Group(f"{name}-title", (title,), {"class": "table"}), table.group(_MARGIN, _MARGIN))
-        yield Picture((0.0, 0.0, width, height), groups)

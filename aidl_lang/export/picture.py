@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.export import Job, themes
-from aidl_lang.export.cut_list import labels
+from aidl_lang.export.labels import labels
 from aidl_lang.export.marks import LETTERS, Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.overlay import explain
 from aidl_lang.export.svg import gradient_of

@@ -41,7 +41,6 @@ from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.evaluate import Bounds, bounds, ends, point, points
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.stacking import stacked
