@@ -44,9 +44,6 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
         yield item, replace(job, drawing=drawn(job.drawing, [part]), options=alone, is_flat=True)
 
 
-# --- The list of what is to be cut: each part that differs from the others with its number, how many pieces
-# of it there are, of which stock, how large, and how long its cuts are.
-
 NAMED = 3
 """Names that an item bears; of more, the others are counted."""
 

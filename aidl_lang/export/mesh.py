@@ -23,8 +23,6 @@ from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
 
-# --- Triangle meshes of the bodies that have a thickness, for STL and 3MF.
-#
 # A triangle mesh has no curves: chords depart from the outline by at most `FINENESS` of the size of a body,
 # or by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not cross itself.
 

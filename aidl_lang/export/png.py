@@ -42,8 +42,6 @@ def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
     )
 
 
-# --- PNG: the SVG of a picture as pixels on white, with the bundled font and no other.
-
 SLIMMEST = 1 / 100
 """Largest ratio of the sides; a longer picture gets more white along its sides."""
 LARGEST = 1e5

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from aidl_lang.export.cuts import Outline
 
 
-# --- Profiles of workshops: how the files for a cutter say what is engraved, scored and cut, and in which
-# order.
-#
 # A machine is told by colours or by layers what to do with a line. A profile is the table of that: for each
 # operation its colour, the width of its lines and its layer, the same in every format.
 

@@ -196,6 +196,8 @@ class Halos:
         """Yields the gap around a body whose outline has a width."""
         width = body.style.halo or 0.0
         if width > 0 and self._covers(body.path, body.box, by := width + line / 2):
+            from aidl_lang.geometry.offsets import offset
+
             wide = offset(body.region, by, sharp=False)
             if body.style.is_clear:
                 wide = without(wide, body.region)
