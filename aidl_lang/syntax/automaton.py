@@ -24,9 +24,7 @@ class Checkpoint(NamedTuple):
 
 
 class Automaton:
-    """Lark's interactive parser of a module, and what it has read: its states, and the trees and tokens between
-    them.
-    """
+    """Lark's interactive parser, and what it has read: its states, with the trees and tokens between them."""
 
     def __init__(self) -> None:
         self.tables = load_tables()
@@ -91,10 +89,10 @@ class Automaton:
 
     def enter_block(self) -> None:
         """Begins the list of statements of a block in which there are none yet."""
-        states = self.tables.states
-        action, rule = states[self.states[-1]].get(self.tables.types[";"], (None, None))
+        row = self.tables.states[self.states[-1]]
+        action, rule = row.get(self.tables.types[";"], (Shift, None))
         if action is Reduce and not rule.expansion:
-            _, reached = states[self.states[-1]][rule.origin.name]
+            _, reached = row[rule.origin.name]
             if reached in self.tables.statement_states:
                 self.states.append(reached)
                 self.values.append(Tree(rule.origin.name, []))

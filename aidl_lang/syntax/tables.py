@@ -1,7 +1,7 @@
 """Lark's parser of `grammar/aidl.lark`, with what the language has in words and signs.
 
-Lark works its tables out when the package is built; an installation brings them along as JSON, a checkout makes
-them anew when the grammar has changed (`resources.derived`).
+Lark works its tables out when the package is built; an installation brings them along as JSON, a checkout
+makes them anew when the grammar has changed (`resources.derived`).
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ class _Kept:
 class Tables:
     """Lark's parser, and its terminals by what they are in the text.
 
-    `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and `kinds` these
-    the other way around; `patterns` are those of the other terminals. `reserved` are the words that CALL leaves
-    out, `soft_words` those that are names wherever the grammar has no place for them. `comments` are Lark's
-    names for these. In `statement_states` a statement may begin.
+    `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and `kinds`
+    these the other way around; `patterns` are those of the other terminals, and of these `comments` are no
+    tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the
+    grammar has no place for them. In `statement_states` a statement may begin.
     """
 
     lark: Lark
@@ -113,8 +113,8 @@ def built() -> bytes:
 def _states(made: Lark) -> tuple[list[Any], list[tuple[str, ...]], int]:
     """Returns the states, sets of symbols, and the state at the end.
 
-    A state groups its reductions by the sets of symbols before which they are made: there are few such sets, and
-    they are most of the tables.
+    A state groups its reductions by the sets of symbols before which they are made: there are few such sets,
+    and they are most of the tables.
     """
     conf = made.parse_interactive().parser_state.parse_conf
     rules = {rule: number for number, rule in enumerate(made.rules)}

@@ -162,8 +162,7 @@ def vocabulary() -> Vocabulary:
     """Returns the words of this installation."""
     tables = load_tables()
     words = tables.reserved | tables.soft_words
-    rows = [tables.states[state] for state in tables.statement_states]
-    starts = {word for word in words if any(tables.types[word] in row for row in rows)}
+    starts = {tables.kinds.get(name) for state in tables.statement_states for name in tables.states[state]}
     signs = tables.types.keys() - words
     keywords = {name: _present(listed, words) for name, listed in _KEYWORDS.items()}
     named = _named()
