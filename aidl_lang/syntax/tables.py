@@ -17,7 +17,7 @@ from typing import Any
 
 import lark
 from lark import Lark
-from lark.grammar import Rule
+from lark.grammar import NonTerminal, Rule, RuleOptions, Terminal
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 from lark.parsers.lalr_analysis import Action, Reduce, Shift
 from lark.parsers.lalr_parser_state import ParseConf
@@ -95,6 +95,8 @@ def built() -> bytes:
     reserved = "|".join(word for word in words if word not in soft_words)
     call.pattern = PatternRE(rf"(?!({reserved})\()[^\W\d]\w*\(")
     data, memo = made.memo_serialize([Rule, TerminalDef])
+    for place in data["rules"]:
+        del memo[place["@"]]  # four fifths of it say what is alike in all rules
     states, sets, end = _states(made)
     data["options"] = options | {"propagate_positions": True}
     data["parser"]["parser"] = {"tokens": {}, "states": {}, "start_states": _at(0), "end_states": _at(end)}
@@ -106,6 +108,16 @@ def built() -> bytes:
     kept = {
         "data": data,
         "memo": memo,
+        "rules": [
+            (
+                r.origin.name,
+                ["+-"[s.filter_out] + s.name if isinstance(s, Terminal) else s.name for s in r.expansion],
+                r.alias,
+                r.options.keep_all_tokens,
+                r.options.expand1,
+            )
+            for r in made.rules
+        ],
         "states": states,
         "sets": sets,
         "comments": comments,
@@ -151,11 +163,17 @@ def _types(made: Lark) -> dict[str, str]:
     return {t.pattern.value: t.name for t in made.terminals if isinstance(t.pattern, PatternStr)}
 
 
+def _rule(origin: str, symbols: list[str], alias: str | None, keeps_all: bool, passes_one: bool) -> Rule:
+    expansion = [NonTerminal(s) if s[0] not in "-+" else Terminal(s[1:], s[0] == "-") for s in symbols]
+    return Rule(NonTerminal(origin), expansion, 0, alias, RuleOptions(keeps_all, passes_one))
+
+
 def decoded(text: bytes) -> Tables:
     """Returns Lark's parser from what `built` made of it."""
     kept = json.loads(text)
     memo = {int(number): value for number, value in kept["memo"].items()}
-    made = Lark.load({"data": kept["data"], "memo": memo})
+    rules = {place["@"]: _rule(*row) for place, row in zip(kept["data"]["rules"], kept["rules"], strict=True)}
+    made = Lark.load({"data": kept["data"], "memo": memo | rules})
     conf = made.parse_interactive().parser_state.parse_conf
     reduce = [(Reduce, rule) for rule in made.rules]
     # Most reductions hand on one value: Lark would set its positions again each time.
