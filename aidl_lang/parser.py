@@ -1,9 +1,9 @@
-"""Text to syntax tree: an LALR automaton that never gives up.
+"""Text to syntax tree: Lark's LALR parser, which never gives up here.
 
-The automaton runs the tables of the grammar over the tokens. Where a token cannot stand, `syntax.errors`
-says what is wrong and how to go on: with tokens put in, left out or exchanged where it is clear what was
-meant, else at the next statement. What was complete before stays; so does the inside of a block whose head
-is broken.
+It is fed the tokens one by one, and Lark's tree becomes nodes at the end. Where a token cannot stand,
+`syntax.errors` says what is wrong and how to go on: with tokens put in, left out or exchanged where it is
+clear what was meant, else at the next statement. What was complete before stays; so does the inside of a
+block whose head is broken.
 """
 
 from __future__ import annotations

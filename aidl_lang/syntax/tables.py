@@ -32,9 +32,7 @@ _BROKEN = r"""
 OPEN_COMMENT: /\/\*[\s\S]*/
 BROKEN.-1: /["'][^\n]*|[\s\S]/
 """
-"""What is no token of the grammar and is told by the parser: a comment or a text that is not closed, a
-character.
-"""
+"""Terminals for what no rule takes: a comment or a text that is not closed, a foreign character."""
 
 
 class _Kept:

@@ -1,4 +1,4 @@
-"""Text to tokens, by the terminals of the grammar.
+"""Text to tokens, by Lark's lexer.
 
 Newlines and indentation are no tokens. Characters outside any token become one of kind UNKNOWN, which the
 parser cannot accept and so reports.

@@ -1,4 +1,4 @@
-"""The builder of nodes: for each rule of the grammar, the parser calls the method of `Builder` with its name.
+"""The builder of nodes: for each rule of the grammar, `Nodes` calls the method of `Builder` with its name.
 
 Every method takes the range of the rule in the text and the values of its symbols. It reports mistakes that
 the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
