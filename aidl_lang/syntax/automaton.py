@@ -10,7 +10,7 @@ from lark.lexer import Token as LarkToken
 from lark.parsers.lalr_analysis import Reduce, Shift
 from lark.parsers.lalr_parser_state import ParserState
 
-from aidl_lang.syntax.tables import load_tables
+from aidl_lang.syntax.tables import PlacedTree, load_tables
 from aidl_lang.syntax.tokens import END, Token
 
 
@@ -65,8 +65,8 @@ class Automaton:
             level -= 1
         if level == len(self.states) - 1:
             return None
-        first = self.values[level]
-        return first.start if isinstance(first, Token) else first.meta.container_start_pos
+        start: int = self.values[level].start
+        return start
 
     @property
     def in_constraints(self) -> bool:
@@ -95,7 +95,7 @@ class Automaton:
             _, reached = row[rule.origin.name]
             if reached in self.tables.statement_states:
                 self.states.append(reached)
-                self.values.append(Tree(rule.origin.name, []))
+                self.values.append(PlacedTree(rule.origin.name, []))
 
     def drop_statement(self) -> None:
         """Forgets the statement under way, keeping all that stands before it in its block."""

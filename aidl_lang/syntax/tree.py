@@ -392,7 +392,7 @@ class Nodes(Transformer_NonRecursive[Token, Any]):
                 symbols += part
             else:
                 symbols.append(part)
-        return method(getattr(meta, "start_pos", 0), getattr(meta, "end_pos", 0), *symbols)
+        return method(meta.begin, meta.until, *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
