@@ -1,9 +1,9 @@
-"""Text to syntax tree: an LALR automaton that never gives up.
+"""Text to syntax tree: Lark's LALR parser, which never gives up here.
 
-The automaton runs the tables of the grammar over the tokens. Where a token cannot stand, `syntax.errors`
-says what is wrong and how to go on: with tokens put in, left out or exchanged where it is clear what was
-meant, else at the next statement. What was complete before stays; so does the inside of a block whose head
-is broken.
+It is fed the tokens one by one, and Lark's tree becomes nodes at the end. Where a token cannot stand,
+`syntax.errors` says what is wrong and how to go on: with tokens put in, left out or exchanged where it is
+clear what was meant, else at the next statement. What was complete before stays; so does the inside of a
+block whose head is broken.
 """
 
 from __future__ import annotations
@@ -19,9 +19,8 @@ from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import CLOSE_BLOCK, lists_as_statements
 from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.lines import begins_with_sign
-from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, is_open_comment, tokenize
-from aidl_lang.syntax.tree import Builder
+from aidl_lang.syntax.tree import Builder, Nodes
 from aidl_lang.syntax.trouble import LONGEST, Trouble
 from aidl_lang.syntax.warnings import lines_joined_by_sign
 
@@ -113,14 +112,13 @@ class _Reader:
         self.source = source
         self.tokens = tokens.tokens
         self.limits = limits
-        self.automaton = Automaton(load_tables(), builder)
+        self.automaton = Automaton()
+        self.builder = builder
         self.diagnostics = _spaced_calls(source, tokens)
         self.diagnostics += understood(source, self.tokens)
         self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
-        self.last = Checkpoint(
-            0, self.automaton.states[:], self.automaton.values[:], self.automaton.starts[:], 0
-        )
+        self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0])
         self.repairs = 0
         self.may_be_deep = False
         self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
@@ -144,7 +142,7 @@ class _Reader:
                 position = self._recover(position)
                 continue
             if token.kind == END:
-                return tuple(automaton.values[-1])
+                return self._statements()
             if automaton.began_statement:
                 self.last = automaton.checkpoint(position)
                 self.repairs = 0
@@ -156,6 +154,12 @@ class _Reader:
                 if len(automaton.states) > 4 * limits.max_nesting:
                     return self._stop(_too_deep(Span(self.source, token.start, token.end), limits))
             position += 1
+
+    def _statements(self) -> tuple[ast.Statement, ...]:
+        """Returns the statements of the tree of the whole text."""
+        assert self.automaton.tree is not None
+        statements: tuple[ast.Statement, ...] = Nodes(self.builder).transform(self.automaton.tree)
+        return statements
 
     def _is_item(self, position: int) -> bool:
         """Tells whether a `-` begins a constraint below one that is whole."""
@@ -178,7 +182,7 @@ class _Reader:
         while not self.automaton.feed(Token(END, "", end, end)):
             if not self.automaton.feed(Token("}", "", end, end)):
                 self.automaton.drop_statement()
-        return tuple(self.automaton.values[-1])
+        return self._statements()
 
     # --- Recovery ---
 
@@ -237,15 +241,10 @@ class _Reader:
         """Returns the number of the first token of the statement under way, or `position` between
         statements.
         """
-        automaton = self.automaton
-        statement_states = automaton.tables.statement_states
-        level = len(automaton.states) - 1
-        while automaton.states[level] not in statement_states:
-            level -= 1
-        if level == len(automaton.states) - 1:
+        begin = self.automaton.begin
+        if begin is None:
             return position
-        offset = automaton.starts[level + 1]
-        return bisect_left(self.tokens, offset, 0, position, key=lambda token: token.start)
+        return bisect_left(self.tokens, begin, 0, position, key=lambda token: token.start)
 
     def _open_since(self, begin: int) -> list[str]:
         """Returns the kinds of the brackets that were opened since a token and are still open, outermost

@@ -112,7 +112,7 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
             (Label(t.span(), f"`{right}` belongs here"),),
             fix=replaced(f"write `{right}`", t.span(), right),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but(right, right),)),
     )
 
 
@@ -128,7 +128,7 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
         if token.kind in (END, "}") or token.start >= end:
             return None
         depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
-    meant = tuple(k._replace(kind=",", text=",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
+    meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
     return SyntaxProblem(
         Diagnostic(
@@ -370,5 +370,5 @@ def stray_comma(t: Trouble) -> SyntaxProblem | None:
             hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
             fix=replaced("write `;`", t.span(), ";"),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but(";", ";"),)),
     )

@@ -332,7 +332,7 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
             t.span(),
             fix=replaced(f"write `{sign}`", t.span(), sign),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=sign, text=sign),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but(sign, sign),)),
     )
 
 
@@ -384,7 +384,7 @@ def several_names(t: Trouble) -> SyntaxProblem | None:
         and t.first.kind == "NAME"
         and t.following.kind == "NAME"
     )
-    if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.in_constraints):
+    if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.automaton.in_constraints):
         return None
     return SyntaxProblem(
         Diagnostic(

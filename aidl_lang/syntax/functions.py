@@ -145,7 +145,7 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
     low = tokens[at + 1 : middle]
     span = Span(source, tokens[at].start, tokens[middle + 1].end)
     right = f"in {Span(source, low[0].start, low[-1].end).text}..{tokens[middle + 1].text}"
-    word, dots = Token("in", "in", *tokens[at][2:]), Token("..", "..", *tokens[middle][2:])
+    word, dots = tokens[at].but("in", "in"), tokens[middle].but("..", "..")
     edits = (
         Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
         Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),

@@ -30,7 +30,7 @@ def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
             "`==` compares",
             fix=replaced("write `=`", t.span(), "="),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but("=", "="),)),
     )
 
 
@@ -50,7 +50,7 @@ def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
             else (),
             fix=replaced("write `==`", t.span(), "=="),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="==", text="=="),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but("==", "=="),)),
     )
 
 
@@ -77,7 +77,7 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
             t.span(),
             fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
         ),
-        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+        TokenRepair(t.position, t.position + 1, (t.token.but("=", "="),)),
     )
 
 
@@ -195,7 +195,7 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
                 t.span(),
                 fix=replaced(f"write `{name}`", t.span(), name),
             ),
-            TokenRepair(t.position, t.position + 1, (t.token._replace(kind="NAME", text=name),)),
+            TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),)),
         )
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
@@ -263,7 +263,9 @@ def repeated_placement(t: Trouble) -> SyntaxProblem | None:
 def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
     """Recognises a statement inside `constrain { }` that is no constraint."""
     definition = len(t.statement) == 1 and kind_of(t.first.text) and t.token.kind in ("NAME", "CALL")
-    if not t.in_constraints or not (definition or (t.between and t.token.kind in STATEMENT_WORDS | {"@"})):
+    if not t.automaton.in_constraints or not (
+        definition or (t.between and t.token.kind in STATEMENT_WORDS | {"@"})
+    ):
         return None
     word = t.first.text
     where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"

@@ -60,7 +60,7 @@ def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair]
     lines, tokens = [], list[Token]()
     for i, item in enumerate(items):
         at = item[0].start, item[0].start
-        own = name if i == 0 else name._replace(start=at[0], end=at[1])
+        own = name if i == 0 else Token(name.kind, name.text, *at)
         index = Token("[", "[", *at), Token("NUMBER", str(i), *at), Token("]", "]", *at), Token("=", "=", *at)
         tokens += [own, *index, *item]
         lines.append(f"{name.text}[{i}] = {Span(t.source, item[0].start, item[-1].end).text}")

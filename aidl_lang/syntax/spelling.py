@@ -119,7 +119,7 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
         message = f"`{shown}` is written `{sign}`"
         written = sign if not sign.isalpha() else f" {sign} "
         fix = replaced(f"write `{sign}`", t.span(), written, is_sure=char != "≈")
-    stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
+    stand_in = (t.token.but(sign, sign),) if sign else ()
     hints = (words,) if words else ()
     repair: TokenRepair | None = TokenRepair(t.position, t.position + 1, stand_in)
     if not stand_in and t.complete and t.following.kind != END:
@@ -160,9 +160,9 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
             t.position,
             stop + 1,
             (
-                t.token._replace(kind="CALL", text="abs("),
+                t.token.but("CALL", "abs("),
                 *t.tokens[t.position + 1 : stop],
-                close._replace(kind=")", text=")"),
+                close.but(")", ")"),
             ),
         ),
     )
@@ -286,7 +286,7 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
     span = Span(t.source, first.start, first.start + len(word))
     fix = repair = None
     following = [token.kind for token in t.tokens[t.begin + 1 : t.begin + 4]]
-    if right == "let" and following == ["NAME", "=", "CALL"] and not t.in_constraints:
+    if right == "let" and following == ["NAME", "=", "CALL"] and not t.automaton.in_constraints:
         # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
@@ -336,7 +336,7 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
                 t.span(token),
                 fix=replaced("write `center`", t.span(token), "center"),
             ),
-            TokenRepair(at, at + 1, (token._replace(kind="NAME", text="center"),)),
+            TokenRepair(at, at + 1, (token.but("NAME", "center"),)),
         )
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)

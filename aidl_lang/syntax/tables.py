@@ -1,60 +1,69 @@
-"""The grammar as tables: the LALR(1) automaton of `grammar/aidl.lark`, worked out once by `construction.py`.
+"""Lark's parser of `grammar/aidl.lark`, with what the language has in words and signs.
 
-They are kept as JSON: an installation brings them along and needs neither the construction nor Lark itself, a
-checkout makes them anew when the grammar has changed (`resources.derived`).
+Lark works its tables out when the package is built; an installation brings them along as JSON, a checkout
+makes them anew when the grammar has changed (`resources.derived`).
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from dataclasses import field
+import re
+from collections.abc import Callable, Iterator
+from copy import copy
 from functools import cache
+from operator import itemgetter
 from pathlib import Path
+from typing import Any
+
+import lark
+from lark import Lark, Tree
+from lark.grammar import NonTerminal, Rule, RuleOptions, Terminal
+from lark.lexer import PatternRE, PatternStr, TerminalDef
+from lark.parsers.lalr_analysis import Action, Reduce, Shift
+from lark.parsers.lalr_parser_state import ParseConf
 
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import derived, resource
 
 DERIVED = "tables.json"
+UNKNOWN = "?"
+
+_BROKEN = r"""
+OPEN_COMMENT: /\/\*[\s\S]*/
+BROKEN.-1: /["'][^\n]*|[\s\S]/
+"""
+"""Terminals for what no rule takes: a comment or a text that is not closed, a foreign character."""
 
 
-@record(slots=True)
-class Rule:
-    """A production: `size` symbols become one `origin`.
+class _Kept:
+    """Has Lark keep terminals that no rule of the grammar has."""
 
-    `action` names the builder's method for it. Without one the rule makes no node: `passes` is the position
-    of the one symbol whose value it hands on, or None where it gathers the values of its symbols in a list.
-    `kept` are the positions of the symbols that have a value.
-    """
+    always_accept = ("OPEN_COMMENT", "BROKEN")
 
-    origin: str
-    size: int
-    action: str | None
-    passes: int | None
-    kept: tuple[int, ...]
+    def process(self, stream: Iterator[Any]) -> Iterator[Any]:
+        return stream
 
 
 @record(eq=False)
 class Tables:
-    """An LALR(1) automaton. Terminals go by their text where it is fixed (`==`, `param`), else by their name;
-    the symbols of the grammar's rules stand in angle brackets (`<param>`).
+    """Lark's parser, and its terminals by what they are in the text.
 
-    `actions[state][symbol]` is a state to go to, or `~r` (negative) for a reduction by `rules[r]`.
-    `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the grammar has
-    no place for them; in `statement_states` a statement may begin. `steps` is filled while parsing.
+    `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and `kinds`
+    these the other way around; `patterns` are those of the other terminals, and of these `comments` are no
+    tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the
+    grammar has no place for them. In `statement_states` a statement may begin.
     """
 
-    start: int
-    end: int
-    actions: tuple[dict[str, int], ...]
-    rules: tuple[Rule, ...]
+    lark: Lark
+    without_tree: ParseConf[int]
+    states: dict[int, dict[str, tuple[Action, Any]]]
+    types: dict[str, str]
+    kinds: dict[str, str]
     patterns: dict[str, str]
-    ignored: tuple[str, ...]
-    literals: frozenset[str]
+    comments: frozenset[str]
     reserved: frozenset[str]
     soft_words: frozenset[str]
     statement_states: frozenset[int]
-    steps: dict[tuple[int, int, str], int] = field(default_factory=dict)
 
 
 @cache
@@ -63,70 +72,156 @@ def load_tables() -> Tables:
     return decoded(derived(DERIVED, _inputs, built))
 
 
-def built() -> bytes:
-    """Returns the tables as data. Raises lark's GrammarError if the grammar cannot be read."""
-    from aidl_lang.syntax.construction import build_tables
-
-    return encoded(build_tables(resource("grammar/aidl.lark").read_text(encoding="utf-8")))
-
-
 def _inputs() -> Iterator[Path]:
     """Yields the files that the tables depend on."""
-    here = Path(__file__).parent
-    yield from (here / name for name in ("tables.py", "construction.py"))
+    yield Path(__file__)
+    yield Path(lark.__file__)
     yield resource("grammar/aidl.lark")
 
 
-def encoded(tables: Tables) -> bytes:
-    """Returns the tables as JSON. A state groups its reductions by the sets of symbols before which they are
-    made: there are few such sets, and they are most of an automaton.
+def built() -> bytes:
+    """Returns as JSON what Lark keeps of its parser (about half a second). Raises lark's GrammarError if the
+    grammar cannot be read.
     """
+    grammar = resource("grammar/aidl.lark").read_text(encoding="utf-8") + _BROKEN
+    options = {"parser": "lalr", "lexer": "basic", "start": ["module"], "maybe_placeholders": False}
+    made = Lark(grammar, **options, postlex=_Kept())
+    types, call = _types(made), made.get_terminal("CALL")
+    words = sorted(filter(str.isidentifier, types))
+    soft_words = [word for word in words if re.fullmatch(call.pattern.to_regexp(), word + "(")]
+    # The same with look-ahead, which not every engine has, is compiled in a tenth of the time.
+    reserved = "|".join(word for word in words if word not in soft_words)
+    call.pattern = PatternRE(rf"(?!({reserved})\()[^\W\d]\w*\(")
+    data, memo = made.memo_serialize([Rule, TerminalDef])
+    for place in data["rules"]:
+        del memo[place["@"]]  # four fifths of it say what is alike in all rules
+    states, sets, end = _states(made)
+    data["options"] = options
+    data["parser"]["parser"] = {"tokens": {}, "states": {}, "start_states": _at(0), "end_states": _at(end)}
+    # Comments are no tokens to the grammar, but the printer needs them.
+    space, *comments = data["parser"]["lexer_conf"]["ignore"]
+    data["parser"]["lexer_conf"]["ignore"] = [space]
+    # A `;` may stand among arguments in a block too.
+    begins = {types.get(";"), types.get("prefer")}
+    kept = {
+        "data": data,
+        "memo": memo,
+        "rules": [
+            (
+                r.origin.name,
+                ["+-"[s.filter_out] + s.name if isinstance(s, Terminal) else s.name for s in r.expansion],
+                r.alias,
+                r.options.keep_all_tokens,
+                r.options.expand1,
+            )
+            for r in made.rules
+        ],
+        "states": states,
+        "sets": sets,
+        "comments": comments,
+        "soft_words": soft_words,
+        "statement_states": [n for n, (shifts, *_) in enumerate(states) if begins <= shifts.keys()],
+    }
+    return json.dumps(kept, separators=(",", ":")).encode()
+
+
+def _states(made: Lark) -> tuple[list[Any], list[tuple[str, ...]], int]:
+    """Returns the states, sets of symbols, and the state at the end.
+
+    A state groups its reductions by the sets of symbols before which they are made: there are few such sets,
+    and they are most of the tables.
+    """
+    conf = made.parse_interactive().parser_state.parse_conf
+    rules = {rule: number for number, rule in enumerate(made.rules)}
     sets: dict[tuple[str, ...], int] = {}
-    states: list[list[object]] = []
-    for row in tables.actions:
+    states: list[Any] = []
+    # Lark's numbers of states follow the order of its sets, which changes from run to run.
+    numbers = {conf.start_state: 0}
+    for state in (waiting := [conf.start_state]):
+        shifts: dict[str, int] = {}
         before: dict[int, list[str]] = {}
-        for symbol, target in row.items():
-            if target < 0:
-                before.setdefault(target, []).append(symbol)
-        reductions = [(target, sets.setdefault(tuple(found), len(sets))) for target, found in before.items()]
-        states.append([{s: t for s, t in row.items() if t >= 0}, *(x for pair in reductions for x in pair)])
-    data = json.dumps(
-        {
-            "start": tables.start,
-            "end": tables.end,
-            "states": states,
-            "sets": list(sets),
-            "rules": [(r.origin, r.size, r.action, r.passes, r.kept) for r in tables.rules],
-            "patterns": tables.patterns,
-            "ignored": tables.ignored,
-            "literals": sorted(tables.literals),
-            "reserved": sorted(tables.reserved),
-            "soft_words": sorted(tables.soft_words),
-            "statement_states": sorted(tables.statement_states),
-        },
-        separators=(",", ":"),
-    )
-    return data.encode()
+        for symbol, (action, target) in sorted(conf.states[state].items()):
+            if action is Shift:
+                if target not in numbers:
+                    numbers[target] = len(numbers)
+                    waiting.append(target)
+                shifts[symbol] = numbers[target]
+            elif target in rules:  # the end of the text is no rule
+                before.setdefault(rules[target], []).append(symbol)
+        reductions = [(rule, sets.setdefault(tuple(found), len(sets))) for rule, found in before.items()]
+        states.append([shifts, *(x for pair in reductions for x in pair)])
+    return states, list(sets), numbers[conf.end_state]
+
+
+class PlacedTree(Tree[Any]):
+    """A tree with its place in the text, from `begin` to `until`; from `start` to `end` with the parentheses
+    around it. Lark's own way to places takes a third of all the time.
+    """
+
+    begin: int | None = None
+    until = start = end = 0
+
+    @property
+    def meta(self) -> Any:
+        return self
+
+
+def _placed(rule: Rule, make: Callable[[list[Any]], Any]) -> Callable[[list[Any]], Any]:
+    """Returns what makes the tree of a rule, with its place; most rules hand on one tree."""
+    if rule.options.expand1 and not rule.alias and len(rule.expansion) == 1 and not rule.expansion[0].is_term:
+        return itemgetter(0)
+
+    def placed(symbols: list[Any]) -> Any:
+        tree = make(symbols)
+        if symbols:
+            tree.start, tree.end = symbols[0].start, symbols[-1].end
+            if tree.begin is None:
+                tree.begin, tree.until = tree.start, tree.end
+        return tree
+
+    return placed
+
+
+def _at(state: int) -> dict[str, int]:
+    return {"module": state}
+
+
+def _types(made: Lark) -> dict[str, str]:
+    return {t.pattern.value: t.name for t in made.terminals if isinstance(t.pattern, PatternStr)}
+
+
+def _rule(origin: str, symbols: list[str], alias: str | None, keeps_all: bool, passes_one: bool) -> Rule:
+    expansion = [NonTerminal(s) if s[0] not in "-+" else Terminal(s[1:], s[0] == "-") for s in symbols]
+    return Rule(NonTerminal(origin), expansion, 0, alias, RuleOptions(keeps_all, passes_one))
 
 
 def decoded(text: bytes) -> Tables:
-    """Returns the tables that `encoded` turned into JSON."""
-    data = json.loads(text)
-    sets: list[list[str]] = data["sets"]
-    actions: list[dict[str, int]] = []
-    for row, *reductions in data["states"]:
+    """Returns Lark's parser from what `built` made of it."""
+    kept = json.loads(text)
+    memo = {int(number): value for number, value in kept["memo"].items()}
+    rules = {place["@"]: _rule(*row) for place, row in zip(kept["data"]["rules"], kept["rules"], strict=True)}
+    kept["data"]["options"]["tree_class"] = PlacedTree
+    made = Lark.load({"data": kept["data"], "memo": memo | rules})
+    conf = made.parse_interactive().parser_state.parse_conf
+    reduce = [(Reduce, rule) for rule in made.rules]
+    callbacks: dict[Any, Any] = conf.callbacks
+    callbacks.update({rule: _placed(rule, made) for rule, made in callbacks.items()})
+    for number, (shifts, *reductions) in enumerate(kept["states"]):
+        conf.states[number] = row = {symbol: (Shift, target) for symbol, target in shifts.items()}
         for i in range(0, len(reductions), 2):
-            row.update(dict.fromkeys(sets[reductions[i + 1]], reductions[i]))
-        actions.append(row)
+            row.update(dict.fromkeys(kept["sets"][reductions[i + 1]], reduce[reductions[i]]))
+    without_tree = copy(conf)
+    without_tree.callbacks = {}
+    types, soft_words = _types(made), frozenset(kept["soft_words"])
     return Tables(
-        start=data["start"],
-        end=data["end"],
-        actions=tuple(actions),
-        rules=tuple(Rule(o, n, action, passes, tuple(kept)) for o, n, action, passes, kept in data["rules"]),
-        patterns=data["patterns"],
-        ignored=tuple(data["ignored"]),
-        literals=frozenset(data["literals"]),
-        reserved=frozenset(data["reserved"]),
-        soft_words=frozenset(data["soft_words"]),
-        statement_states=frozenset(data["statement_states"]),
+        made,
+        without_tree,
+        conf.states,
+        types,
+        {name: text for text, name in types.items()} | dict.fromkeys(_Kept.always_accept, UNKNOWN),
+        {t.name: t.pattern.to_regexp() for t in made.terminals if not isinstance(t.pattern, PatternStr)},
+        frozenset(kept["comments"]),
+        frozenset(filter(str.isidentifier, types)) - soft_words,
+        soft_words,
+        frozenset(kept["statement_states"]),
     )

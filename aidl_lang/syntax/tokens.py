@@ -1,4 +1,4 @@
-"""Text to tokens, by the terminals of the grammar.
+"""Text to tokens, by Lark's lexer.
 
 Newlines and indentation are no tokens. Characters outside any token become one of kind UNKNOWN, which the
 parser cannot accept and so reports.
@@ -6,27 +6,42 @@ parser cannot accept and so reports.
 
 from __future__ import annotations
 
-import re
 from dataclasses import field
-from functools import cache
-from typing import NamedTuple
+from typing import cast
+
+from lark import TextSlice
+from lark.lexer import LexerState
+from lark.lexer import Token as LarkToken
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.ast import Comment
+from aidl_lang.syntax.tables import UNKNOWN as UNKNOWN
 from aidl_lang.syntax.tables import load_tables
 
 END = "$END"
-UNKNOWN = "?"
 
 
-class Token(NamedTuple):
+class Token(LarkToken):
     """A token; `kind` is the text itself for words and signs of the grammar, else the terminal's name."""
 
+    __slots__ = ("kind",)
     kind: str
-    text: str
-    start: int
-    end: int
+    # Lark's own, under shorter names.
+    text = cast(str, LarkToken.value)
+    start = cast(int, LarkToken.start_pos)
+    end = cast(int, LarkToken.end_pos)
+
+    def __new__(cls, kind: str, text: str, start: int, end: int) -> Token:
+        token = str.__new__(cls, text)
+        token.kind, token.value, token.start_pos, token.end_pos = kind, text, start, end
+        token.type = load_tables().types.get(kind, kind)
+        token.line = token.column = token.end_line = token.end_column = None
+        return token
+
+    def but(self, kind: str, text: str) -> Token:
+        """Returns another token in the place of this one."""
+        return Token(kind, text, self.start, self.end)
 
 
 @record(frozen=False)
@@ -46,39 +61,30 @@ class Tokens:
 def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Tokens:
     """Returns the tokens of a text or a part of it. Never fails: see UNKNOWN."""
     text, tables = source.text, load_tables()
-    match, words, soft = _scanner().match, tables.reserved | tables.soft_words, tables.soft_words
+    length = len(text) if end is None else end
     result = Tokens()
     tokens = result.tokens
     doc: list[str] = []
-    position, length = start, len(text) if end is None else end
-    while position < length and (found := match(text, position, length)) is not None:
-        kind = found.lastgroup
-        if kind is None:
-            position = found.end()  # the end of the blanks
-            if position == length:
-                break
-            token = _unknown(text, position, length)
-        else:
-            position, after = found.span(kind)
-            word = text[position:after]
-            if kind == "COMMENT":
-                _take_comment(source, position, word, result.comments, doc)
-                position = after
-                continue
-            if kind == "SIGN" or (kind == "NAME" and word in words):
-                kind = word
-            token = Token(kind, word, position, after)
-            if kind == "NAME" or kind in soft:
-                token = _call_or_name(text, token, length, result)
-            elif kind == "/" and text.startswith("/*", position):  # a comment that is not closed
-                token = Token(UNKNOWN, text[position:length], position, length)
-        if tokens and tokens[-1].end == position and tokens[-1].kind in ("NUMBER", ".."):
-            token = _touching(tokens, token)
+    state = LexerState(TextSlice(text, start, length))
+    for found in tables.lark.parser.lexer.lex(state, None):
+        kind, word, position = tables.kinds.get(found.type, found.type), found.value, found.start_pos
+        if kind in tables.comments:
+            _take_comment(source, position, word, result.comments, doc)
+            continue
+        token = Token(kind, word, position, position + len(word))
         if doc:
             result.docs[position] = "\n".join(doc)
             doc.clear()
+        if tokens and tokens[-1].end == position and tokens[-1].kind in ("NUMBER", ".."):
+            token = _touching(tokens, token)
+            state.line_ctr.char_pos = token.end
+        elif kind == "(" and tokens and tokens[-1].kind == "NAME":
+            name = tokens[-1]
+            if not text[name.end : position].strip(" \t"):
+                tokens.pop()
+                token = Token("CALL", name.text + "(", name.start, token.end)
+                result.spaced_calls.append(token)
         tokens.append(token)
-        position = token.end
     tokens.append(Token(END, "", length, length))
     return result
 
@@ -92,19 +98,6 @@ def _take_comment(source: SourceFile, start: int, text: str, comments: list[Comm
     comments.append(Comment(Span(source, start, start + len(text)), text))
     if text.startswith("///") and not text.startswith("////") and begins_line(source.text, start):
         doc.append(text[3:].removeprefix(" ").rstrip())
-
-
-def _call_or_name(text: str, name: Token, length: int, result: Tokens) -> Token:
-    """Returns the grammar's CALL: a name that is not reserved, with the `(` that touches it; else the
-    name.
-    """
-    if text.startswith("(", name.end):
-        return Token("CALL", name.text + "(", name.start, name.end + 1)
-    if name.kind == "NAME" and (spaced := _BLANKS_AND_PARENTHESIS.match(text, name.end, length)):
-        call = Token("CALL", name.text + "(", name.start, spaced.end())
-        result.spaced_calls.append(call)
-        return call
-    return name
 
 
 def _touching(tokens: list[Token], token: Token) -> Token:
@@ -126,31 +119,3 @@ def begins_line(text: str, offset: int) -> bool:
 
 
 _LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ°"
-_BLANKS_AND_PARENTHESIS = re.compile(r"[ \t]+\(")
-
-
-@cache
-def _scanner() -> re.Pattern[str]:
-    """Returns the pattern for blanks, and the comment or token behind them if one begins there."""
-    tables = load_tables()
-    patterns = tables.patterns
-    signs = sorted((s for s in tables.literals if not s.isidentifier()), key=lambda s: (-len(s), s))
-    space, *comments = (patterns[name] for name in tables.ignored)
-    named = {
-        "COMMENT": "|".join(comments),
-        "NAME": patterns["NAME"],
-        "NUMBER": patterns["NUMBER"],
-        "STRING": patterns["STRING"],
-        "SIGN": "|".join(map(re.escape, signs)),
-    }
-    some = "|".join(f"(?P<{name}>{pattern})" for name, pattern in named.items())
-    return re.compile(f"(?:{space})?(?:{some})?")
-
-
-def _unknown(text: str, start: int, length: int) -> Token:
-    """Returns characters that begin no token: an open string, up to the end of its line, or one character."""
-    end = start + 1
-    if text[start] in "\"'":
-        end = text.find("\n", start, length)
-        end = length if end < 0 else end
-    return Token(UNKNOWN, text[start:end], start, end)

@@ -1,4 +1,4 @@
-"""The builder of nodes: for each rule of the grammar, the parser calls the method of `Builder` with its name.
+"""The builder of nodes: for each rule of the grammar, `Nodes` calls the method of `Builder` with its name.
 
 Every method takes the range of the rule in the text and the values of its symbols. It reports mistakes that
 the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from keyword import iskeyword
-from typing import Any, cast
+from typing import Any
+
+from lark.visitors import Transformer_NonRecursive
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold, is_slip, nearest
@@ -52,7 +54,7 @@ class Builder(ExpressionBuilder):
 
     def template(self, start: int, end: int, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
-        parameters = next((p for p in rest if isinstance(p, tuple) and not isinstance(p, Token)), ())
+        parameters = next((p for p in rest if isinstance(p, tuple)), ())
         return self._structure(start, end, attributes, rest[0], rest[1], (), parameters, rest)
 
     def _structure(
@@ -374,9 +376,23 @@ def out_of_place(attribute: Span, before: str) -> Diagnostic:
     )
 
 
-def action(name: str) -> Callable[..., Any]:
-    """Returns the method for a rule; a trailing underscore keeps clear of Python's own words."""
-    return cast(Callable[..., Any], getattr(Builder, name + "_" if iskeyword(name) else name))
+class Nodes(Transformer_NonRecursive[Token, Any]):
+    """Makes the nodes of Lark's tree, with the methods of a builder."""
+
+    def __init__(self, builder: Builder) -> None:
+        super().__init__(visit_tokens=False)
+        self.builder = builder
+
+    def __default__(self, data: str, children: list[Any], meta: Any) -> Any:
+        # A trailing underscore keeps clear of Python's own words.
+        method = getattr(self.builder, data + "_" if iskeyword(data) else data)
+        symbols: list[Any] = []
+        for part in children:
+            if type(part) is list:
+                symbols += part
+            else:
+                symbols.append(part)
+        return method(meta.begin, meta.until, *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:

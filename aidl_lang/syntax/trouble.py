@@ -90,13 +90,6 @@ class Trouble:
         """True if the token touches the one before it."""
         return self.before is not None and self.before.end == self.token.start
 
-    @property
-    def in_constraints(self) -> bool:
-        """True if the innermost block is one of constraints."""
-        states = self.automaton.states
-        inner = next(s for s in reversed(states) if s in self.automaton.tables.statement_states)
-        return self.automaton.tables.actions[inner].get(",", -1) >= 0
-
     def accepts(self, *kinds: str) -> bool:
         return self.automaton.accepts(kinds)
 

@@ -162,8 +162,8 @@ def vocabulary() -> Vocabulary:
     """Returns the words of this installation."""
     tables = load_tables()
     words = tables.reserved | tables.soft_words
-    starts = {word for state in tables.statement_states for word in tables.actions[state] if word in words}
-    signs = tables.literals - words
+    starts = {tables.kinds.get(name) for state in tables.statement_states for name in tables.states[state]}
+    signs = tables.types.keys() - words
     keywords = {name: _present(listed, words) for name, listed in _KEYWORDS.items()}
     named = _named()
     known = {word for members in named.values() for word in members}
@@ -196,7 +196,7 @@ def unclaimed() -> frozenset[str]:
     claimed = {
         word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()
     }
-    return load_tables().literals - claimed
+    return frozenset(load_tables().types) - claimed
 
 
 def _present(listed: str, words: Iterable[str]) -> tuple[str, ...]:

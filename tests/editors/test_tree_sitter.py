@@ -112,7 +112,7 @@ def test_every_program_is_taken_or_refused_as_by_the_parser() -> None:
 
 # --- Mutants --------------------------------------------------------------------------------------
 
-WORDS = [*sorted(load_tables().literals), "x", "5", "5mm", '"s"', "solid", "f(", "range", "(1, 2)", "a.b"]
+WORDS = [*sorted(load_tables().types), "x", "5", "5mm", '"s"', "solid", "f(", "range", "(1, 2)", "a.b"]
 
 
 def mutant(rng: random.Random, text: str) -> str:

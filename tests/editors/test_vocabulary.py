@@ -47,7 +47,7 @@ def test_a_word_that_the_grammar_gains_is_missed(monkeypatch) -> None:
     from aidl_lang.tools import vocabulary as module
 
     now = load_tables()
-    tables = replace(now, literals=now.literals | {"later", "~~"})
+    tables = replace(now, types=now.types | {"later": "LATER", "~~": "TILDES"})
     monkeypatch.setattr(module, "load_tables", lambda: tables)
     assert module.unclaimed() == {"later", "~~"}
 

@@ -12,7 +12,6 @@ from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.kinds import KINDS
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, tokenize
-from aidl_lang.syntax.tree import Builder
 from aidl_lang.tools.grammars import export
 from tests.amount import TRIES_ALL
 from tests.grammars.engines import Engine, all_programs, engine, syntax_errors
@@ -68,7 +67,7 @@ def unexpected(text: str) -> tuple[Token, list[Token]] | None:
     """The first token that cannot stand where it does, and all tokens; before any mending."""
     source = SourceFile("", text)
     tokens = tokenize(source)
-    automaton = Automaton(load_tables(), Builder(source, tokens.docs))
+    automaton = Automaton()
     wrong = next((token for token in tokens.tokens if not automaton.feed(token)), None)
     return (wrong, tokens.tokens) if wrong else None
 

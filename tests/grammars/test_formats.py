@@ -16,7 +16,7 @@ from tests.grammars.recogniser import Recogniser
 
 SOURCE = resource("grammar/aidl.lark").read_text(encoding="utf-8")
 RULES = set(re.findall(r"^[?!]*([a-z_]+):", SOURCE, flags=re.MULTILINE))
-TOKENS = load_tables().literals
+TOKENS = load_tables().types
 
 
 def defined(text: str) -> set[str]:

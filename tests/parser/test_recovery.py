@@ -36,6 +36,16 @@ let four = 4
     assert names(text) == ["a", "one", "two", "c", "three", "four"]
 
 
+def test_a_structure_is_not_doubled_where_reading_goes_back_to_its_inside() -> None:
+    text = "solid a { }\n```\n< 3\n"
+    assert codes(text) == ["E0108", "E0101"]
+    assert names(text) == ["a"]
+
+
+def test_letters_behind_a_number_are_no_call() -> None:
+    assert "E0114" not in codes("let 5x (3)")
+
+
 def test_the_inside_of_a_broken_head_is_kept() -> None:
     text = "let a = 1\nfor 3 in x {\n  let b = 2\n  if q { let c = 3 }\n}\nlet d = 4\n"
     assert codes(text) == ["E0101"]
