@@ -26,7 +26,7 @@ from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.solution import Failure
-from aidl_lang.solver.suspects import shortfall
+from aidl_lang.solver.suspects import nearby_solution
 from aidl_lang.syntax import ast
 
 _FIRST, _MOST = 16, 64
@@ -95,7 +95,8 @@ def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
     The same statements in the same order have the same numbers there.
     """
     return any(
-        shortfall(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
+        nearby_solution(made.problem, settings, f.conflict, dict(f.nearest)) is None
+        for f in solution.failures
     )
 
 

@@ -2,8 +2,8 @@
 
 What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
 (`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
-hold. That a search fails is no proof, so for such a set it begins in many other places before it is called
-contradictory.
+hold. That a search fails is no proof, so for such a set it begins in many other places; curved ones are called
+contradictory only if it ends equally far off from most of these, as it does in no merely difficult set.
 
 Why something dear gave way is found likewise: it is held where it was, and the constraints that then cannot
 hold together ask for it. Where several things did, each such set is asked for by who has a share in it.
@@ -45,6 +45,8 @@ CURVED = 1e-6
 """Change of a slope, relatively, that shows that a row is not affine."""
 STARTS = 32
 """Number of other places in which the search for a set begins before it is called contradictory."""
+ALIKE = 1.5
+"""Factor of the least violation up to which another one agrees with it."""
 FIRST = 8
 """Starts for all constraints together, before a conflict among them is sought."""
 LONGEST = 1.0
@@ -121,6 +123,8 @@ class _ConflictSearch:
     clock: Clock = field(init=False)
     trials: dict[tuple[int, ...], _SearchResult] = field(default_factory=dict)
     left: int = field(init=False)
+    ended: list[float] = field(default_factory=list)
+    """The violations at which the searches from other places ended."""
     work: int = 0
 
     def __post_init__(self) -> None:
@@ -147,7 +151,8 @@ class _ConflictSearch:
         moving, equations = self._count(conflict)
         is_curved = bool(moving) and self._curved(conflict)
         reason = Failure.NOT_CONVERGED
-        if is_proven or (minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)):
+        failed = minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)
+        if is_proven or (failed and (not is_curved or self._agree(nearest.violation))):
             excess = equations > len(moving) > 0 and is_curved
             reason = Failure.OVERDETERMINED if excess else Failure.CONTRADICTORY
         hierarchy.values.assign(self.before.items())
@@ -188,14 +193,20 @@ class _ConflictSearch:
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
         free = sorted(mentioned & self.scope.free)
+        self.ended = []
         positions = frozenset(u for u in free if not hierarchy.is_kept(u) or hierarchy.is_spanned(u))
         for scope in dict.fromkeys((positions, frozenset(free))):
             for start in itertools.islice(self._starts(sorted(scope)), starts):
                 if best.holds or clock.expired:
                     return best
                 found = self._attempt(tuple(conflict), 0, {**self.before, **start}, scope)
+                self.ended.append(found.violation)
                 best = min(best, found, key=lambda trial: trial.violation)
         return best
+
+    def _agree(self, least: float) -> bool:
+        """Tells whether as many searches ended near the least violation as would be half of one round."""
+        return sum(off <= ALIKE * least for off in self.ended) >= STARTS / 2
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
         """Yields places about the first guesses: directions anywhere, sizes between a third and three
