@@ -112,7 +112,7 @@ def test_a_search_that_does_not_arrive_says_how_near_it_came() -> None:
     for failure in failures:
         assert failure.code == "E0602"
         assert re.fullmatch(r"no position was found in which .* hold", failure.message)
-        assert re.fullmatch(r"off by \d+\.\d+ mm at best", failure.label)
+        assert re.fullmatch(r"off by \d+\.\d+ mm where the search left it", failure.label)
         assert failure.fix is None
 
 

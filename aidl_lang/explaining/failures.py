@@ -28,8 +28,8 @@ from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
-_TOLERANCE = 1e-6
-"""Violations below this, in the constraint's own units, are not mentioned."""
+_ROUNDED = 1e-6
+"""Violations up to this, in the constraint's own units, are told as rounding."""
 _FINISHED = 5
 """The most fixes that are tried for whether the program then compiles to the end."""
 _LIKE = 2.0
@@ -142,8 +142,10 @@ class Explanation:
         self.earlier = earlier
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
-        self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
-        parties = [_StatedMember(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
+        blank = [i for i in failure.conflict if lowered.stated[i] is None]
+        self.sizes = [self._size(i) for i in blank if self.is_proven]
+        members = failure.members if self.is_proven else self._held()
+        parties = [_StatedMember(m, stated) for m in members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
         self.turns: dict[Span, list[_StatedMember]] = {}
         """The parties by the place at which they are stated; a loop states several at one place."""
@@ -176,6 +178,15 @@ class Explanation:
             if r.dial.is_exact
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
+
+    def _held(self) -> Sequence[Member]:
+        """Returns the members with their violations in the solution, which is what is drawn: those that do not
+        hold there, or all if each is needed or all hold.
+        """
+        solution = self.solution
+        found = [Member(index, solution.residuals[index]) for index in self.failure.conflict]
+        unmet = [member for member in found if not solution.satisfied[member.index]]
+        return found if self.failure.minimal else unmet or found
 
     def _told(self, party: _StatedMember) -> Party:
         stated, found = party.stated, self._remedy_of(party)
@@ -372,7 +383,10 @@ class Explanation:
         if not math.isfinite(off):
             return "this has no value where the solver stopped"
         if not self.is_proven:
-            return f"off by {measured_in(off, chief.stated)} at best" if off > _TOLERANCE else ""
+            if self.solution.satisfied[chief.member.index]:
+                return ""
+            told = f"off by {measured_in(off, chief.stated)}" if off > _ROUNDED else "holds but for rounding"
+            return f"{told} where the search left it"
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _StatedMember) -> str:
