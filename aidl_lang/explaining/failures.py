@@ -9,13 +9,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.numbers import short
 from aidl_lang.common.prose import listed
 from aidl_lang.common.records import record
@@ -180,8 +180,8 @@ class Explanation:
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
     def _held(self) -> Sequence[Member]:
-        """Returns the members with their violations in the solution, which is what is drawn: those that do not
-        hold there, or all if each is needed or all hold.
+        """Returns the members with their violations in the solution, which is what is drawn: those that do
+        not hold there, or all if each is needed or all hold.
         """
         solution = self.solution
         found = [Member(index, solution.residuals[index]) for index in self.failure.conflict]
@@ -278,12 +278,28 @@ class Explanation:
             return idle[0]
         if has_others and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
-        for party in reversed(self.parties if self.is_proven else []):
-            if party.node is not None and self.times[party.stated.span] == 1:
-                edits = (fix := wished(party.stated)).edits
-                if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
-                    return fix
+        for fix in self._last_resorts() if self.is_proven else ():
+            edits = fix.edits
+            if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
+                return fix
         return None
+
+    def _last_resorts(self) -> Iterator[Fix]:
+        """Yields fixes that change no number: a shape of which several points are placed may turn, a party is
+        a wish.
+        """
+        equal = [p.stated.comparisons for p in self.parties if isinstance(p.node, ast.Comparison)]
+        points = [parts for parts in equal if len(parts) == 2]
+        spoken = unknowns(side for parts in points[1:] for part in parts for side in (part.left, part.right))
+        shapes = {unknown.holder.span: unknown.holder.path for unknown in spoken}
+        for span, path in itertools.islice(shapes.items(), _FINISHED):
+            if span is not None and span.text.endswith(")") and "rotatable" not in span.text:
+                where = replace(span, start=span.end - 1, end=span.end - 1)
+                text = "rotatable: true" if span.text.endswith("()") else ", rotatable: true"
+                yield Fix(f"let `{path}` turn", (Edit(where, text),))
+        for party in reversed(self.parties):
+            if party.node is not None and self.times[party.stated.span] == 1:
+                yield wished(party.stated)
 
     def _may_finish(self, found: Remedy) -> bool:
         """Tells whether no other proven conflict is left as it is by a remedy."""

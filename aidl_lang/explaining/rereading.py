@@ -34,7 +34,7 @@ _FIRST, _MOST = 16, 64
 _RANKS = (1, 2, 3)
 """Ranks by distance of the readings that are tried, after the nearest."""
 _SECONDS, _LONGEST = 1.5, 0.2
-"""Time after which no other way is begun, and for one: what solves from where the guesses are does so soon."""
+"""Time after which no other way is begun, and for one: what solves does so soon."""
 _MUCH = 0.1
 """Relative change of a size above which other readings are tried."""
 _STILL = 1e-6

@@ -2,8 +2,8 @@
 
 What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
 (`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
-hold. That a search fails is no proof, so for such a set it begins in many other places; curved ones are called
-contradictory only if it ends equally far off from most of these, as it does in no merely difficult set.
+hold. That a search fails is no proof, so for such a set it begins in many other places; curved ones are
+called contradictory only if it ends equally far off from most of these, which it does in no merely hard set.
 
 Why something dear gave way is found likewise: it is held where it was, and the constraints that then cannot
 hold together ask for it. Where several things did, each such set is asked for by who has a share in it.
