@@ -410,8 +410,8 @@ class _ConflictSearch:
 
 @record()
 class Reason:
-    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, no constraint
-    can be left out; there are none if the unknowns need not have given way.
+    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, none asks for
+    it without the others; there are none if the unknowns need not have given way.
     """
 
     unknowns: frozenset[int]
@@ -434,6 +434,11 @@ def reasons(problem: Problem, settings: Settings, concession: Concession, solved
         found, minimal = conflict(hierarchy, scope, before)
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
         share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
+        rest, more, is_known = concession.constraints, found, len(share) > 1
+        while more and is_known:  # several that go together may be asked for more than once
+            rest = tuple(index for index in rest if index not in more)
+            more, is_known = conflict(hierarchy, Scope(moving - share, rest), before)
+            found, minimal = found + more * is_known, minimal and not more
         yield Reason(share, tuple(found), minimal and bool(found))
         left -= share
 
