@@ -122,6 +122,7 @@ class _ConflictSearch:
     before: dict[int, float]
     clock: Clock = field(init=False)
     trials: dict[tuple[int, ...], _SearchResult] = field(default_factory=dict)
+    relaxations: dict[tuple[int, ...], Relaxation] = field(default_factory=dict)
     left: int = field(init=False)
     ended: list[float] = field(default_factory=list)
     """The violations at which the searches from other places ended."""
@@ -263,7 +264,7 @@ class _ConflictSearch:
         apart = _ConflictSearch(hierarchy, narrow, self.before)
         if apart._holds(said):
             return conflict
-        self.scope, self.trials = narrow, apart.trials
+        self.scope, self.trials, self.relaxations = narrow, apart.trials, apart.relaxations
         return self._needed(said)
 
     def _needed(self, found: list[int]) -> list[int]:
@@ -289,11 +290,13 @@ class _ConflictSearch:
         return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)
 
     def _relaxation(self, constraints: Sequence[int]) -> Relaxation:
-        hierarchy = self.hierarchy
-        hierarchy.values.assign(self.before.items())
-        hierarchy.refresh(constraints)
-        rows = hierarchy.rows(constraints)
-        return Relaxation(hierarchy.values, rows, self.scope.free, hierarchy.settings.tolerance)
+        hierarchy, key = self.hierarchy, tuple(constraints)
+        if key not in self.relaxations:
+            hierarchy.values.assign(self.before.items())
+            hierarchy.refresh(key)
+            rows, free, tolerance = hierarchy.rows(key), self.scope.free, hierarchy.settings.tolerance
+            self.relaxations[key] = Relaxation(hierarchy.values, rows, free, tolerance)
+        return self.relaxations[key]
 
     def _candidates(self, best: dict[int, float]) -> Iterator[list[int]]:
         """Yields sets that may fail, first those that are likely to be small."""

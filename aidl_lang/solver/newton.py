@@ -286,6 +286,8 @@ class _Newton:
                 return NewtonResult(z, End.CONVERGED, violation)
             if not np.isfinite(violation):
                 return NewtonResult(z, End.INFEASIBLE, violation)
+            if self.clock.expired:
+                return NewtonResult(z, End.EXHAUSTED, violation)
             jacobian = system.jacobian()
             found = nearest(jacobian, jacobian @ z - residuals, system.inequality)
             z = found.point
