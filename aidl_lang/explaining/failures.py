@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -142,8 +143,7 @@ class Explanation:
         self.earlier = earlier
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
-        blank = [i for i in failure.conflict if lowered.stated[i] is None]
-        self.sizes = [self._size(i) for i in blank if self.is_proven]
+        self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
         members = failure.members if self.is_proven else self._held()
         parties = [_StatedMember(m, stated) for m in members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
@@ -158,7 +158,7 @@ class Explanation:
         labels = [
             Label(u.holder.span, f"{u.description} would have to become 0 or less")
             for u in self.sizes
-            if u.holder.span is not None
+            if self.is_proven and u.holder.span is not None
         ]
         if not self.parties:
             return Diagnostic(code, headline, secondary=tuple(labels))
@@ -180,12 +180,10 @@ class Explanation:
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
     def _held(self) -> Sequence[Member]:
-        """Returns the members with their violations in the solution, which is what is drawn: those that do
-        not hold there, or all if each is needed or all hold.
-        """
-        solution = self.solution
-        found = [Member(index, solution.residuals[index]) for index in self.failure.conflict]
-        unmet = [member for member in found if not solution.satisfied[member.index]]
+        """Returns the members as they are off in what is drawn; of a set that is not minimal, what fails."""
+        stated = [index for index in self.failure.conflict if self.lowered.stated[index] is not None]
+        found = [Member(index, self.solution.residuals[index]) for index in stated]
+        unmet = [member for member in found if not self.solution.satisfied[member.index]]
         return found if self.failure.minimal else unmet or found
 
     def _told(self, party: _StatedMember) -> Party:
@@ -218,7 +216,7 @@ class Explanation:
         order = {search.dial.place: n for n, search in enumerate(searches)}
         known = [found for earlier in self.earlier for found in earlier._remedies]
         both = [
-            replace(found, shown=found.written)
+            replace(found, shown=found.fix.edits[0].replacement)
             for found in known
             if found.dial.place in order and self.trials.mends(found.fix.edits, self.failure)
         ]
@@ -285,18 +283,15 @@ class Explanation:
         return None
 
     def _last_resorts(self) -> Iterator[Fix]:
-        """Yields fixes that change no number: a shape of which several points are placed may turn, a party is
-        a wish.
-        """
+        """Yields fixes that change no number: a shape with several points placed turns, a party is a wish."""
         equal = [p.stated.comparisons for p in self.parties if isinstance(p.node, ast.Comparison)]
         points = [parts for parts in equal if len(parts) == 2]
         spoken = unknowns(side for parts in points[1:] for part in parts for side in (part.left, part.right))
         shapes = {unknown.holder.span: unknown.holder.path for unknown in spoken}
         for span, path in itertools.islice(shapes.items(), _FINISHED):
-            if span is not None and span.text.endswith(")") and "rotatable" not in span.text:
+            if span is not None and re.search(r"[^(]\)$", span.text) and "rotatable" not in span.text:
                 where = replace(span, start=span.end - 1, end=span.end - 1)
-                text = "rotatable: true" if span.text.endswith("()") else ", rotatable: true"
-                yield Fix(f"let `{path}` turn", (Edit(where, text),))
+                yield Fix(f"let `{path}` turn", (Edit(where, ", rotatable: true"),))
         for party in reversed(self.parties):
             if party.node is not None and self.times[party.stated.span] == 1:
                 yield wished(party.stated)
@@ -399,10 +394,9 @@ class Explanation:
         if not math.isfinite(off):
             return "this has no value where the solver stopped"
         if not self.is_proven:
-            if self.solution.satisfied[chief.member.index]:
-                return ""
+            is_met = self.solution.satisfied[chief.member.index]
             told = f"off by {measured_in(off, chief.stated)}" if off > _ROUNDED else "holds but for rounding"
-            return f"{told} where the search left it"
+            return "" if is_met else f"{told} where the search left it"
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _StatedMember) -> str:

@@ -29,8 +29,8 @@ from aidl_lang.solver.solution import Failure
 from aidl_lang.solver.suspects import nearby_solution
 from aidl_lang.syntax import ast
 
-_FIRST, _MOST = 16, 64
-"""Other ways that are solved at once, and those that are tried at all."""
+_MOST = 64
+"""The most ways that are tried."""
 _RANKS = (1, 2, 3)
 """Ranks by distance of the readings that are tried, after the nearest."""
 _SECONDS, _LONGEST = 1.5, 0.2
@@ -81,23 +81,14 @@ def reread(
             continue
         seen.append(taken)
         made = lower(other.model)
-        if _still_fails(made, solution, quick):
-            continue
+        places = ((f.conflict, dict(f.nearest)) for f in solution.failures)  # by number, the same as before
+        if any(nearby_solution(made.problem, quick, *place) is None for place in places):
+            continue  # which is known sooner than by solving
         found = solve(made.problem, quick)
         if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
             return Rereading(other, made, found, calls), solution
     return None, solution
-
-
-def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
-    """Tells whether a conflict remains with calls read differently, by a search that is quicker than solving.
-    The same statements in the same order have the same numbers there.
-    """
-    return any(
-        nearby_solution(made.problem, settings, f.conflict, dict(f.nearest)) is None
-        for f in solution.failures
-    )
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
+from aidl_lang.common.diagnostics import Diagnostic, has_errors
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import ends, files
 from aidl_lang.tools.cli.options import add_variant
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from aidl_lang.common.world import World
     from aidl_lang.pipeline import Settings
     from aidl_lang.tools.ends import Sweep
+
+_WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
+"""Why `--fix` leaves a fix that is not sure, and one that is."""
 
 
 @record()
@@ -78,11 +81,11 @@ def run(arguments: argparse.Namespace) -> int:
             "solved": is_solved,
             "fixed": fixes,
             "diagnostics": [
-                to_dict(d) | ({"not_fixed": _why(d.fix)} if arguments.fix and d.fix else {}) for d in found
+                to_dict(d) | ({"not_fixed": _WHY[d.fix.is_sure]} if arguments.fix and d.fix else {})
+                for d in found
             ],
+            **({"ends": swept} if arguments.ends else {}),
         }
-        if arguments.ends:
-            document["ends"] = swept
         print(json.dumps(document, indent=2, ensure_ascii=False))
     return exit_code(found) or (0 if is_well else 1)
 
@@ -133,17 +136,10 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
     for fix in (d.fix for d in checked.diagnostics if mends and d.fix is not None):
-        say(f"{name}: not fixed: {fix.title}: {_why(fix)}")
+        say(f"{name}: not fixed: {fix.title}: {_WHY[fix.is_sure]}")
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
         untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""
         say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}{untried}")
     if checked.sweep is not None:
         ends.tell(name, checked.sweep)
-
-
-def _why(fix: Fix) -> str:
-    """Returns why `--fix` did not make a fix."""
-    return (
-        "it would make things worse" if fix.is_sure else "it changes what you wrote, so the choice is yours"
-    )
