@@ -112,7 +112,7 @@ def test_a_search_that_does_not_arrive_says_how_near_it_came() -> None:
     for failure in failures:
         assert failure.code == "E0602"
         assert re.fullmatch(r"no position was found in which .* hold", failure.message)
-        assert re.fullmatch(r"off by \d+\.\d+ mm at best", failure.label)
+        assert re.fullmatch(r"off by \d+\.\d+ mm where the search left it", failure.label)
         assert failure.fix is None
 
 
@@ -167,3 +167,20 @@ def test_a_search_that_is_cut_short_says_so(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr("aidl_lang.explaining.trials.SECONDS", -1.0)
     (found,) = errors(text)
     assert told in found.hints
+
+
+def test_of_sizes_that_change_together_each_statement_is_named_that_asks_for_it() -> None:
+    (told,) = compiled(
+        """drawing d {
+    a = rectangle(center: (0, 0), width: 10, height: 10)
+    b = rectangle(center: (60, 0), width: 10, height: 10)
+    constrain { a.width + b.width == 60; a.width - b.width == 10 }
+}
+"""
+    ).diagnostics
+    assert told.hints[0] == "`a.width + b.width == 60` and `a.width - b.width == 10` ask for it"
+    labels = [(label.span.text, label.text) for label in told.secondary]
+    assert labels[1:] == [
+        ("a.width + b.width == 60", "asks for it"),
+        ("a.width - b.width == 10", "asks for it"),
+    ]

@@ -35,7 +35,8 @@ def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
     """
     found = []
     for index, stated in enumerate(lowered.stated):
-        if stated is not None and _is_decided(stated) and not solution.satisfied[index]:
+        sides = (side for part in stated.comparisons for side in (part.left, part.right)) if stated else ()
+        if stated and not solution.satisfied[index] and all(side.is_constant for side in sides):
             group, member = int(lowered.problem.holder[index]), Member(index, solution.residuals[index])
             found.append(GroupFailure(group, Failure.CONTRADICTORY, (member,), minimal=True, within=(index,)))
     return replace(solution, failures=tuple(found))
@@ -96,7 +97,3 @@ def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
         if found.dial.name and label.span.overlaps(place):
             return *labels[:index], replace(label, text=f"{label.text}; {text}"), *labels[index + 1 :]
     return *labels, Label(place, f"exact; {text}")
-
-
-def _is_decided(stated: Constraint) -> bool:
-    return all(part.left.is_constant and part.right.is_constant for part in stated.comparisons)

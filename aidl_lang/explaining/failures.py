@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
@@ -27,8 +28,8 @@ from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
-_TOLERANCE = 1e-6
-"""Violations below this, in the constraint's own units, are not mentioned."""
+_ROUNDED = 1e-6
+"""Violations up to this, in the constraint's own units, are told as rounding."""
 _FINISHED = 5
 """The most fixes that are tried for whether the program then compiles to the end."""
 _LIKE = 2.0
@@ -142,7 +143,8 @@ class Explanation:
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
-        parties = [_StatedMember(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
+        members = failure.members if self.is_proven else self._held()
+        parties = [_StatedMember(m, stated) for m in members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
         self.turns: dict[Span, list[_StatedMember]] = {}
         """The parties by the place at which they are stated; a loop states several at one place."""
@@ -155,7 +157,7 @@ class Explanation:
         labels = [
             Label(u.holder.span, f"{u.description} would have to become 0 or less")
             for u in self.sizes
-            if u.holder.span is not None
+            if self.is_proven and u.holder.span is not None
         ]
         if not self.parties:
             return Diagnostic(code, headline, secondary=tuple(labels))
@@ -175,6 +177,13 @@ class Explanation:
             if r.dial.is_exact
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
+
+    def _held(self) -> Sequence[Member]:
+        """Returns the members as they are off in what is drawn; of a set that is not minimal, what fails."""
+        stated = [index for index in self.failure.conflict if self.lowered.stated[index] is not None]
+        found = [Member(index, self.solution.residuals[index]) for index in stated]
+        unmet = [member for member in found if not self.solution.satisfied[member.index]]
+        return found if self.failure.minimal else unmet or found
 
     def _told(self, party: _StatedMember) -> Party:
         stated, found = party.stated, self._remedy_of(party)
@@ -206,7 +215,7 @@ class Explanation:
         order = {search.dial.place: n for n, search in enumerate(searches)}
         known = [found for earlier in self.earlier for found in earlier._remedies]
         both = [
-            replace(found, shown=found.written)
+            replace(found, shown=found.fix.edits[0].replacement)
             for found in known
             if found.dial.place in order and self.trials.mends(found.fix.edits, self.failure)
         ]
@@ -266,12 +275,25 @@ class Explanation:
             return idle[0]
         if has_others and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
-        for party in reversed(self.parties if self.is_proven else []):
-            if party.node is not None and self.times[party.stated.span] == 1:
-                edits = (fix := wished(party.stated)).edits
-                if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
-                    return fix
+        for fix in self._last_resorts() if self.is_proven else ():
+            edits = fix.edits
+            if self.trials.mends(edits, self.failure) and (has_others or self.trials.finishes(edits)):
+                return fix
         return None
+
+    def _last_resorts(self) -> Iterator[Fix]:
+        """Yields fixes that change no number: a shape with several points placed turns, a party is a wish."""
+        equal = [p.stated.comparisons for p in self.parties if isinstance(p.node, ast.Comparison)]
+        points = [parts for parts in equal if len(parts) == 2]
+        spoken = unknowns(side for parts in points[1:] for part in parts for side in (part.left, part.right))
+        shapes = {unknown.holder.span: unknown.holder.path for unknown in spoken}
+        for span, path in itertools.islice(shapes.items(), _FINISHED):
+            if span is not None and re.search(r"[^(]\)$", span.text) and "rotatable" not in span.text:
+                where = replace(span, start=span.end - 1, end=span.end - 1)
+                yield Fix(f"let `{path}` turn", (Edit(where, ", rotatable: true"),))
+        for party in reversed(self.parties):
+            if party.node is not None and self.times[party.stated.span] == 1:
+                yield wished(party.stated)
 
     def _may_finish(self, found: Remedy) -> bool:
         """Tells whether no other proven conflict is left as it is by a remedy."""
@@ -371,7 +393,9 @@ class Explanation:
         if not math.isfinite(off):
             return "this has no value where the solver stopped"
         if not self.is_proven:
-            return f"off by {measured_in(off, chief.stated)} at best" if off > _TOLERANCE else ""
+            is_met = self.solution.satisfied[chief.member.index]
+            told = f"off by {measured_in(off, chief.stated)}" if off > _ROUNDED else "holds but for rounding"
+            return "" if is_met else f"{told} where the search left it"
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _StatedMember) -> str:

@@ -96,11 +96,6 @@ class Remedy:
         instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
         return f"{self.shown}{instead} would fit"
 
-    @property
-    def written(self) -> str:
-        """The text that the fix writes."""
-        return self.fix.edits[0].replacement
-
 
 def dear(dial: Dial, share: float, plain: bool) -> float:
     """Returns the cost of changing a number by a `share` of itself; `plain` if the new number has few

@@ -25,15 +25,15 @@ from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.solution import Failure
-from aidl_lang.solver.suspects import shortfall
+from aidl_lang.solver.suspects import nearby_solution
 from aidl_lang.syntax import ast
 
-_FIRST, _MOST = 16, 64
-"""Other ways that are solved at once, and those that are tried at all."""
+_MOST = 64
+"""The most ways that are tried."""
 _RANKS = (1, 2, 3)
 """Ranks by distance of the readings that are tried, after the nearest."""
-_SECONDS, _LONGEST = 10.0, 0.5
-"""Time for all of them, and for one."""
+_SECONDS, _LONGEST = 1.5, 0.2
+"""Time after which no other way is begun, and for one: what solves does so soon."""
 _MUCH = 0.1
 """Relative change of a size above which other readings are tried."""
 _STILL = 1e-6
@@ -69,6 +69,7 @@ def reread(
     if not troubled:
         return None, solution
     clock, seen = Clock(_SECONDS), [readings]
+    quick = replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST))
     near = _numbers(readings, lowered, troubled)
     far = _numbers(readings, lowered, {i for failure in solution.failures for i in failure.within})
     for turned in _ways([*near, *(n for n in far if n not in near)]):
@@ -79,22 +80,14 @@ def reread(
             continue
         seen.append(taken)
         made = lower(other.model)
-        if _still_fails(made, solution, settings):
-            continue
-        found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
+        places = ((f.conflict, dict(f.nearest)) for f in solution.failures)  # by number, the same as before
+        if any(nearby_solution(made.problem, quick, *place) is None for place in places):
+            continue  # which is known sooner than by solving
+        found = solve(made.problem, quick)
         if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
             return Rereading(other, made, found, calls), solution
     return None, solution
-
-
-def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
-    """Tells whether a conflict remains with calls read differently, by a search that is quicker than solving.
-    The same statements in the same order have the same numbers there.
-    """
-    return any(
-        shortfall(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
-    )
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:

@@ -186,7 +186,7 @@ class Trials:
             return None
         if (matched := _matched(self.lowered, other)) is None:
             return None
-        names, keys = {key: u for u, key in enumerate(_keys(other))}, self._own_keys
+        names, keys = {key: u for u, key in enumerate(_keys(other))}, _keys(self.lowered)
         numbered = {u: names[keys[u]] for u, _ in failure.nearest if keys[u] in names}
         return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
 
@@ -241,10 +241,6 @@ class Trials:
         if changed.text not in self._said:
             self._said[changed.text] = self.compile(changed)
         return self._said[changed.text]
-
-    @cached_property
-    def _own_keys(self) -> list[tuple[str, int]]:
-        return _keys(self.lowered)
 
     @property
     def _quick(self) -> Settings:

@@ -31,8 +31,7 @@ def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Tri
     if trials.is_over or not trials.can_edit(fix.edits):
         return False
     after = trials.diagnostics(fix.edits)
-    worse = _errors(after) - _errors(before) or _gave_way(after) - _gave_way(before)
-    return not worse and not any(_is_same(d, found, fix.edits) for d in after)
+    return not _bad(after) - _bad(before) and not any(_is_same(d, found, fix.edits) for d in after)
 
 
 def _verified(d: Diagnostic, before: Sequence[Diagnostic], trials: Trials) -> Diagnostic:
@@ -43,12 +42,8 @@ def _verified(d: Diagnostic, before: Sequence[Diagnostic], trials: Trials) -> Di
     return replace(d, fix=None, hints=hints)
 
 
-def _errors(found: Sequence[Diagnostic]) -> Counter[str]:
-    return Counter(d.code for d in found if d.is_error)
-
-
-def _gave_way(found: Sequence[Diagnostic]) -> Counter[str]:
-    return Counter(d.code for d in found if d.code in GAVE_WAY)
+def _bad(found: Sequence[Diagnostic]) -> Counter[str]:
+    return Counter(d.code for d in found if d.is_error or d.code in GAVE_WAY)
 
 
 def _is_same(one: Diagnostic, before: Diagnostic, edits: Sequence[Edit]) -> bool:

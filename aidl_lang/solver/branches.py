@@ -28,8 +28,6 @@ from aidl_lang.solver.valuation import Valuation
 
 TIGHTER = 0.5
 """Newton's tolerance relative to that of the check: both round differently."""
-LAZY_ROUNDS = 4
-"""Rounds of adding violated inequalities before all of them are taken into account."""
 NEIGHBOURS = 12
 """Combinations of other branches tried as a last resort, per perturbed start of the stage."""
 DEEPEST = 6
@@ -116,7 +114,6 @@ class _Attempt:
         self.origin = [values.unknowns[unknown] for unknown in self.free]
         self.considered: list[int] = []
         """The equations, and the inequalities that were violated at some time."""
-        self.joins = 0
         self.blamed: list[int] = []
         """The rows that contradicted each other in the last branch."""
         self.steady = True
@@ -360,16 +357,13 @@ class _Attempt:
         return Verdict(End.CONTRARY if end is End.CONVERGED else end, worst)
 
     def _join_violated(self) -> bool:
-        """Takes up inequalities that came to be violated; after some rounds, all of them."""
+        """Takes up inequalities that came to be violated."""
         known = set(self.considered)
         fresh = [
             i
             for i, row in enumerate(self.task.rows)
             if i not in known and not holds(row, self.values, self.settings.tolerance)
         ]
-        self.joins += bool(fresh)
-        if fresh and self.joins > LAZY_ROUNDS:
-            fresh = [i for i in range(len(self.task.rows)) if i not in known]
         self.considered.extend(fresh)
         return bool(fresh)
 

@@ -2,8 +2,8 @@
 
 What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
 (`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
-hold. That a search fails is no proof, so for such a set it begins in many other places before it is called
-contradictory.
+hold. That a search fails is no proof, so for such a set it begins in many other places; curved ones are
+called contradictory only if it ends equally far off from most of these, which it does in no merely hard set.
 
 Why something dear gave way is found likewise: it is held where it was, and the constraints that then cannot
 hold together ask for it. Where several things did, each such set is asked for by who has a share in it.
@@ -45,6 +45,8 @@ CURVED = 1e-6
 """Change of a slope, relatively, that shows that a row is not affine."""
 STARTS = 32
 """Number of other places in which the search for a set begins before it is called contradictory."""
+ALIKE = 1.5
+"""Factor of the least violation up to which another one agrees with it."""
 FIRST = 8
 """Starts for all constraints together, before a conflict among them is sought."""
 LONGEST = 1.0
@@ -120,7 +122,10 @@ class _ConflictSearch:
     before: dict[int, float]
     clock: Clock = field(init=False)
     trials: dict[tuple[int, ...], _SearchResult] = field(default_factory=dict)
+    relaxations: dict[tuple[int, ...], Relaxation] = field(default_factory=dict)
     left: int = field(init=False)
+    ended: list[float] = field(default_factory=list)
+    """The violations at which the searches from other places ended."""
     work: int = 0
 
     def __post_init__(self) -> None:
@@ -147,7 +152,8 @@ class _ConflictSearch:
         moving, equations = self._count(conflict)
         is_curved = bool(moving) and self._curved(conflict)
         reason = Failure.NOT_CONVERGED
-        if is_proven or (minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)):
+        failed = minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)
+        if is_proven or (failed and (not is_curved or self._agree(nearest.violation))):
             excess = equations > len(moving) > 0 and is_curved
             reason = Failure.OVERDETERMINED if excess else Failure.CONTRADICTORY
         hierarchy.values.assign(self.before.items())
@@ -188,14 +194,20 @@ class _ConflictSearch:
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
         free = sorted(mentioned & self.scope.free)
+        self.ended = []
         positions = frozenset(u for u in free if not hierarchy.is_kept(u) or hierarchy.is_spanned(u))
         for scope in dict.fromkeys((positions, frozenset(free))):
             for start in itertools.islice(self._starts(sorted(scope)), starts):
                 if best.holds or clock.expired:
                     return best
                 found = self._attempt(tuple(conflict), 0, {**self.before, **start}, scope)
+                self.ended.append(found.violation)
                 best = min(best, found, key=lambda trial: trial.violation)
         return best
+
+    def _agree(self, least: float) -> bool:
+        """Tells whether as many searches ended near the least violation as would be half of one round."""
+        return sum(off <= ALIKE * least for off in self.ended) >= STARTS / 2
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
         """Yields places about the first guesses: directions anywhere, sizes between a third and three
@@ -252,7 +264,7 @@ class _ConflictSearch:
         apart = _ConflictSearch(hierarchy, narrow, self.before)
         if apart._holds(said):
             return conflict
-        self.scope, self.trials = narrow, apart.trials
+        self.scope, self.trials, self.relaxations = narrow, apart.trials, apart.relaxations
         return self._needed(said)
 
     def _needed(self, found: list[int]) -> list[int]:
@@ -278,11 +290,13 @@ class _ConflictSearch:
         return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)
 
     def _relaxation(self, constraints: Sequence[int]) -> Relaxation:
-        hierarchy = self.hierarchy
-        hierarchy.values.assign(self.before.items())
-        hierarchy.refresh(constraints)
-        rows = hierarchy.rows(constraints)
-        return Relaxation(hierarchy.values, rows, self.scope.free, hierarchy.settings.tolerance)
+        hierarchy, key = self.hierarchy, tuple(constraints)
+        if key not in self.relaxations:
+            hierarchy.values.assign(self.before.items())
+            hierarchy.refresh(key)
+            rows, free, tolerance = hierarchy.rows(key), self.scope.free, hierarchy.settings.tolerance
+            self.relaxations[key] = Relaxation(hierarchy.values, rows, free, tolerance)
+        return self.relaxations[key]
 
     def _candidates(self, best: dict[int, float]) -> Iterator[list[int]]:
         """Yields sets that may fail, first those that are likely to be small."""
@@ -399,8 +413,8 @@ class _ConflictSearch:
 
 @record()
 class Reason:
-    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, no constraint
-    can be left out; there are none if the unknowns need not have given way.
+    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, none asks for
+    it without the others; there are none if the unknowns need not have given way.
     """
 
     unknowns: frozenset[int]
@@ -423,6 +437,11 @@ def reasons(problem: Problem, settings: Settings, concession: Concession, solved
         found, minimal = conflict(hierarchy, scope, before)
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
         share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
+        rest, more, is_known = concession.constraints, found, len(share) > 1
+        while more and is_known:  # several that go together may be asked for more than once
+            rest = tuple(index for index in rest if index not in more)
+            more, is_known = conflict(hierarchy, Scope(moving - share, rest), before)
+            found, minimal = found + more * is_known, minimal and not more
         yield Reason(share, tuple(found), minimal and bool(found))
         left -= share
 

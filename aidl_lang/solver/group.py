@@ -69,7 +69,6 @@ class Group:
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
         self.tiers = Tiers(hierarchy, group)
-        self._refuted: dict[tuple[int, ...], bool] = {}
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
@@ -135,7 +134,7 @@ class Group:
         if reached is None:
             from aidl_lang.solver import conflicts
 
-            if not self._is_refuted(part):
+            if not (hierarchy.settings.explain and conflicts.is_refuted(hierarchy, everything)):
                 reached, best = self._climb(tiers, part, best)
         if reached is None:
             failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best[1])
@@ -210,15 +209,6 @@ class Group:
                 break
         if left or hierarchy.unmet(scope.constraints):
             hierarchy.values.assign(together.items())
-
-    def _is_refuted(self, part: list[int]) -> bool:
-        """Tells whether it is proved that nothing satisfies a part: no stage need be tried in vain then."""
-        from aidl_lang.solver import conflicts
-
-        hierarchy, key = self.hierarchy, tuple(part)
-        if key not in self._refuted and hierarchy.settings.explain:
-            self._refuted[key] = conflicts.is_refuted(hierarchy, self.tiers.everything(part))
-        return self._refuted.get(key, False)
 
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]

@@ -39,12 +39,6 @@ POLISHING_STEPS = 40
 MEMORY = 5
 RESTARTS = (1e-3, 0.03, 0.3, 1.0, 3.0)
 """Sizes of the perturbations tried from a singular start, relative to the greatest residual."""
-CONVINCING = 2
-"""Restarts that must agree for a search to stop."""
-SAME = 1e-6
-"""Relative difference within which the violations of two restarts agree."""
-FAR = 0.3
-"""Size of a perturbation from which on a restart that ends in the same place counts as agreeing."""
 STEPS_ROUND = 3.0
 """Longest steps that turn a direction round: one is a sixth of a turn."""
 TURNED = 4
@@ -186,10 +180,8 @@ def solve(
     start: Floats | None = None,
     restarts: int = 1,
 ) -> NewtonResult:
-    """Returns the feasible point nearest to z = 0, searched from `start` (default 0).
-
-    Tries up to `restarts` perturbed starts if the search ends at a singular place; stops after CONVINCING
-    restarts whose violations agree within SAME.
+    """Returns the feasible point nearest to z = 0, searched from `start` (default 0). Tries up to `restarts`
+    perturbed starts if the search ends at a singular place.
     """
     solver = _Newton(system, tolerance, iterations, clock)
     best = solver.run(np.zeros(system.size) if start is None else start)
@@ -197,16 +189,12 @@ def solve(
         return best
     if len(system.origin) * len(system.inequality) > COSTLY:
         restarts = min(restarts, 1)
-    agreeing = 0
     for turn, amplitude in enumerate(RESTARTS[:restarts]):
-        if clock.expired or agreeing == CONVINCING:
+        if clock.expired:
             break
         again = solver.run(perturbation(system.size, turn) * amplitude * solver.reach * system.stretch)
         if again.converged:
             return again
-        far = amplitude >= FAR
-        alike = again.end is best.end and abs(again.violation - best.violation) <= SAME * best.violation
-        agreeing += far and alike
         if again.violation < 0.99 * best.violation:
             best = again
     for start_at in _turned(system) if restarts else ():
@@ -286,6 +274,8 @@ class _Newton:
                 return NewtonResult(z, End.CONVERGED, violation)
             if not np.isfinite(violation):
                 return NewtonResult(z, End.INFEASIBLE, violation)
+            if self.clock.expired:
+                return NewtonResult(z, End.EXHAUSTED, violation)
             jacobian = system.jacobian()
             found = nearest(jacobian, jacobian @ z - residuals, system.inequality)
             z = found.point

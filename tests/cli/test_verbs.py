@@ -106,7 +106,7 @@ def test_check_fix_tells_what_solving_finds_in_what_it_mended(aidl: Aidl) -> Non
     assert quick.err.endswith("-: no mistakes found; nothing was solved\n")
 
 
-def test_check_fix_says_why_a_fix_was_left(aidl: Aidl) -> None:
+def test_check_fix_says_why_a_fix_was_left(aidl: Aidl, folder: Path) -> None:
     program = "solid a { b = circle(center: origin, radius: 5); constrain { b.radius == 6; b.radius <= 4 } }"
     result = aidl("check", "--fix", "-", stdin=program)
     assert (result.code, result.out) == (1, program)
@@ -115,6 +115,14 @@ def test_check_fix_says_why_a_fix_was_left(aidl: Aidl) -> None:
         in result.err
     )
     assert "not fixed" not in aidl("check", "-", stdin=program).err
+    (folder / "two.aidl").write_text(program)
+    (found,) = json.loads(aidl("check", "--fix", "--json", "two.aidl").out)["diagnostics"]
+    assert (found["fix"]["title"], found["not_fixed"]) == (
+        "write `6`",
+        "it changes what you wrote, so the choice is yours",
+    )
+    (found,) = json.loads(aidl("check", "--json", "two.aidl").out)["diagnostics"]
+    assert "not_fixed" not in found
 
 
 def test_check_fix_leaves_a_good_program_alone(aidl: Aidl, folder: Path) -> None:

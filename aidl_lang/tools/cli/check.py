@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from aidl_lang.pipeline import Settings
     from aidl_lang.tools.ends import Sweep
 
+_WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
+"""Why `--fix` leaves a fix that is not sure, and one that is."""
+
 
 @record()
 class _Checked:
@@ -77,10 +80,12 @@ def run(arguments: argparse.Namespace) -> int:
             "ok": is_well and exit_code(found) == 0,
             "solved": is_solved,
             "fixed": fixes,
-            "diagnostics": [to_dict(d) for d in found],
+            "diagnostics": [
+                to_dict(d) | ({"not_fixed": _WHY[d.fix.is_sure]} if arguments.fix and d.fix else {})
+                for d in found
+            ],
+            **({"ends": swept} if arguments.ends else {}),
         }
-        if arguments.ends:
-            document["ends"] = swept
         print(json.dumps(document, indent=2, ensure_ascii=False))
     return exit_code(found) or (0 if is_well else 1)
 
@@ -131,12 +136,7 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
     for fix in (d.fix for d in checked.diagnostics if mends and d.fix is not None):
-        why = (
-            "it would make things worse"
-            if fix.is_sure
-            else "it changes what you wrote, so the choice is yours"
-        )
-        say(f"{name}: not fixed: {fix.title}: {why}")
+        say(f"{name}: not fixed: {fix.title}: {_WHY[fix.is_sure]}")
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
         untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""
