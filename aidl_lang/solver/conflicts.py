@@ -140,7 +140,9 @@ class _ConflictSearch:
             whole = self._nearest(scope.constraints, _SearchResult(End.INFEASIBLE, best, np.inf), FIRST)
             if whole.holds:
                 return self._found(group, self._violated(best), whole)
-        conflict = self._said(self._conflict(best, refuted))
+        conflict = self._conflict(best, refuted)
+        if refuted or not self._spent:
+            conflict = self._said(conflict)
         minimal = not self._spent
         is_proven = self._relaxation(conflict).is_refuted
         thorough = self._attempt(tuple(conflict), THOROUGH)
