@@ -34,7 +34,7 @@ from aidl_lang.typecheck import check as typecheck
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.lower import Lowered
-    from aidl_lang.explaining.failures import Conflict, Explanation
+    from aidl_lang.explaining.failures import Explanation
     from aidl_lang.explaining.giving import GaveWay
     from aidl_lang.explaining.rereading import Rereading
     from aidl_lang.explaining.trials import Trials
@@ -238,13 +238,14 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     with working, within(outcome.limit, "drawing"):
         model, evaluator, drawing, notes, found = _drawn(outcome.built, lowered, solution, freedom, watch)
 
-    def facts(late: list[Diagnostic], drawn: list[Diagnostic]) -> Facts:
+    def facts() -> Facts:
+        late, drawn = _examined(outcome.limit, lambda: ([], notes.everything()))
         told = [*late, *found, *_beside(drawn, found)]
         if outcome.asked is not None:
             told = adapted(told, outcome.asked.settings.variant)
         return Facts(ordered([*outcome.find().standing, *audible(told, outcome.allowances)]))
 
-    find = Later(partial(_examined, outcome.limit, lambda: ([], notes.everything()), facts))
+    find = Later(facts)
     if outcome.errors or notes.errors or has_errors(found):
         find()
     return replace(
@@ -258,23 +259,21 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     )
 
 
-def _examined(limit: float, noted: Callable[[], _Noted], facts: Callable[..., Facts]) -> Facts:
-    """Returns what there is to tell of what is noted; if noting it takes too long, that it does."""
-    with working:
-        try:
-            with within(limit, "examining"):
-                found = noted()
-        except TooLongError as reason:
-            checkpoint()  # it may have been the reader's time that ran out
-            found = [reason.diagnostic], []
-        return facts(*found)
+def _examined(limit: float, noted: Callable[[], _Noted]) -> _Noted:
+    """Returns what is noted; if that takes too long, that it does."""
+    try:
+        with within(limit, "examining"):
+            return noted()
+    except TooLongError as reason:
+        checkpoint()  # it may have been the reader's time that ran out
+        return [reason.diagnostic], []
 
 
 def _freed(lowered: Lowered, solution: Solution, watch: Stopwatch) -> Freedom:
     from aidl_lang.building.lower import preference
     from aidl_lang.solver.analysis import analyse
 
-    with working, watch("freedom"):
+    with watch("freedom"):
         return analyse(lowered.problem, solution, preference(lowered))
 
 
@@ -284,36 +283,34 @@ def _is_troubled(solution: Solution) -> bool:
 
 
 def _explained(
-    built: Interpretation,
-    lowered: Lowered,
-    solution: Solution,
-    other: Rereading | None,
-    settings: Settings,
-    tried: Callable[[], Trials],
-    watch: Stopwatch,
-) -> tuple[Sequence[GaveWay], Sequence[Explanation], Sequence[Diagnostic]]:
-    """Returns what gave way, the failures, and notes on what holds only far from the first guesses."""
-    if other is None and not _is_troubled(solution):
-        return (), (), ()
+    lowered: Lowered, solution: Solution, settings: Settings, tried: Callable[[], Trials], watch: Stopwatch
+) -> tuple[Sequence[GaveWay], Sequence[Explanation]]:
+    """Returns what gave way, and the failures."""
+    if not _is_troubled(solution):
+        return (), ()
     from aidl_lang.explaining.failures import explained
     from aidl_lang.explaining.giving import gave_way
-    from aidl_lang.explaining.rereading import elsewhere_notes
 
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
-    failures = explained(lowered, solution, tried())
-    return given, failures, list(elsewhere_notes(built.model, lowered, solution, other, tried()))
+    return given, explained(lowered, solution, tried())
+
+
+def _elsewhere(
+    built: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
+) -> list[Diagnostic]:
+    """Returns notes on what holds only far from the first guesses."""
+    if other is None and not _is_troubled(solution):
+        return []
+    from aidl_lang.explaining.rereading import elsewhere_notes
+
+    return list(elsewhere_notes(built, lowered, solution, other, trials))
 
 
 def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
     from aidl_lang.explaining.repetitions import follows
 
     return follows(lowered, solution, span)
-
-
-def _conflicts(failures: Sequence[Explanation]) -> tuple[Conflict, ...]:
-    with working:
-        return tuple(failure.conflict for failure in failures)
 
 
 def _finish(
@@ -342,7 +339,7 @@ def _finish(
         built, lowered, solution = other.built, other.lowered, other.solution
     freedom = Later(partial(_freed, lowered, solution, watch))
     tried = cache(partial(tries.trials, lowered, solution))
-    given, failures, elsewhere = _explained(built, lowered, solution, other, settings, tried, watch)
+    given, failures = _explained(lowered, solution, settings, tried, watch)
     try:
         with within(settings.drawing, "drawing"):
             model, evaluator, drawing, drawn, asserted = _drawn(
@@ -366,7 +363,10 @@ def _finish(
             found = solution_notes(root, lowered, solution, free, model, given, failures)
         return found, drawn.everything() if is_solved else []
 
-    def facts(found: list[Diagnostic], notes: list[Diagnostic]) -> Facts:
+    def facts() -> Facts:
+        trials = tried() if failures else tries.trials(lowered, solution)  # whose time has not begun
+        elsewhere = _elsewhere(built.model, lowered, solution, other, trials)
+        found, notes = _examined(settings.drawing, noted)
         passing = {(d.code, d.span) for d in [*asserted, *notes]}
         found = [*found, *asserted]
         if settings.strict and given:
@@ -379,7 +379,7 @@ def _finish(
                 if any(d.fix is not None for d in told):
                     from aidl_lang.explaining.verifying import verified
 
-                    told = verified(told, [*diagnostics, *told], tried())
+                    told = verified(told, [*diagnostics, *told], trials)
                 told = tries.answered(told, [*diagnostics, *told], built.model)
         told, allowed = ordered([*diagnostics, *told]), built.allowances
         if settings.solving.explain and is_solved and not has_errors(told):
@@ -388,7 +388,7 @@ def _finish(
         told = audible(told, allowed)
         return Facts(told, tuple(d for d in told if (d.code, d.span) not in passing))
 
-    find = Later(partial(_examined, settings.drawing, noted, facts))
+    find = Later(facts)
     if not is_solved or drawn.errors or has_errors(asserted) or (settings.strict and given):
         find()
     return Compiled(
@@ -400,7 +400,7 @@ def _finish(
         drawing,
         show,
         tuple((lowered.groups[stage.group], stage) for stage in solution.stages),
-        partial(_conflicts, failures),
+        Later(lambda: tuple(failure.conflict for failure in failures)),
         partial(_follows, lowered, solution),
         built.model,
         evaluator,

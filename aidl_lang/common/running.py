@@ -148,7 +148,8 @@ class Later(Generic[T]):
 
     def __call__(self) -> T:
         if (work := self._work) is not None:  # two threads may both do it
-            self.known = work()
+            with working:
+                self.known = work()
             self._work = None
         return self.known  # type: ignore[return-value]
 
