@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
@@ -20,8 +21,7 @@ def region_distance(a: Region, b: Region) -> Closest | None:
     """Returns the distance between the outlines of two regions that do not overlap; None if one is empty."""
     if not (a and b):
         return None
-    apart = np.maximum(a.boxes[:, None, :2] - b.boxes[:, 2:], b.boxes[:, :2] - a.boxes[:, None, 2:])
-    away = np.hypot(*np.maximum(apart, 0.0).reshape(-1, 2).T)
+    away = _between_boxes(a, b)
     # Pairs of pieces, those first whose boxes are nearest; few are nearer than the first two pieces.
     first = int(np.argmin(away))
     best = _between(a, b, first)
@@ -33,6 +33,20 @@ def region_distance(a: Region, b: Region) -> Closest | None:
         if k != first and (found := _between(a, b, k))[0] < best[0]:
             best = found
     return best
+
+
+def lie_within(a: Region, b: Region, reach: float) -> bool:
+    """Tells whether the outlines of two regions that do not overlap come as close to each other as that."""
+    away = _between_boxes(a, b)
+    near = np.flatnonzero(away <= reach)
+    return any(_between(a, b, k)[0] <= reach for k in near[np.argsort(away[near], kind="stable")].tolist())
+
+
+def _between_boxes(a: Region, b: Region) -> NDArray[np.float64]:
+    """Returns the distance of the boxes of each two pieces."""
+    apart = np.maximum(a.boxes[:, None, :2] - b.boxes[:, 2:], b.boxes[:, :2] - a.boxes[:, None, 2:])
+    away: NDArray[np.float64] = np.hypot(*np.maximum(apart, 0.0).reshape(-1, 2).T)
+    return away
 
 
 def _between(a: Region, b: Region, pair: int) -> Closest:

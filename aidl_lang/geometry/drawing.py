@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
-from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.contacts import Contact, Contacts, Solid
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
@@ -153,7 +153,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
     ]
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
-    touching = contacts(network, solids)
+    touching = Contacts(solids, network)
     found = [
         f for f in walk.findings if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams)
     ]

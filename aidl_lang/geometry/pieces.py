@@ -17,8 +17,8 @@ from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
-from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.contacts import UNNOTICED, Solid
+from aidl_lang.geometry.distance import lie_within, region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.faces import OwnFace
 from aidl_lang.geometry.measures import region_bounds
@@ -58,7 +58,7 @@ class _Piece:
     def meets(self, section: Section, region: Region) -> bool:
         if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
             return True
-        return self.gap(region) <= UNNOTICED
+        return lie_within(self.region, region, UNNOTICED)
 
     def gap(self, region: Region) -> float:
         closest = region_distance(self.region, region)
@@ -70,7 +70,7 @@ def loose_piece_notes(
     walk: Bodies,
     masses: Sequence[Mass],
     solids: Sequence[Solid],
-    pairs: Sequence[Contact],
+    pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
     """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest. A solid that
     is the whole program is a drawing without parts, in which gaps are as good as lines.
@@ -123,21 +123,20 @@ def _area(section: Section) -> str:
 
 
 def _groups(
-    pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[Contact]
+    pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[tuple[str, str]]
 ) -> list[list[_Piece]]:
     """Returns groups of pieces that hold together, directly or by other bodies; the largest group first."""
     joined = _Joined()
-    for contact in pairs:
-        if contact.is_close:
-            if own.path not in (contact.a, contact.b):
-                joined.join(contact.a, contact.b)
-                continue
-            other = known[contact.b if contact.a == own.path else contact.a]
-            for number, piece in enumerate(pieces):
-                if piece.meets(other.section, other.region):
-                    joined.join(number, other.path)
+    for pair in pairs:
+        if own.path not in pair:
+            joined.join(*pair)
+            continue
+        other = known[pair[pair[0] == own.path]]
+        for number, piece in enumerate(pieces):
+            if piece.meets(other.section, other.region):
+                joined.join(number, other.path)
     for i, j in near_pairs([piece.box for piece in pieces], UNNOTICED):
-        if pieces[i].gap(pieces[j].region) <= UNNOTICED:
+        if lie_within(pieces[i].region, pieces[j].region, UNNOTICED):
             joined.join(i, j)
     of: dict[int, int] = {}
     for number, piece in enumerate(pieces):
@@ -218,7 +217,7 @@ def fallen_piece_notes(
     walk: Bodies,
     masses: Sequence[Mass],
     solids: Sequence[Solid],
-    pairs: Sequence[Contact],
+    pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each hole that cuts pieces free which nothing else holds, as the inside of an
     O.
@@ -329,14 +328,13 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
     return found
 
 
-def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[str, list[Solid]]:
+def _held_by_others(solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
     """Returns for each body those that touch or overlap it."""
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
-    for pair in pairs:
-        if pair.is_close:
-            held.setdefault(pair.a, []).append(known[pair.b])
-            held.setdefault(pair.b, []).append(known[pair.a])
+    for a, b in pairs:
+        held.setdefault(a, []).append(known[b])
+        held.setdefault(b, []).append(known[a])
     return held
 
 
