@@ -127,21 +127,6 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack((curve.center[0] + c * x - s_ * y, curve.center[1] + s_ * x + c * y), axis=1)
 
 
-def round_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns a point on each of some circles and arcs; a row has the centre, radius, first angle and
-    sweep.
-    """
-    x, y, radius, first, sweep = rows.T
-    u = first + sweep * t
-    return np.stack((x + radius * np.cos(u), y + radius * np.sin(u)), axis=1)
-
-
-def cubic_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns a point on each of some cubics; a row has the control points."""
-    spots: NDArray[np.float64] = (_weights(t)[:, :, None] * rows.reshape(-1, 4, 2)).sum(axis=1)
-    return spots
-
-
 def derivative(curve: Piece, t: float) -> Vec:
     """Returns the derivative of the point by t."""
     if isinstance(curve, Line):

@@ -24,19 +24,17 @@ from aidl_lang.geometry.evaluate import (
     TAU,
     Bounds,
     bounds,
-    cubic_points,
     ends,
     is_closed,
     locate,
     part,
     point,
-    points,
-    round_points,
     round_range,
 )
-from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
+from aidl_lang.geometry.intersect import all_intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_rows
-from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.separation import Hulls
+from aidl_lang.geometry.tables import Table
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
@@ -122,6 +120,7 @@ class Network:
         self.edges: list[Edge] = []
         self._known: dict[tuple[int, ...], int] = {}
         self._fine: set[int] = set()
+        self._table = Table(self.curves)
         self.uses: list[list[Use]] = self._arrange()
         self._draw_polylines()
 
@@ -142,37 +141,39 @@ class Network:
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
-        own_nodes = np.array(own_ends, dtype=np.int64)
-        near = near_rows(self.boxes, self.tolerance)
-        pairs = meeting(self.curves, near, self.tolerance, own_nodes, np.array(self.nodes))
+        own_nodes, places = np.array(own_ends, dtype=np.int64), np.array(self.nodes)
+        own_nodes, places = own_nodes.reshape(-1, 2), places.reshape(-1, 2)
+        hulls = Hulls(self._table, self.tolerance)
+        pairs = hulls.meeting(near_rows(self.boxes, self.tolerance), own_nodes, places)
         is_cubic = np.array([isinstance(curve, Bezier) for curve in self.curves], dtype=np.bool_)
         give_up(_PER_PAIR * np.count_nonzero(is_cubic[pairs].all(axis=1)))
-        for i, j in pairs.tolist():
-            checkpoint()
-            self._cut_pair(i, j, cuts, own_ends)
+        # One curve twice is not cut: its edges are shared.
+        pairs = pairs[[self.curves[i] != self.curves[j] for i, j in pairs.tolist()]]
+        for number, node in self._ends_on_others(hulls, pairs, own_nodes, places):
+            t = locate(self.curves[number], self.nodes[node], self.tolerance)
+            if t is not None:
+                cuts[number].append((t, node))
+        crossings = all_intersections(self._table, pairs, self.tolerance)
+        for (i, j), found in zip(pairs.tolist(), crossings, strict=True):
+            for t, s, p in found:
+                node = self.node(p)
+                for number, at in ((i, t), (j, s)):
+                    if node not in own_ends[number]:
+                        cuts[number].append((at, node))
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
 
-    def _cut_pair(
-        self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]
-    ) -> None:
-        """Places the ends of each of two curves on the other, then cuts both where they meet."""
-        if self.curves[i] == self.curves[j]:
-            return  # one curve twice: its edges are shared
-        for one, other in ((i, j), (j, i)):
-            curve, box = self.curves[other], self.boxes[other]
-            for end in dict.fromkeys(own_ends[one]):
-                p = self.nodes[end]
-                if end in own_ends[other] or not _inside(p, box, self.tolerance):
-                    continue
-                t = locate(curve, p, self.tolerance)
-                if t is not None:
-                    cuts[other].append((t, end))
-        for t, s, p in intersections(self.curves[i], self.curves[j], self.tolerance):
-            node = self.node(p)
-            if node not in own_ends[i]:
-                cuts[i].append((t, node))
-            if node not in own_ends[j]:
-                cuts[j].append((s, node))
+    def _ends_on_others(
+        self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: NDArray[np.float64]
+    ) -> Iterator[tuple[int, int]]:
+        """Yields the curves that may pass an end of one they are paired with, and the node there."""
+        for one, other in (pairs.T, pairs.T[::-1]):
+            for side in (0, 1):
+                node = own_nodes[one, side]
+                is_new = (own_nodes[other] != node[:, None]).all(axis=1)
+                if side:
+                    is_new &= node != own_nodes[one, 0]
+                is_new[is_new] = hulls.may_hold(other[is_new], places[node[is_new]])
+                yield from zip(other[is_new].tolist(), node[is_new].tolist(), strict=True)
 
     def _split(self, number: int, cuts: list[tuple[float, int]]) -> list[Use]:
         curve = self.curves[number]
@@ -213,47 +214,17 @@ class Network:
         counts = [
             _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
         ]
-        inner = dict(self._inner_points([k for k, count in enumerate(counts) if count > 1], counts))
+        inner = np.array(counts, dtype=np.int64) - 1
+        number = np.repeat(np.arange(len(edges)), inner)
+        begins = np.cumsum(inner) - inner
+        share = (np.arange(1, len(number) + 1) - begins[number]) / (inner[number] + 1)
+        parts = np.array([(e.curve, e.t0, e.t1 - e.t0) for e in edges]).reshape(-1, 3)[number]
+        spots = self._table.at(parts[:, 0].astype(np.int64), parts[:, 1] + parts[:, 2] * share)[0]
+        grids = np.split(self.to_grid(spots), begins[1:])
         self.edges = [
-            Edge(e.curve, e.t0, e.t1, e.start, e.end, inner.get(k, _NO_POINTS)) for k, e in enumerate(edges)
+            Edge(e.curve, e.t0, e.t1, e.start, e.end, grid) for e, grid in zip(edges, grids, strict=False)
         ]
         self._index()
-
-    def _inner_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
-        """Yields the inner points of edges cut into many chords: those of circles and arcs in one go,
-        likewise those of Bézier curves.
-        """
-        rounds, cubics = [], []
-        for k in numbers:
-            curve = self.curves[self.edges[k].curve]
-            if isinstance(curve, Arc | Circle):
-                rounds.append((k, (*curve.center, curve.radius, *round_range(curve))))
-            elif isinstance(curve, Bezier):
-                cubics.append((k, (*curve.p0, *curve.p1, *curve.p2, *curve.p3)))
-            else:
-                edge = self.edges[k]
-                ts = edge.t0 + (edge.t1 - edge.t0) * np.arange(1, counts[k]) / counts[k]
-                yield k, self.to_grid(points(curve, ts))
-        for found, at in ((rounds, round_points), (cubics, cubic_points)):
-            if found:
-                table = np.array([row for _, row in found])
-                yield from self._along([k for k, _ in found], table, counts, at)
-
-    def _along(
-        self,
-        numbers: Sequence[int],
-        table: NDArray[np.float64],
-        counts: Sequence[int],
-        at: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]],
-    ) -> Iterator[tuple[int, Ints]]:
-        """Yields the inner points of edges of curves of one kind, which have a row each."""
-        parts = np.array([(self.edges[k].t0, self.edges[k].t1 - self.edges[k].t0) for k in numbers])
-        count = np.array([counts[k] for k in numbers])
-        row = np.repeat(np.arange(len(numbers)), count - 1)
-        place = np.arange(1, len(row) + 1) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1)
-        t = parts[row, 0] + parts[row, 1] * place / count[row]
-        grids = np.split(self.to_grid(at(table[row], t)), np.cumsum(count - 1)[:-1])
-        yield from zip(numbers, grids, strict=True)
 
     def refine(self) -> None:
         """Cuts the curves finer whose chords crossed."""
@@ -392,10 +363,6 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
 def _extent(curve: Piece) -> float:
     left, bottom, right, top = bounds(curve)
     return max(right - left, top - bottom)
-
-
-def _inside(p: Vec, box: Bounds, margin: float) -> bool:
-    return box[0] - margin <= p[0] <= box[2] + margin and box[1] - margin <= p[1] <= box[3] + margin
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:

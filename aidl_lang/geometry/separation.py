@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece
-from aidl_lang.geometry.evaluate import ends, round_range
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.evaluate import ends
+from aidl_lang.geometry.tables import POWERS, Table
 
 PARTS = 8
 _ANGLE = 0.2
@@ -54,36 +55,48 @@ def _blossom(r: float, s: float, t: float) -> list[float]:
     return [u * v * w, r * v * w + u * s * w + u * v * t, r * s * w + r * v * t + u * s * t, r * s * t]
 
 
-_CUTTING = _cutting()
+_CUTTING = _cutting() @ np.linalg.inv(POWERS)
+"""The same from the coefficients of a cubic."""
 
 
 def meeting(curves: Sequence[Piece], pairs: Ints, tolerance: float, nodes: Ints, places: Floats) -> Ints:
-    """Returns those of some pairs of curves that may meet in more than an end they share.
-
-    nodes   by curve, which points its two ends are
-    places  where these points are
-    """
-    hulls, kept = _Hulls(curves, tolerance), np.zeros(len(pairs), dtype=np.bool_)
-    for begin in range(0, len(pairs), _AT_ONCE):
-        checkpoint()
-        rows = slice(begin, begin + _AT_ONCE)
-        kept[rows] = hulls.may_meet(pairs[rows, 0], pairs[rows, 1], nodes, places)
-    found: Ints = pairs[kept]
-    return found
+    """Returns what `Hulls.meeting` does of some curves."""
+    return Hulls(Table(curves), tolerance).meeting(pairs, nodes, places)
 
 
-class _Hulls:
+class Hulls:
     """The hulls of all parts of some curves, and the boxes of these."""
 
-    def __init__(self, curves: Sequence[Piece], tolerance: float) -> None:
-        self._hulls = _hulls(curves)
+    def __init__(self, table: Table, tolerance: float) -> None:
+        self._hulls = _hulls(table)
         self._least = 2 * tolerance
         margin = _MARGIN * tolerance / 2
         # One axis after the other: a reduction over an axis of length two is slow.
         self._low = np.moveaxis(self._hulls.min(axis=2) - margin, 2, 0).copy()
         self._high = np.moveaxis(self._hulls.max(axis=2) + margin, 2, 0).copy()
 
-    def may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
+    def meeting(self, pairs: Ints, nodes: Ints, places: Floats) -> Ints:
+        """Returns those of some pairs of curves that may meet in more than an end they share.
+
+        nodes   by curve, which points its two ends are
+        places  where these points are
+        """
+        kept = np.zeros(len(pairs), dtype=np.bool_)
+        for begin in range(0, len(pairs), _AT_ONCE):
+            checkpoint()
+            rows = slice(begin, begin + _AT_ONCE)
+            kept[rows] = self._may_meet(pairs[rows, 0], pairs[rows, 1], nodes, places)
+        found: Ints = pairs[kept]
+        return found
+
+    def may_hold(self, curves: Ints, spots: Floats) -> Mask:
+        """Tells of some curves whether each may pass a spot."""
+        inside = np.ones((len(curves), PARTS), dtype=np.bool_)
+        for low, high, place in zip(self._low, self._high, spots.T, strict=True):
+            inside &= (low[curves] <= place[:, None]) & (place[:, None] <= high[curves])
+        return np.asarray(inside.any(axis=1), dtype=np.bool_)
+
+    def _may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
         meets = np.ones((len(one), PARTS, PARTS), dtype=np.bool_)
         for low, high in zip(self._low, self._high, strict=True):
             meets &= low[one][:, :, None] <= high[other][:, None]
@@ -120,48 +133,20 @@ def _beside(end: int, reach: int) -> slice:
     return slice(PARTS - reach, PARTS) if end else slice(0, reach)
 
 
-def _hulls(curves: Sequence[Piece]) -> Floats:
-    """Returns the four points around each part of each curve."""
-    hulls = np.empty((len(curves), PARTS, 4, 2))
-    cubic = [k for k, curve in enumerate(curves) if isinstance(curve, Line | Bezier)]
-    if cubic:
-        control = np.array([_control(curves[k]) for k in cubic])
-        hulls[cubic] = (_CUTTING @ control).reshape(-1, PARTS, 4, 2)
-    if len(cubic) < len(curves):
-        is_round = np.ones(len(curves), dtype=np.bool_)
-        is_round[cubic] = False
-        rounds = np.flatnonzero(is_round)
-        hulls[rounds] = _round_hulls([curves[k] for k in rounds.tolist()])
-    if len(curves):  # what was stored is where it ends
-        hulls[:, 0, 0], hulls[:, -1, 3] = np.array([ends(curve) for curve in curves]).transpose(1, 0, 2)
-    return hulls
-
-
-def _control(curve: Piece) -> tuple[tuple[float, float], ...]:
-    if isinstance(curve, Bezier):
-        return curve.p0, curve.p1, curve.p2, curve.p3
-    (x0, y0), (x1, y1) = ends(curve)
-    dx, dy = (x1 - x0) / 3, (y1 - y0) / 3
-    return (x0, y0), (x0 + dx, y0 + dy), (x1 - dx, y1 - dy), (x1, y1)
-
-
-def _round_hulls(curves: Sequence[Piece]) -> Floats:
-    """Returns the ends of each part of a round curve with, twice, the meeting of the tangents in them."""
-    rows = []
-    for curve in curves:
-        assert not isinstance(curve, Line | Bezier)
-        if isinstance(curve, Arc | Circle):
-            axes = curve.radius, curve.radius, 0.0
-        else:
-            axes = curve.rx, curve.ry, curve.angle
-        rows.append((*curve.center, *axes, *round_range(curve)))
-    x, y, rx, ry, turn, first, sweep = np.array(rows).T[:, :, None]
-    u = first + sweep * np.arange(2 * PARTS + 1) / (2 * PARTS)
-    far = np.where(np.arange(2 * PARTS + 1) % 2, 1 / np.cos(sweep / (2 * PARTS)), 1.0)
-    along, across = rx * far * np.cos(u), ry * far * np.sin(u)
-    spots = np.stack(
-        (x + along * np.cos(turn) - across * np.sin(turn), y + along * np.sin(turn) + across * np.cos(turn)),
-        axis=2,
-    )
+def _hulls(table: Table) -> Floats:
+    """Returns the four points around each part of each curve: of a round one its ends with, twice, the
+    meeting of the tangents in them.
+    """
+    hulls = np.empty((len(table.curves), PARTS, 4, 2))
+    cubic, rounds = np.flatnonzero(~table.is_round), np.flatnonzero(table.is_round)
+    hulls[cubic] = (_CUTTING @ table.rows[cubic].reshape(-1, 4, 2)).reshape(-1, PARTS, 4, 2)
+    steps = np.arange(2 * PARTS + 1)
+    spots = table.at(np.repeat(rounds, len(steps)), np.tile(steps / (2 * PARTS), len(rounds)))[0]
+    middle, sweep = table.rows[rounds, None, :2], table.rows[rounds, None, 7:]
+    far = np.where(steps[:, None] % 2, 1 / np.cos(sweep / (2 * PARTS)), 1.0)
+    spots = middle + far * (spots.reshape(-1, len(steps), 2) - middle)
     ends_, corners = spots[:, ::2], spots[:, 1::2]
-    return np.stack((ends_[:, :-1], corners, corners, ends_[:, 1:]), axis=2)
+    hulls[rounds] = np.stack((ends_[:, :-1], corners, corners, ends_[:, 1:]), axis=2)
+    if len(table.curves):  # what was stored is where it ends
+        hulls[:, 0, 0], hulls[:, -1, 3] = np.array([ends(c) for c in table.curves]).transpose(1, 0, 2)
+    return hulls

@@ -30,6 +30,8 @@ from aidl_lang.geometry.sections import Section
 T = TypeVar("T")
 STRAIGHT = -3
 """Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
+_ROUNDING = 1e-12
+"""Difference of parameters that is none."""
 
 
 @record(slots=True)
@@ -276,7 +278,7 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
         return None
     if a.t1 == b.t0:
         return Run(a.curve, a.t0, b.t1, a.start, b.end)
-    if is_closed(network.curves[a.curve]) and abs(a.t1 - b.t0) == 1:
+    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= _ROUNDING:
         return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
     return None
 
