@@ -82,19 +82,17 @@ def meet(a: Piece, b: Piece, tolerance: float) -> bool:
     )
 
 
-def _on_both(a: Piece, b: Piece, candidates: list[Vec], tolerance: float) -> list[Crossing]:
-    found = []
-    for p in candidates:
-        t, s = locate(a, p, tolerance), locate(b, p, tolerance)
-        if t is not None and s is not None:
-            found.append((t, s, p))
-    return found
-
-
 def _plain(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
+    """Returns the crossings of lines, arcs and circles, among those of what carries them."""
     if isinstance(a, Line) and isinstance(b, Line):
         return _line_line(a, b, tolerance)
-    return _on_both(a, b, _round_candidates(a, b, tolerance), tolerance)
+    if isinstance(b, Line):
+        return [(t, s, p) for s, t, p in _plain(b, a, tolerance)]
+    assert isinstance(a, Line | Arc | Circle)
+    assert isinstance(b, Arc | Circle)
+    spots = line_circle(a, b, tolerance) if isinstance(a, Line) else circle_circle(a, b, tolerance)
+    places = ((locate(a, p, tolerance), locate(b, p, tolerance), p) for p in spots)
+    return [(t, s, p) for t, s, p in places if t is not None and s is not None]
 
 
 def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
@@ -111,17 +109,6 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
         return []
     t, s = min(1.0, max(0.0, t)), min(1.0, max(0.0, s))
     return [(t, s, point(a, t))]
-
-
-def _round_candidates(a: Piece, b: Piece, tolerance: float) -> list[Vec]:
-    """Returns meeting points of the endless lines and whole circles that carry the two curves."""
-    if isinstance(a, Line):
-        a, b = b, a
-    assert isinstance(a, Arc | Circle)
-    if isinstance(b, Line):
-        return line_circle(b, a, tolerance)
-    assert isinstance(b, Arc | Circle)
-    return circle_circle(a, b, tolerance)
 
 
 def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:

@@ -41,7 +41,7 @@ CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
 FINE_CHORD = CHORD / 100
 """The same for curves that come so close to each other that their chords cross."""
-_PER_PAIR = 1e-3
+_PER_PAIR = 1e-4
 """Seconds of a processor that it takes at least to find where two cubics meet that may."""
 GRID = 1e-8
 """Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""

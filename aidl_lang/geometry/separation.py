@@ -9,18 +9,17 @@ sought (`intersect`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.evaluate import ends
 from aidl_lang.geometry.tables import POWERS, Table
 
 PARTS = 8
+_NO_PLACES = np.zeros((0, 2))
 _ANGLE = 0.2
 """Radians that must be free beyond a straight angle, for curves to be apart on both sides of an end."""
 _MARGIN = 4
@@ -59,11 +58,6 @@ _CUTTING = _cutting() @ np.linalg.inv(POWERS)
 """The same from the coefficients of a cubic."""
 
 
-def meeting(curves: Sequence[Piece], pairs: Ints, tolerance: float, nodes: Ints, places: Floats) -> Ints:
-    """Returns what `Hulls.meeting` does of some curves."""
-    return Hulls(Table(curves), tolerance).meeting(pairs, nodes, places)
-
-
 class Hulls:
     """The hulls of all parts of some curves, and the boxes of these."""
 
@@ -75,12 +69,14 @@ class Hulls:
         self._low = np.moveaxis(self._hulls.min(axis=2) - margin, 2, 0).copy()
         self._high = np.moveaxis(self._hulls.max(axis=2) + margin, 2, 0).copy()
 
-    def meeting(self, pairs: Ints, nodes: Ints, places: Floats) -> Ints:
+    def meeting(self, pairs: Ints, nodes: Ints | None = None, places: Floats = _NO_PLACES) -> Ints:
         """Returns those of some pairs of curves that may meet in more than an end they share.
 
-        nodes   by curve, which points its two ends are
+        nodes   by curve, which points its two ends are; without it they share none
         places  where these points are
         """
+        if nodes is None:
+            nodes = np.arange(2 * len(self._hulls)).reshape(-1, 2)
         kept = np.zeros(len(pairs), dtype=np.bool_)
         for begin in range(0, len(pairs), _AT_ONCE):
             checkpoint()
