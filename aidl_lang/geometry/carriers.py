@@ -4,6 +4,7 @@ function of their parameter alone, which has one zero at most between two extrem
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Circle, Line
-from aidl_lang.geometry.tables import Floats, Ints, Table
+from aidl_lang.geometry.tables import Floats, Ints, Table, cross, dot, long
 
 Function = Callable[[Ints, Floats], Floats]
 _STEPS = 32
@@ -27,24 +28,19 @@ def on_carriers(
     tolerance and turns away.
     """
     is_line = np.array([isinstance(carrier, Line) for carrier in carriers], dtype=np.bool_)
-    x, y, dx, dy, radius = np.array([_row(carrier) for carrier in carriers]).reshape(-1, 5).T
+    origin, way, radius = np.split(np.array([_row(carrier) for carrier in carriers]), [2, 4], axis=1)
 
     def height(k: Ints, t: Floats) -> Floats:
-        ex, ey = (table.at(curves[k], t)[0] - np.stack((x[k], y[k]), axis=1)).T
-        high: Floats = np.where(is_line[k], dx[k] * ey - dy[k] * ex, np.hypot(ex, ey) - radius[k])
-        return high
+        e = table.at(curves[k], t)[0] - origin[k]
+        return np.where(is_line[k], cross(way[k], e), long(e) - radius[k, 0])
 
     def rise(k: Ints, t: Floats) -> Floats:
         spots, ways = table.at(curves[k], t, 1)
-        (ex, ey), (u, v) = (spots - np.stack((x[k], y[k]), axis=1)).T, ways.T
-        rate: Floats = np.where(is_line[k], dx[k] * v - dy[k] * u, ex * u + ey * v)
-        return rate
+        return np.where(is_line[k], cross(way[k], ways), dot(spots - origin[k], ways))
 
     def bend(k: Ints, t: Floats) -> Floats:
         spots, ways, turns = table.at(curves[k], t, 2)
-        (ex, ey), (u, v), (p, q) = (spots - np.stack((x[k], y[k]), axis=1)).T, ways.T, turns.T
-        rate: Floats = np.where(is_line[k], dx[k] * q - dy[k] * p, u * u + v * v + ex * p + ey * q)
-        return rate
+        return np.where(is_line[k], cross(way[k], turns), dot(ways, ways) + dot(spots - origin[k], turns))
 
     every = np.arange(len(curves))
     marks = np.repeat(every, _STEPS + 1), np.tile(np.linspace(0, 1, _STEPS + 1), len(curves))
@@ -52,13 +48,14 @@ def on_carriers(
     inner = (turns > 0) & (turns < 1)
     row, at = _merged(np.repeat(every, 2), np.tile((0.0, 1.0), len(curves)), k[inner], turns[inner])
     high = height(row, at)
-    touches = (np.abs(high) <= tolerance) & (at > 0) & (at < 1)
-    k, roots = _zeros(height, row, at, ~touches)
-    begins = (at == 0) & table.is_closed[curves[row]] & (np.abs(high) <= tolerance)
+    is_near, is_inner = np.abs(high) <= tolerance, (at > 0) & (at < 1)
+    touches = is_near & (is_inner | ((at == 0) & table.is_closed[curves[row]]))
+    k, roots = _zeros(height, row, at, ~(is_near & is_inner))
     found: list[list[float]] = [[] for _ in carriers]
-    for which, where in ((row[touches], at[touches]), (k, roots), (row[begins], at[begins])):
-        for number, t in zip(which.tolist(), where.tolist(), strict=True):
-            found[number].append(t)
+    for number, t in zip(
+        [*row[touches].tolist(), *k.tolist()], [*at[touches].tolist(), *roots.tolist()], strict=True
+    ):
+        found[number].append(t)
     return found
 
 
@@ -66,8 +63,8 @@ def _row(carrier: Line | Arc | Circle) -> tuple[float, ...]:
     """Returns a point, the direction of a line, and a radius."""
     if isinstance(carrier, Line):
         (x, y), (u, v) = carrier.start, carrier.end
-        long = np.hypot(u - x, v - y)
-        return x, y, (u - x) / long, (v - y) / long, 0.0
+        size = math.dist(carrier.start, carrier.end)
+        return x, y, (u - x) / size, (v - y) / size, 0.0
     return *carrier.center, 0.0, 0.0, carrier.radius
 
 

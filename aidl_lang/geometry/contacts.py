@@ -12,13 +12,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import field
 from functools import cached_property
 from itertools import combinations
-from operator import itemgetter
 from typing import Literal
 
-import numpy as np
-
 from aidl_lang.common.records import record
-from aidl_lang.geometry.distance import lie_within, region_distance
+from aidl_lang.geometry.distance import lie_within, nearest_region, region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.nearness import near_pairs
@@ -96,20 +93,12 @@ class Contacts:
 
     def nearest(self, path: str) -> tuple[float, str] | None:
         """Returns the distance (mm) from a body to the nearest other, and its path; None if it is alone."""
-        assert self.network is not None
-        boxes = np.array([solid.box for solid in self.solids])
-        number = next(i for i, solid in enumerate(self.solids) if solid.path == path)
-        apart = np.maximum(boxes[number, :2] - boxes[:, 2:], boxes[:, :2] - boxes[number, 2:])
-        away = np.hypot(*np.maximum(apart, 0.0).T)
-        best: tuple[float, str] | None = None
-        for other in np.argsort(away, kind="stable").tolist():
-            if best is not None and away[other] >= best[0]:
-                break
-            if other != number:
-                gap = _gap(self.solids[number], self.solids[other], self.network)
-                found = gap or 0.0, self.solids[other].path
-                best = found if best is None else min(best, found, key=itemgetter(0))
-        return best
+        own = [solid.region for solid in self.solids if solid.path == path]
+        others = [solid for solid in self.solids if solid.path != path]
+        if not others:
+            return None
+        gap, place = nearest_region(own, [solid.region for solid in others])
+        return gap, others[place].path
 
 
 def _is_close(network: Network, a: Solid, b: Solid) -> bool:
@@ -131,11 +120,6 @@ def _compare(network: Network, a: Solid, b: Solid) -> Contact:
         shared = area(trace(network, common).region)
         if shared > 0:
             return Contact(a.path, b.path, "overlapping", area=shared)
-    gap = _gap(a, b, network)
-    return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)
-
-
-def _gap(a: Solid, b: Solid, network: Network) -> float | None:
-    """Returns the distance of two bodies that do not overlap; None if they touch."""
     closest = region_distance(a.region, b.region)
-    return closest[0] if closest and closest[0] > network.tolerance else None
+    gap = closest[0] if closest and closest[0] > network.tolerance else None
+    return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)

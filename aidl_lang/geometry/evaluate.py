@@ -114,8 +114,9 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
         straight: NDArray[np.float64] = start + np.multiply.outer(t, end - start)
         return straight
     if isinstance(curve, Bezier):
-        weights = _WEIGHTS if t is _SAMPLED else _weights(t)
-        curved: NDArray[np.float64] = weights @ np.array((curve.p0, curve.p1, curve.p2, curve.p3))
+        curved: NDArray[np.float64] = (_WEIGHTS if t is _SAMPLED else _weights(t)) @ np.array(
+            (curve.p0, curve.p1, curve.p2, curve.p3)
+        )
         return curved
     first, sweep = round_range(curve)
     u = first + sweep * t

@@ -18,7 +18,7 @@ from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.geometry.carriers import on_carriers
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import ends, is_closed, locate, point
-from aidl_lang.geometry.tables import Floats, Ints, Table
+from aidl_lang.geometry.tables import Floats, Ints, Table, cross, dot, long
 
 _STEPS = 64
 """Steps along a curve between its samples."""
@@ -153,8 +153,8 @@ def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int,
         table.at(np.repeat(own, len(marks)), np.tile(marks, len(own)))[0].reshape(len(own), -1, 2)
         for own in pairs.T
     )
-    away = _long(p[:, :, None] - q[:, None])
-    step = np.maximum(*(_long(np.diff(x, axis=1)).max(axis=1) for x in (p, q)))
+    away = long(p[:, :, None] - q[:, None])
+    step = np.maximum(*(long(np.diff(x, axis=1)).max(axis=1) for x in (p, q)))
     lies = _may_lie(away <= step[:, None, None] + tolerance, table.is_closed[pairs])
     for row in np.flatnonzero(lies).tolist():
         a, b = (table.curves[number] for number in pairs[row].tolist())
@@ -221,9 +221,9 @@ def _may_lie(near: Mask, closed: Mask) -> Mask:
 def _crossed(p: Floats, q: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
     """Returns the crossings of the pairs of polylines asked for: the pair's number, and the parameters."""
     dp, dq = np.diff(p, axis=1)[:, :, None], np.diff(q, axis=1)[:, None]
-    gap, cross = q[:, None, :-1] - p[:, :-1, None], _cross(dp, dq)
+    gap, sine = q[:, None, :-1] - p[:, :-1, None], cross(dp, dq)
     with np.errstate(divide="ignore", invalid="ignore"):
-        t, s = _cross(gap, dq) / cross, _cross(gap, dp) / cross
+        t, s = cross(gap, dq) / sine, cross(gap, dp) / sine
         # The curves bulge beyond their chords: look a little past each segment.
         hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2) & asked[:, None, None]
     k, i, j = np.nonzero(hit)
@@ -260,41 +260,29 @@ def _improved(
         t[left], s[left] = table.within(a[left], t[left] + dt), table.within(b[left], s[left] + ds)
         left = left[np.abs(dt) + np.abs(ds) >= _LAST]
     ours, theirs = table.at(a, t, 1), table.at(b, s, 1)
-    meets = _long(ours[0] - theirs[0]) <= tolerance
+    meets = long(ours[0] - theirs[0]) <= tolerance
     if step is _to_touch:
-        meets &= np.abs(_cross(ours[1], theirs[1])) <= 1e-6 * _long(ours[1]) * _long(theirs[1])
+        meets &= np.abs(cross(ours[1], theirs[1])) <= 1e-6 * long(ours[1]) * long(theirs[1])
     return t, s, meets
 
 
 def _to_crossing(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Returns the steps to where b - a is nothing; NaN where the curves are parallel."""
-    cross = _cross(a[1], b[1])
-    cross = np.where(np.abs(cross) > 1e-12 * _long(a[1]) * _long(b[1]), cross, np.nan)
-    return _cross(b[0] - a[0], b[1]) / cross, _cross(b[0] - a[0], a[1]) / cross
+    sine, e = cross(a[1], b[1]), b[0] - a[0]
+    sine = np.where(np.abs(sine) > 1e-12 * long(a[1]) * long(b[1]), sine, np.nan)
+    return cross(e, b[1]) / sine, cross(e, a[1]) / sine
 
 
 def _to_touch(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Returns the steps to where the curves are parallel and side by side: (b - a)·a' = 0 and a' x b' = 0."""
     e = b[0] - a[0]
-    f, g = _dot(e, a[1]), _cross(a[1], b[1])
-    ft, fs = _dot(e, a[2]) - _dot(a[1], a[1]), _dot(b[1], a[1])
-    gt, gs = _cross(a[2], b[1]), _cross(a[1], b[2])
+    f, g = dot(e, a[1]), cross(a[1], b[1])
+    ft, fs = dot(e, a[2]) - dot(a[1], a[1]), dot(b[1], a[1])
+    gt, gs = cross(a[2], b[1]), cross(a[1], b[2])
     determinant = ft * gs - fs * gt
     determinant = np.where(determinant, determinant, np.nan)
     steps = (fs * g - gs * f) / determinant, (gt * f - ft * g) / determinant
     return np.clip(steps[0], -0.1, 0.1), np.clip(steps[1], -0.1, 0.1)
-
-
-def _cross(u: Floats, v: Floats) -> Floats:
-    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-
-
-def _dot(u: Floats, v: Floats) -> Floats:
-    return u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1]
-
-
-def _long(u: Floats) -> Floats:
-    return np.hypot(u[..., 0], u[..., 1])
 
 
 def self_crossing(curve: Bezier) -> tuple[float, float] | None:

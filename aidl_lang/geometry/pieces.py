@@ -6,7 +6,6 @@ single geometry consists of.
 
 from __future__ import annotations
 
-import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -18,7 +17,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Solid
-from aidl_lang.geometry.distance import lie_within, region_distance
+from aidl_lang.geometry.distance import lie_within, nearest_region
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.faces import OwnFace
 from aidl_lang.geometry.measures import region_bounds
@@ -59,10 +58,6 @@ class _Piece:
         if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
             return True
         return lie_within(self.region, region, UNNOTICED)
-
-    def gap(self, region: Region) -> float:
-        closest = region_distance(self.region, region)
-        return closest[0] if closest else 0.0
 
 
 def loose_piece_notes(
@@ -184,14 +179,8 @@ def _is_meant(piece: _Piece, alike: Counter[object]) -> bool:
 
 
 def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece]) -> Diagnostic:
-    gap, nearest = math.inf, rest[0]
-    for bound, piece, other in sorted(
-        ((_between(p.box, q.box), p, q) for p in group for q in rest), key=lambda found: found[0]
-    ):
-        if bound >= gap:
-            break
-        if (found := piece.gap(other.region)) < gap:
-            gap, nearest = found, other
+    gap, place = nearest_region([piece.region for piece in group], [piece.region for piece in rest])
+    nearest = rest[place]
     names, beside = _names(solid, group), _names(solid, [nearest])
     first = group[0].faces[0].geometries[0]
     touches = "touch" if len(names) > 1 else "touches"
@@ -414,11 +403,6 @@ def _stencil_fix(texts: set[Span]) -> Fix | None:
         return None
     ends = sorted((Span(span.source, span.end - 1, span.end) for span in texts), key=lambda end: end.start)
     return Fix("bridge the letters: `stencil: true`", tuple(Edit(end, ", stencil: true)") for end in ends))
-
-
-def _between(a: Bounds, b: Bounds) -> float:
-    """Returns the distance of two boxes."""
-    return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
 
 
 def _names(solid: SolvedStructure, pieces: Iterable[_Piece]) -> list[str]:

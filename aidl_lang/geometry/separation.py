@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.geometry.evaluate import ends
-from aidl_lang.geometry.tables import POWERS, Table
+from aidl_lang.geometry.tables import Table
 
 PARTS = 8
 _NO_PLACES = np.zeros((0, 2))
@@ -32,30 +32,6 @@ _REACHES = (PARTS, PARTS // 2, 1)
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
-
-
-def _cutting() -> Floats:
-    """Returns the matrix that makes the control points of the parts, four each, from those of a whole
-    cubic.
-    """
-    rows = []
-    for k in range(PARTS):
-        a, b = k / PARTS, (k + 1) / PARTS
-        blends = ((a, a, a), (a, a, b), (a, b, b), (b, b, b))
-        rows += [_blossom(*blend) for blend in blends]
-    return np.array(rows)
-
-
-def _blossom(r: float, s: float, t: float) -> list[float]:
-    """Returns the shares of the control points in the blossom of a cubic (Farin, Curves and Surfaces, ch.
-    4).
-    """
-    u, v, w = 1 - r, 1 - s, 1 - t
-    return [u * v * w, r * v * w + u * s * w + u * v * t, r * s * w + r * v * t + u * s * t, r * s * t]
-
-
-_CUTTING = _cutting() @ np.linalg.inv(POWERS)
-"""The same from the coefficients of a cubic."""
 
 
 class Hulls:
@@ -130,19 +106,16 @@ def _beside(end: int, reach: int) -> slice:
 
 
 def _hulls(table: Table) -> Floats:
-    """Returns the four points around each part of each curve: of a round one its ends with, twice, the
-    meeting of the tangents in them.
+    """Returns the four points around each part of each curve: its ends, and on the tangents in them the inner
+    control points of a cubic, or twice the meeting of the tangents of a round curve.
     """
-    hulls = np.empty((len(table.curves), PARTS, 4, 2))
-    cubic, rounds = np.flatnonzero(~table.is_round), np.flatnonzero(table.is_round)
-    hulls[cubic] = (_CUTTING @ table.rows[cubic].reshape(-1, 4, 2)).reshape(-1, PARTS, 4, 2)
-    steps = np.arange(2 * PARTS + 1)
-    spots = table.at(np.repeat(rounds, len(steps)), np.tile(steps / (2 * PARTS), len(rounds)))[0]
-    middle, sweep = table.rows[rounds, None, :2], table.rows[rounds, None, 7:]
-    far = np.where(steps[:, None] % 2, 1 / np.cos(sweep / (2 * PARTS)), 1.0)
-    spots = middle + far * (spots.reshape(-1, len(steps), 2) - middle)
-    ends_, corners = spots[:, ::2], spots[:, 1::2]
-    hulls[rounds] = np.stack((ends_[:, :-1], corners, corners, ends_[:, 1:]), axis=2)
-    if len(table.curves):  # what was stored is where it ends
-        hulls[:, 0, 0], hulls[:, -1, 3] = np.array([ends(c) for c in table.curves]).transpose(1, 0, 2)
-    return hulls
+    count, marks = len(table.curves), np.arange(PARTS + 1) / PARTS
+    found = table.at(np.repeat(np.arange(count), len(marks)), np.tile(marks, count), 1)
+    spots, ways = found.reshape(2, count, len(marks), 2)
+    if count:  # what was stored is where it ends
+        spots[:, 0], spots[:, -1] = np.array([ends(c) for c in table.curves]).transpose(1, 0, 2)
+    sweep = np.where(table.is_round, table.rows[:, 7], 1.0)
+    reach = np.where(table.is_round, np.tan(sweep / (2 * PARTS)) / sweep, 1 / (3 * PARTS))
+    off = reach[:, None, None] * ways
+    starts, stops = spots[:, :-1], spots[:, 1:]
+    return np.stack((starts, starts + off[:, :-1], stops - off[:, 1:], stops), axis=2)

@@ -13,7 +13,7 @@ from aidl_lang.geometry.evaluate import is_closed, round_range
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
+_POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
 """Coefficients of 1, t, t² and t³ of a cubic, from its control points."""
 
 
@@ -28,7 +28,7 @@ class Table:
         self.is_closed = np.array([is_closed(curve) for curve in curves], dtype=np.bool_)
         self.rows = np.array([_row(curve) for curve in curves]).reshape(-1, 8)
         cubic = ~self.is_round
-        self.rows[cubic] = (POWERS @ self.rows[cubic].reshape(-1, 4, 2)).reshape(-1, 8)
+        self.rows[cubic] = (_POWERS @ self.rows[cubic].reshape(-1, 4, 2)).reshape(-1, 8)
 
     def at(self, curves: Ints, t: Floats, order: int = 0) -> Floats:
         """Returns the points at parameters of some curves and their derivatives up to an order, by it."""
@@ -56,6 +56,18 @@ class Table:
     def within(self, curves: Ints, t: Floats) -> Floats:
         """Returns parameters brought back onto curves: round closed ones, to the ends of others."""
         return np.where(self.is_closed[curves], t % 1.0, np.clip(t, 0.0, 1.0))
+
+
+def cross(u: Floats, v: Floats) -> Floats:
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def dot(u: Floats, v: Floats) -> Floats:
+    return u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1]
+
+
+def long(u: Floats) -> Floats:
+    return np.hypot(u[..., 0], u[..., 1])
 
 
 def _row(curve: Piece) -> tuple[float, ...]:
