@@ -239,8 +239,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 def _direction(network: Network, use: Use) -> float:
     """Returns the angle at which the polyline of an edge leaves its start."""
-    edge = network.edges[use[0]]
-    inner = edge.inner if use[1] else edge.inner[::-1]
+    inner = network.inner(use)
     target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
     dx, dy = target - network.node_grid[first_node(network, use)]
     return math.atan2(dy, dx)

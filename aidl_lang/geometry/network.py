@@ -50,21 +50,19 @@ NODE, UNKNOWN = -1, -2
 
 T = TypeVar("T")
 Ints = NDArray[np.int64]
-_NO_POINTS: Ints = np.zeros((0, 2), dtype=np.int64)
 Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
 
 @record(slots=True)
 class Edge:
-    """The part `t0..t1` of a curve between two nodes, with the grid points strictly between them."""
+    """The part `t0..t1` of a curve between two nodes."""
 
     curve: int
     t0: float
     t1: float
     start: int
     end: int
-    inner: Ints
 
 
 class TooCoarse(Exception):  # noqa: N818 (not an error of ours: what is under way begins again)
@@ -194,7 +192,7 @@ class Network:
             edge = self.edges[known]
             return known, self._same_way(edge, number, t0, t1, start)
         self._known[key] = len(self.edges)
-        self.edges.append(Edge(number, t0, t1, start, end, _NO_POINTS))
+        self.edges.append(Edge(number, t0, t1, start, end))
         return len(self.edges) - 1, True
 
     def _same_way(self, edge: Edge, number: int, t0: float, t1: float, start: int) -> bool:
@@ -208,46 +206,44 @@ class Network:
     # -- polylines and the way back ------------------------------------------------------------------------
 
     def _draw_polylines(self) -> None:
-        """Gives each edge its inner points, then indexes all."""
+        """Finds the points within each edge, then makes a sorted table of all grid points with the edge that
+        they lie inside of (-1 for nodes).
+        """
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
             _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
         ]
-        inner = np.array(counts, dtype=np.int64) - 1
-        number = np.repeat(np.arange(len(edges)), inner)
+        inner = self._sizes = np.array(counts, dtype=np.int64) - 1
         begins = np.cumsum(inner) - inner
+        number = np.repeat(np.arange(len(edges)), inner)
         share = (np.arange(1, len(number) + 1) - begins[number]) / (inner[number] + 1)
         parts = np.array([(e.curve, e.t0, e.t1 - e.t0) for e in edges]).reshape(-1, 3)[number]
         spots = self._table.at(parts[:, 0].astype(np.int64), parts[:, 1] + parts[:, 2] * share)[0]
-        grids = np.split(self.to_grid(spots), begins[1:])
-        self.edges = [
-            Edge(e.curve, e.t0, e.t1, e.start, e.end, grid) for e, grid in zip(edges, grids, strict=False)
-        ]
-        self._index()
+        nodes = np.array(self.nodes, dtype=float).reshape(-1, 2)
+        self._grid = self.to_grid(np.concatenate((nodes, spots)))
+        self._offset = begins + len(nodes) if edges else np.zeros(1, dtype=np.int64)
+        self.node_grid = self._grid[: len(nodes)]
+        keys, owner = pack(self._grid), np.concatenate((np.full(len(nodes), -1), number))
+        order = np.lexsort((owner, keys))
+        self._keys, self._owner, self._number = keys[order], owner[order], order
+        self._sides: tuple[Ints, Sides] | None = None
+        self._straight: dict[tuple[int, int], int] = {}
+        for k in np.flatnonzero(inner == 0).tolist():
+            edge = edges[k]
+            self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
+
+    def inner(self, use: Use) -> Ints:
+        """Returns the grid points strictly between the ends of an edge, in the direction of the use."""
+        begin = self._offset[use[0]]
+        found = self._grid[begin : begin + self._sizes[use[0]]]
+        return found if use[1] else found[::-1]
 
     def refine(self) -> None:
         """Cuts the curves finer whose chords crossed."""
         self._fine |= self.blurred
         self.blurred = set()
         self._draw_polylines()
-
-    def _index(self) -> None:
-        """Makes a sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
-        self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
-        inner = [e.inner for e in self.edges if len(e.inner)]
-        sizes = np.array([len(self.node_grid), *(len(e.inner) for e in self.edges)])
-        self._grid, self._sizes = np.concatenate([self.node_grid, *inner]), sizes[1:]
-        keys = pack(self._grid)
-        owner = np.repeat(np.arange(-1, len(self.edges)), sizes)
-        order = np.lexsort((owner, keys))
-        self._keys, self._owner, self._number = keys[order], owner[order], order
-        self._offset = np.cumsum(sizes)[:-1] if self.edges else np.zeros(1, dtype=np.int64)
-        self._sides: tuple[Ints, Sides] | None = None
-        self._straight: dict[tuple[int, int], int] = {}
-        for k, edge in enumerate(self.edges):
-            if not len(edge.inner):
-                self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
 
     def polyline(self, uses: Sequence[Use]) -> NDArray[np.float64]:
         """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
@@ -256,7 +252,7 @@ class Network:
             edge = self.edges[number]
             node = edge.start if forward else edge.end
             rows.append(self.node_grid[node : node + 1])
-            rows.append(edge.inner if forward else edge.inner[::-1])
+            rows.append(self.inner((number, forward)))
         return np.concatenate(rows).astype(np.float64) * GRID
 
     def piece(self, use: Use) -> Piece:
@@ -310,9 +306,9 @@ class Network:
         """Returns all sides of polylines, and the numbers of their edges."""
         if self._sides is None:
             lines = []
-            for edge in self.edges:
+            for number, edge in enumerate(self.edges):
                 nodes = self.node_grid[[edge.start, edge.end]]
-                line = np.concatenate((nodes[:1], edge.inner, nodes[1:])) * GRID
+                line = np.concatenate((nodes[:1], self.inner((number, True)), nodes[1:])) * GRID
                 lines.append(np.concatenate((line[:-1], line[1:]), axis=1))
             numbers = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
             self._sides = numbers, Sides(np.concatenate(lines))

@@ -234,7 +234,7 @@ def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], en
     if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
         forward = first == edge.start
         if edge.start == edge.end:
-            forward = int(place[begin[1]]) < len(edge.inner) / 2
+            forward = int(place[begin[1]]) < len(network.inner((number, True))) / 2
         t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
     else:
         t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
