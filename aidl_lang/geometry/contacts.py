@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations
 from typing import Literal
 
@@ -62,7 +62,7 @@ class Contacts:
     """The pairs of some bodies, whose sections are those of a network."""
 
     solids: Sequence[Solid] = ()
-    network: Network | None = field(default=None, repr=False, compare=False)
+    network: Network = field(default_factory=partial(Network, ()), repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, object]:
         """Returns what a pickle keeps: what is worked out on demand is worked out now."""
@@ -71,55 +71,44 @@ class Contacts:
     @cached_property
     def near(self) -> tuple[tuple[str, str], ...]:
         """The pairs that touch or overlap, as far as a reader can see."""
-        if self.network is None:
-            return ()
-        margin = max(UNNOTICED, 2 * self.network.tolerance)
-        pairs = sorted(near_pairs([solid.box for solid in self.solids], margin))
+        reach = max(UNNOTICED, self.network.tolerance)
+        pairs = sorted(near_pairs([solid.box for solid in self.solids], reach + self.network.tolerance))
+        couples = ((self.solids[i], self.solids[j]) for i, j in pairs)
         return tuple(
-            (self.solids[i].path, self.solids[j].path)
-            for i, j in pairs
-            if _is_close(self.network, self.solids[i], self.solids[j])
+            (a.path, b.path)
+            for a, b in couples
+            if _shared(self.network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
         )
 
     @cached_property
     def all(self) -> tuple[Contact, ...]:
         """All pairs (see above), in the order of the bodies."""
-        if self.network is None:
-            return ()
         pairs: Iterable[tuple[int, int]] = combinations(range(len(self.solids)), 2)
         if len(self.solids) > ALL_PAIRS:
             pairs = sorted(near_pairs([solid.box for solid in self.solids], NEAR * self.network.size))
         return tuple(_compare(self.network, self.solids[i], self.solids[j]) for i, j in pairs)
 
-    def nearest(self, path: str) -> tuple[float, str] | None:
-        """Returns the distance (mm) from a body to the nearest other, and its path; None if it is alone."""
+    def nearest(self, path: str) -> tuple[float, str]:
+        """Returns the distance (mm) from a body to the nearest other, and its path."""
         own = [solid.region for solid in self.solids if solid.path == path]
         others = [solid for solid in self.solids if solid.path != path]
-        if not others:
-            return None
         gap, place = nearest_region(own, [solid.region for solid in others])
         return gap, others[place].path
 
 
-def _is_close(network: Network, a: Solid, b: Solid) -> bool:
+def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
+    """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
     common = intersection(a.section, b.section)
-    if not is_nothing(common) and (not _is_thin(common) or area(trace(network, common).region) > 0):
-        return True
-    return lie_within(a.region, b.region, max(UNNOTICED, network.tolerance))
-
-
-def _is_thin(section: Section) -> bool:
-    """Tells whether an area is so thin that nothing of it may be left when it is traced."""
-    left, bottom, right, top = section.bounds()
-    return section.area() <= _THIN * section.num_contour() * ((right - left) + (top - bottom))
+    if is_nothing(common):
+        return 0.0
+    left, bottom, right, top = common.bounds()
+    thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
+    return common.area() if common.area() > thin and not exactly else area(trace(network, common).region)
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
-    common = intersection(a.section, b.section)
-    if not is_nothing(common):
-        shared = area(trace(network, common).region)
-        if shared > 0:
-            return Contact(a.path, b.path, "overlapping", area=shared)
+    if (shared := _shared(network, a, b, exactly=True)) > 0:
+        return Contact(a.path, b.path, "overlapping", area=shared)
     closest = region_distance(a.region, b.region)
     gap = closest[0] if closest and closest[0] > network.tolerance else None
     return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)

@@ -292,21 +292,29 @@ def _close_with_outlines(
     return used
 
 
+class Joined:
+    """Groups of things that hang together (union-find)."""
+
+    def __init__(self) -> None:
+        self._parent: dict[object, object] = {}
+
+    def root(self, thing: object) -> object:
+        while (above := self._parent.get(thing, thing)) != thing:
+            self._parent[thing] = thing = self._parent.get(above, above)
+        return thing
+
+    def join(self, one: object, other: object) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+
 def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
     """Returns the uses by connected part, in order of first mention."""
-    parent: dict[int, int] = {}
-
-    def root(node: int) -> int:
-        while parent.setdefault(node, node) != node:
-            parent[node] = parent[parent[node]]
-            node = parent[node]
-        return node
-
+    joined = Joined()
     for use in uses:
-        parent[root(first_node(network, use))] = root(last_node(network, use))
-    parts: dict[int, list[Use]] = defaultdict(list)
+        joined.join(first_node(network, use), last_node(network, use))
+    parts: dict[object, list[Use]] = defaultdict(list)
     for use in uses:
-        parts[root(first_node(network, use))].append(use)
+        parts[joined.root(first_node(network, use))].append(use)
     return list(parts.values())
 
 

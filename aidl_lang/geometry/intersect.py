@@ -54,9 +54,7 @@ def all_intersections(table: Table, pairs: Ints, tolerance: float) -> list[list[
     for part in _parts(np.flatnonzero(~is_plain.any(axis=1)), _SAMPLED_AT_ONCE):
         for row, t, s in _sampled(table, pairs[part], tolerance):
             found[part[row]].append((t, s, point(curves[pairs[part[row], 0]], t)))
-        for k in part.tolist():
-            found[k] = _apart(found[k], tolerance)
-    return found
+    return [_apart(crossings, tolerance) if len(crossings) > 1 else crossings for crossings in found]
 
 
 def _parts(numbers: Ints, at_once: int) -> Iterator[Ints]:
@@ -68,7 +66,7 @@ def _parts(numbers: Ints, at_once: int) -> Iterator[Ints]:
 def _carried(a: Piece, b: Piece, at: Sequence[float], tolerance: float) -> list[Crossing]:
     """Returns the crossings among the places at which b meets what carries a."""
     spots = [(s, point(b, s)) for s in at]
-    found = _apart([(t, s, p) for s, p in spots if (t := locate(a, p, tolerance)) is not None], tolerance)
+    found = [(t, s, p) for s, p in spots if (t := locate(a, p, tolerance)) is not None]
     may_lie = len(found) + sum(_on(a, p, tolerance) for p in ends(b)) > 1
     return [] if may_lie and _lie_on_each_other(a, b, tolerance) else found
 
@@ -210,11 +208,9 @@ def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
 
 def _may_lie(near: Mask, closed: Mask) -> Mask:
     """Tells of pairs of curves, whose near samples and kinds are given, whether they may share a stretch."""
-    ours, theirs = (
-        near[:, [0, -1]].any(axis=2) & ~closed[:, :1],
-        near[:, :, [0, -1]].any(axis=1) & ~closed[:, 1:],
-    )
-    may: Mask = (np.count_nonzero(np.hstack((ours, theirs)), axis=1) > 1) | closed.all(axis=1)
+    found = near[:, [0, -1]].any(axis=2), near[:, :, [0, -1]].any(axis=1)
+    count = sum(np.count_nonzero(found[k] & ~closed[:, k : k + 1], axis=1) for k in (0, 1))
+    may: Mask = (count > 1) | closed.all(axis=1)
     return may
 
 

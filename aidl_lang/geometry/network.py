@@ -139,8 +139,8 @@ class Network:
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
-        own_nodes, places = np.array(own_ends, dtype=np.int64), np.array(self.nodes)
-        own_nodes, places = own_nodes.reshape(-1, 2), places.reshape(-1, 2)
+        own_nodes = np.array(own_ends, dtype=np.int64).reshape(-1, 2)
+        places = np.array(self.nodes).reshape(-1, 2)
         hulls = Hulls(self._table, self.tolerance)
         pairs = hulls.meeting(near_rows(self.boxes, self.tolerance), own_nodes, places)
         is_cubic = np.array([isinstance(curve, Bezier) for curve in self.curves], dtype=np.bool_)
@@ -228,10 +228,10 @@ class Network:
         order = np.lexsort((owner, keys))
         self._keys, self._owner, self._number = keys[order], owner[order], order
         self._sides: tuple[Ints, Sides] | None = None
-        self._straight: dict[tuple[int, int], int] = {}
+        self.straight: dict[tuple[int, int], int] = {}  # the line edge between two nodes
         for k in np.flatnonzero(inner == 0).tolist():
             edge = edges[k]
-            self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
+            self.straight[edge.start, edge.end] = self.straight[edge.end, edge.start] = k
 
     def inner(self, use: Use) -> Ints:
         """Returns the grid points strictly between the ends of an edge, in the direction of the use."""
@@ -313,10 +313,6 @@ class Network:
             numbers = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
             self._sides = numbers, Sides(np.concatenate(lines))
         return self._sides
-
-    def straight(self, start: int, end: int, default: int) -> int:
-        """Returns the line edge between two nodes."""
-        return self._straight.get((start, end), default)
 
 
 def with_finer_chords(network: Network, work: Callable[[], T]) -> T:

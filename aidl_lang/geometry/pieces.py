@@ -19,7 +19,7 @@ from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Solid
 from aidl_lang.geometry.distance import lie_within, nearest_region
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.faces import OwnFace
+from aidl_lang.geometry.faces import Joined, OwnFace
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.notes import marked_detached
@@ -121,7 +121,7 @@ def _groups(
     pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[tuple[str, str]]
 ) -> list[list[_Piece]]:
     """Returns groups of pieces that hold together, directly or by other bodies; the largest group first."""
-    joined = _Joined()
+    joined = Joined()
     for pair in pairs:
         if own.path not in pair:
             joined.join(*pair)
@@ -141,21 +141,6 @@ def _groups(
     for number, piece in enumerate(pieces):
         groups.setdefault(joined.root(number), []).append(piece)
     return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
-
-
-class _Joined:
-    """Groups of things that hang together (union-find)."""
-
-    def __init__(self) -> None:
-        self._parent: dict[object, object] = {}
-
-    def root(self, thing: object) -> object:
-        while (above := self._parent.get(thing, thing)) != thing:
-            thing = above
-        return thing
-
-    def join(self, one: object, other: object) -> None:
-        self._parent[self.root(one)] = self.root(other)
 
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:

@@ -30,8 +30,6 @@ from aidl_lang.geometry.sections import Section
 T = TypeVar("T")
 STRAIGHT = -3
 """Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
-_ROUNDING = 1e-12
-"""Difference of parameters that is none."""
 
 
 @record(slots=True)
@@ -144,7 +142,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
     between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
     ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
-    edges[between] = [network.straight(a, b, STRAIGHT) for a, b in ways]
+    edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
     # Chords that cross where their curves only touch leave vertices unknown to the network.
     changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
     unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
@@ -278,7 +276,7 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
         return None
     if a.t1 == b.t0:
         return Run(a.curve, a.t0, b.t1, a.start, b.end)
-    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= _ROUNDING:
+    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
         return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
     return None
 
