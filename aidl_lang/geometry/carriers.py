@@ -52,9 +52,8 @@ def on_carriers(
     touches = is_near & (is_inner | ((at == 0) & table.is_closed[curves[row]]))
     k, roots = _zeros(height, row, at, ~(is_near & is_inner))
     found: list[list[float]] = [[] for _ in carriers]
-    for number, t in zip(
-        [*row[touches].tolist(), *k.tolist()], [*at[touches].tolist(), *roots.tolist()], strict=True
-    ):
+    numbers, places = np.concatenate((row[touches], k)), np.concatenate((at[touches], roots))
+    for number, t in zip(numbers.tolist(), places.tolist(), strict=True):
         found[number].append(t)
     return found
 

@@ -18,7 +18,7 @@ from aidl_lang.geometry.contacts import Contact, Contacts, Solid
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, region_of
+from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -39,7 +39,7 @@ from aidl_lang.geometry.seams import inner_seams, visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
-from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.geometry.trace import Traced, trace, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
@@ -404,7 +404,7 @@ def _inked(
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)
         else:
-            seen.add(_array(shape.geometry.name))
+            seen.add(shape.geometry.name.partition("[")[0])
         if by is None and shape.geometry.type == LETTERING:
             share, over_it = ground.covered_part(numbers, place)
             if share >= COVERED:
@@ -419,7 +419,7 @@ def _inked(
             yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
-        if whole := [name for name in names if _array(name) not in seen]:
+        if whole := [name for name in names if name.partition("[")[0] not in seen]:
             notes.append(covered_note(drawing, whole, by))
 
 
@@ -432,21 +432,20 @@ def _told_apart(
     drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
     parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
     filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
-    inked = (
-        (shape.geometry, [(leaf, network.curves[k]) for leaf, k in shape.leaves if id(leaf) in filled])
+    inked = [
+        Shape(shape.geometry, tuple((leaf, k) for leaf, k in shape.leaves if id(leaf) in filled))
         for shape in shapes
-    )
-    region, loose = region_of((g, leaves) for g, leaves in inked if leaves)
+    ]
+    found, before = own_faces(network, [shape for shape in inked if shape.leaves]), len(network.blurred)
+    region, loose = trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
+    if len(network.blurred) > before:  # small ones have crossing chords in a large drawing
+        known = ((s.geometry, [(leaf, network.curves[k]) for leaf, k in s.leaves]) for s in inked)
+        region, loose = region_of((g, leaves) for g, leaves in known if leaves)
     filled -= {id(leaf) for leaf in loose}
     if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
         yield lines, ()
     if region:
         yield region.pieces, region.faces
-
-
-def _array(name: str) -> str:
-    """Returns the name of an array without the index of one of its members."""
-    return name.partition("[")[0]
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:
