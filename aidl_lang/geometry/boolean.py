@@ -16,7 +16,8 @@ from aidl_lang.geometry.nearness import near_rows
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, union
-from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.separation import Hulls
+from aidl_lang.geometry.tables import Table
 from aidl_lang.geometry.trace import trace
 
 
@@ -62,8 +63,7 @@ def _lie_apart(a: Region, b: Region) -> bool:
     tolerance = RELATIVE_TOLERANCE * float(np.ptp(boxes.reshape(-1, 2), axis=0).max(initial=0.0))
     near = near_rows(boxes, tolerance)
     near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
-    own_ends = np.arange(2 * len(curves)).reshape(-1, 2)  # they share none
-    open_pairs = meeting(curves, near, tolerance, own_ends, np.zeros((0, 2)))
+    open_pairs = Hulls(Table(curves), tolerance).meeting(near)
     if any(meet(curves[i], curves[j], tolerance) for i, j in open_pairs.tolist()):
         return False
     return not (_may_hold(a, b) or _may_hold(b, a))

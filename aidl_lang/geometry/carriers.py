@@ -1,112 +1,115 @@
-"""Where a curve meets the endless line or the whole circle that carries another: its distance from that is a
-function of its parameter alone, which has one zero at most between two extremes.
+"""Where curves meet the endless lines or the whole circles that carry others: their distance from these is a
+function of their parameter alone, which has one zero at most between two extremes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-from numpy.polynomial import polynomial
+from numpy.typing import NDArray
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, is_closed, point
+from aidl_lang.geometry.curves import Arc, Circle, Line
+from aidl_lang.geometry.tables import Floats, Ints, Table, cross, dot, long
 
-_POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
-"""Coefficients of 1, t, t² and t³ of a cubic, from its control points."""
-_MARKS = [k / 64 for k in range(65)]
+Function = Callable[[Ints, Floats], Floats]
+_STEPS = 32
+"""Steps along a curve, in each of which the rate of its distance has one extreme at most."""
+_LAST = 1e-13
+"""Step of a secant after which the next one is beneath the last digit."""
 
 
-def on_carrier(carried: Line | Arc | Circle, curve: Piece, tolerance: float) -> Iterator[float]:
-    """Yields the parameters at which a curve crosses what carries another, or comes within the tolerance and
-    turns away.
+def on_carriers(
+    carriers: Sequence[Line | Arc | Circle], table: Table, curves: Ints, tolerance: float
+) -> list[list[float]]:
+    """Returns the parameters at which each of some curves crosses what carries another, or comes within the
+    tolerance and turns away.
     """
-    away, slope = _distance(carried)
+    is_line = np.array([isinstance(carrier, Line) for carrier in carriers], dtype=np.bool_)
+    origin, way, radius = np.split(np.array([_row(carrier) for carrier in carriers]), [2, 4], axis=1)
 
-    def height(t: float) -> float:
-        return away(point(curve, t))
+    def height(k: Ints, t: Floats) -> Floats:
+        e = table.at(curves[k], t)[0] - origin[k]
+        return np.where(is_line[k], cross(way[k], e), long(e) - radius[k, 0])
 
-    def rise(t: float) -> float:
-        return slope(point(curve, t), derivative(curve, t))
+    def rise(k: Ints, t: Floats) -> Floats:
+        spots, ways = table.at(curves[k], t, 1)
+        return np.where(is_line[k], cross(way[k], ways), dot(spots - origin[k], ways))
 
-    turns = _turns_of_cubic(carried, curve) if isinstance(curve, Bezier) else list(_turns(rise))
-    knots = [(t, height(t)) for t in sorted({0.0, *turns, 1.0})]
-    touches = {t for t, h in knots[1:-1] if abs(h) <= tolerance}
-    yield from touches
-    for (t, g), (s, h) in pairwise(knots):
-        if (g > 0) != (h > 0) and not {t, s} & touches:
-            yield _root(height, t, s)
-    if is_closed(curve) and abs(knots[0][1]) <= tolerance:
-        yield 0.0
+    def bend(k: Ints, t: Floats) -> Floats:
+        spots, ways, turns = table.at(curves[k], t, 2)
+        return np.where(is_line[k], cross(way[k], turns), dot(ways, ways) + dot(spots - origin[k], turns))
+
+    every = np.arange(len(curves))
+    marks = np.repeat(every, _STEPS + 1), np.tile(np.linspace(0, 1, _STEPS + 1), len(curves))
+    k, turns = _zeros(rise, *_merged(*marks, *_zeros(bend, *marks)))
+    inner = (turns > 0) & (turns < 1)
+    row, at = _merged(np.repeat(every, 2), np.tile((0.0, 1.0), len(curves)), k[inner], turns[inner])
+    high = height(row, at)
+    is_near, is_inner = np.abs(high) <= tolerance, (at > 0) & (at < 1)
+    touches = is_near & (is_inner | ((at == 0) & table.is_closed[curves[row]]))
+    k, roots = _zeros(height, row, at, ~(is_near & is_inner))
+    found: list[list[float]] = [[] for _ in carriers]
+    numbers, places = np.concatenate((row[touches], k)), np.concatenate((at[touches], roots))
+    for number, t in zip(numbers.tolist(), places.tolist(), strict=True):
+        found[number].append(t)
+    return found
 
 
-def _distance(
-    carried: Line | Arc | Circle,
-) -> tuple[Callable[[Vec], float], Callable[[Vec, Vec], float]]:
-    """Returns the distance of a point from a line, positive on its left, or from a circle, positive outside,
-    and the rate at which it grows for a point on its way.
+def _row(carrier: Line | Arc | Circle) -> tuple[float, ...]:
+    """Returns a point, the direction of a line, and a radius."""
+    if isinstance(carrier, Line):
+        (x, y), (u, v) = carrier.start, carrier.end
+        size = math.dist(carrier.start, carrier.end)
+        return x, y, (u - x) / size, (v - y) / size, 0.0
+    return *carrier.center, 0.0, 0.0, carrier.radius
+
+
+def _merged(row: Ints, at: Floats, *more: NDArray[Any]) -> tuple[Ints, Floats]:
+    """Returns places on curves, with the numbers of these, in order with some more."""
+    row, at = np.concatenate((row, more[0])), np.concatenate((at, more[1]))
+    order = np.lexsort((at, row))
+    return row[order], at[order]
+
+
+def _zeros(
+    of: Function, row: Ints, at: Floats, asked: NDArray[np.bool_] | None = None
+) -> tuple[Ints, Floats]:
+    """Returns the places at which functions change their sign, between neighbours among some places in
+    order, both asked for.
     """
-    if isinstance(carried, Line):
-        (x, y), (dx, dy) = carried.start, _direction(carried)
-        return lambda p: dx * (p[1] - y) - dy * (p[0] - x), lambda p, way: dx * way[1] - dy * way[0]
-    (x, y), r = carried.center, carried.radius
-
-    def grows(p: Vec, way: Vec) -> float:
-        return ((p[0] - x) * way[0] + (p[1] - y) * way[1]) / (math.hypot(p[0] - x, p[1] - y) or 1.0)
-
-    return lambda p: math.hypot(p[0] - x, p[1] - y) - r, grows
+    is_above = of(row, at) > 0
+    changes = (row[1:] == row[:-1]) & (is_above[1:] != is_above[:-1])
+    if asked is not None:
+        changes &= asked[1:] & asked[:-1]
+    before = np.flatnonzero(changes)
+    return row[before], _roots(of, row[before], at[before], at[before + 1])
 
 
-def _direction(line: Line) -> Vec:
-    (x, y), (u, v) = line.start, line.end
-    length = math.hypot(u - x, v - y)
-    return (u - x) / length, (v - y) / length
-
-
-def _turns_of_cubic(carried: Line | Arc | Circle, curve: Bezier) -> list[float]:
-    """Returns the parameters within 0..1 at which the distance of a cubic has an extreme: the roots of a
-    polynomial, of (B - c)·B' for a circle about c.
+def _roots(of: Function, k: Ints, low: Floats, high: Floats) -> Floats:
+    """Returns where functions that change their sign between two places are zero, by secants through them;
+    the value at a place that stays twice counts half (the Illinois method).
     """
-    origin = carried.start if isinstance(carried, Line) else carried.center
-    x, y = (_POWERS @ (np.array((curve.p0, curve.p1, curve.p2, curve.p3)) - origin)).T
-    if isinstance(carried, Line):
-        dx, dy = _direction(carried)
-        slope = polynomial.polyder(dx * y - dy * x)
-    else:
-        slope = np.convolve(x, polynomial.polyder(x)) + np.convolve(y, polynomial.polyder(y))
-    # Leading coefficients that are nothing but rounding would give roots far away.
-    slope[np.abs(slope) <= 1e-14 * np.abs(slope).max(initial=0.0)] = 0.0
-    roots = polynomial.polyroots(np.trim_zeros(slope, "b")) if slope.any() else np.empty(0)
-    return [float(root.real) for root in roots if abs(root.imag) <= 1e-6 and 0 < root.real < 1]
-
-
-def _turns(rise: Callable[[float], float]) -> Iterator[float]:
-    """Yields the parameters at which a distance has an extreme, between places where it rises and falls."""
-    rises = [rise(t) for t in _MARKS]
-    for (t, g), (s, h) in pairwise(zip(_MARKS, rises, strict=True)):
-        if (g > 0) != (h > 0):
-            yield _root(rise, t, s)
-
-
-def _root(of: Callable[[float], float], low: float, high: float) -> float:
-    """Returns where a function that changes its sign between two places is zero, by secants through them; the
-    value at a place that stays twice counts half (the Illinois method).
-    """
-    below, above = of(low), of(high)
-    if not below or not above:
-        return high if below else low
-    t, stays_low = low, False
+    below, above = of(k, low), of(k, high)
+    t = np.where(below == 0, low, high)
+    left = np.flatnonzero((below != 0) & (above != 0))
+    low, high, before = low.copy(), high.copy(), low.copy()
+    stays_low = np.zeros(len(k), dtype=np.bool_)
     for _ in range(100):
-        before, t = t, high - above * (high - low) / (above - below)
-        value = of(t)
-        if not value or abs(t - before) <= 1e-16:
+        if not len(left):
             break
-        if (value > 0) == (above > 0):
-            below = below / 2 if stays_low else below
-            high, above, stays_low = t, value, True
-        else:
-            above = above if stays_low else above / 2
-            low, below, stays_low = t, value, False
+        a, b = above[left], below[left]
+        t[left] = high[left] - a * (high[left] - low[left]) / (a - b)
+        value = of(k[left], t[left])
+        is_upper = (value > 0) == (a > 0)
+        up, down = left[is_upper], left[~is_upper]
+        below[up[stays_low[up]]] /= 2
+        above[down[~stays_low[down]]] /= 2
+        high[up], above[up], stays_low[up] = t[up], value[is_upper], True
+        low[down], below[down], stays_low[down] = t[down], value[~is_upper], False
+        goes_on = (value != 0) & (np.abs(t[left] - before[left]) > _LAST)
+        before[left] = t[left]
+        left = left[goes_on]
     return t

@@ -12,11 +12,12 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, part, point
-from aidl_lang.geometry.intersect import intersections
+from aidl_lang.geometry.intersect import Crossing, all_intersections
 from aidl_lang.geometry.nearness import inside, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.separation import Hulls
+from aidl_lang.geometry.tables import Table
 from aidl_lang.geometry.tessellate import region_polygons
 
 
@@ -52,7 +53,7 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
     tolerance = RELATIVE_TOLERANCE * size
     borders = _borders(curves, region, tolerance)
-    stretches = [_stretches(c, own, tolerance) for c, own in zip(curves, borders, strict=True)]
+    stretches = [_stretches(c, *own, tolerance) for c, own in zip(curves, borders, strict=True)]
     spots = [point(c, _middle(s)) for c, of in zip(curves, stretches, strict=True) for s in of]
     polygons = region_polygons(region, CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
@@ -62,27 +63,30 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     ]
 
 
-def _borders(curves: Sequence[Piece], region: Region, tolerance: float) -> list[list[Piece]]:
-    """Returns for each curve the pieces of the border that it may meet."""
+def _borders(
+    curves: Sequence[Piece], region: Region, tolerance: float
+) -> list[tuple[list[Piece], list[Crossing]]]:
+    """Returns for each curve the pieces of the border that it may meet, and where it does."""
     every, count = [*curves, *region.pieces], len(curves)
     near = near_rows([bounds(c) for c in every], tolerance)
     near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
-    own_ends = np.arange(2 * len(every)).reshape(-1, 2)  # they share none
-    found: list[list[Piece]] = [[] for _ in curves]
-    for i, j in meeting(every, near, tolerance, own_ends, np.zeros((0, 2))).tolist():
-        found[i].append(every[j])
+    table = Table(every)
+    pairs = Hulls(table, tolerance).meeting(near)
+    found: list[tuple[list[Piece], list[Crossing]]] = [([], []) for _ in curves]
+    for (i, j), crossings in zip(pairs.tolist(), all_intersections(table, pairs, tolerance), strict=True):
+        found[i][0].append(every[j])
+        found[i][1].extend(crossings)
     return found
 
 
-def _stretches(curve: Piece, borders: Sequence[Piece], tolerance: float) -> list[_Stretch]:
+def _stretches(
+    curve: Piece, borders: Sequence[Piece], crossings: Sequence[Crossing], tolerance: float
+) -> list[_Stretch]:
     """Returns a curve in parts between the places where it meets the border."""
     checkpoint()
-    cuts: list[tuple[float, Vec]] = []
-    for border in borders:
-        cuts += [(t, p) for t, _, p in intersections(curve, border, tolerance)]
-        for p in ends(border):
-            if (t := locate(curve, p, tolerance)) is not None:
-                cuts.append((t, p))
+    cuts = [(t, p) for t, _, p in crossings]
+    spots = (p for border in borders for p in ends(border))
+    cuts += [(t, p) for p in spots if (t := locate(curve, p, tolerance)) is not None]
     start, end = ends(curve)
     cuts.sort(key=lambda cut: cut[0])
     if not is_closed(curve):

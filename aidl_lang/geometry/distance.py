@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, nearest, point, points, second_derivative
+from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.region import Region
 
 _SAMPLES = np.linspace(0, 1, 49)
+Floats = NDArray[np.float64]
 Closest = tuple[float, Vec, Vec]
 """A distance and the points on either side where it is found."""
 
@@ -20,8 +24,7 @@ def region_distance(a: Region, b: Region) -> Closest | None:
     """Returns the distance between the outlines of two regions that do not overlap; None if one is empty."""
     if not (a and b):
         return None
-    apart = np.maximum(a.boxes[:, None, :2] - b.boxes[:, 2:], b.boxes[:, :2] - a.boxes[:, None, 2:])
-    away = np.hypot(*np.maximum(apart, 0.0).reshape(-1, 2).T)
+    away = _apart(a.boxes, b.boxes).ravel()
     # Pairs of pieces, those first whose boxes are nearest; few are nearer than the first two pieces.
     first = int(np.argmin(away))
     best = _between(a, b, first)
@@ -33,6 +36,32 @@ def region_distance(a: Region, b: Region) -> Closest | None:
         if k != first and (found := _between(a, b, k))[0] < best[0]:
             best = found
     return best
+
+
+def lie_within(a: Region, b: Region, reach: float) -> bool:
+    """Tells whether the outlines of two regions that do not overlap come as close to each other as that."""
+    away = _apart(a.boxes, b.boxes).ravel()
+    near = np.flatnonzero(away <= reach)
+    return any(_between(a, b, k)[0] <= reach for k in near[np.argsort(away[near], kind="stable")].tolist())
+
+
+def nearest_region(ours: Sequence[Region], others: Sequence[Region]) -> tuple[float, int]:
+    """Returns the least distance of outlines on either side, and the place of the other one's region."""
+    best = math.inf, 0
+    away = _apart(*(np.array([region_bounds(region) for region in side]) for side in (ours, others)))
+    for pair in np.argsort(away, axis=None, kind="stable").tolist():
+        i, j = divmod(pair, len(others))
+        if away[i, j] >= best[0]:
+            break
+        if (found := region_distance(ours[i], others[j])) is not None and found[0] < best[0]:
+            best = found[0], j
+    return best
+
+
+def _apart(a: Floats, b: Floats) -> Floats:
+    """Returns the distance of each box of a table from each of another."""
+    gaps = np.maximum(np.maximum(a[:, None, :2] - b[:, 2:], b[:, :2] - a[:, None, 2:]), 0.0)
+    return np.hypot(gaps[..., 0], gaps[..., 1])
 
 
 def _between(a: Region, b: Region, pair: int) -> Closest:

@@ -15,11 +15,11 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
-from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.contacts import Contact, Contacts, Solid
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, region_of
+from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -40,7 +40,7 @@ from aidl_lang.geometry.seams import inner_seams, visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
-from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.geometry.trace import Traced, trace, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
@@ -155,7 +155,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for path in (m.structure.path for m in masses)
     )
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
-    touching = contacts(network, solids)
+    touching = Contacts(solids, network)
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
@@ -195,10 +195,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
+        notes += loose_piece_notes(root, walk, masses, solids, touching.near)
         notes += unseen
         notes += _covered_letters(root, walk, masses, ground, order)
-        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
+        notes += fallen_piece_notes(root, walk, masses, solids, touching.near)
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.thin import thin_wall_notes
@@ -418,7 +418,7 @@ def _inked(
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)
         else:
-            seen.add(_array(shape.geometry.name))
+            seen.add(shape.geometry.name.partition("[")[0])
         if by is None and shape.geometry.type == LETTERING:
             share, over_it = ground.covered_part(numbers, place)
             if share >= COVERED:
@@ -433,7 +433,7 @@ def _inked(
             yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
-        if whole := [name for name in names if _array(name) not in seen]:
+        if whole := [name for name in names if name.partition("[")[0] not in seen]:
             notes.append(covered_note(drawing, whole, by))
 
 
@@ -446,21 +446,20 @@ def _told_apart(
     drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
     parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
     filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
-    inked = (
-        (shape.geometry, [(leaf, network.curves[k]) for leaf, k in shape.leaves if id(leaf) in filled])
+    inked = [
+        Shape(shape.geometry, tuple((leaf, k) for leaf, k in shape.leaves if id(leaf) in filled))
         for shape in shapes
-    )
-    region, loose = region_of((g, leaves) for g, leaves in inked if leaves)
+    ]
+    found, before = own_faces(network, [shape for shape in inked if shape.leaves]), len(network.blurred)
+    region, loose = trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
+    if len(network.blurred) > before:  # small ones have crossing chords in a large drawing
+        known = ((s.geometry, [(leaf, network.curves[k]) for leaf, k in s.leaves]) for s in inked)
+        region, loose = region_of((g, leaves) for g, leaves in known if leaves)
     filled -= {id(leaf) for leaf in loose}
     if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
         yield lines, ()
     if region:
         yield region.pieces, region.faces
-
-
-def _array(name: str) -> str:
-    """Returns the name of an array without the index of one of its members."""
-    return name.partition("[")[0]
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:

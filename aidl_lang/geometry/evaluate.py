@@ -114,8 +114,9 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
         straight: NDArray[np.float64] = start + np.multiply.outer(t, end - start)
         return straight
     if isinstance(curve, Bezier):
-        weights = _WEIGHTS if t is _SAMPLED else _weights(t)
-        curved: NDArray[np.float64] = weights @ np.array((curve.p0, curve.p1, curve.p2, curve.p3))
+        curved: NDArray[np.float64] = (_WEIGHTS if t is _SAMPLED else _weights(t)) @ np.array(
+            (curve.p0, curve.p1, curve.p2, curve.p3)
+        )
         return curved
     first, sweep = round_range(curve)
     u = first + sweep * t
@@ -125,21 +126,6 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
     c, s_ = math.cos(curve.angle), math.sin(curve.angle)
     x, y = curve.rx * cos, curve.ry * sin
     return np.stack((curve.center[0] + c * x - s_ * y, curve.center[1] + s_ * x + c * y), axis=1)
-
-
-def round_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns a point on each of some circles and arcs; a row has the centre, radius, first angle and
-    sweep.
-    """
-    x, y, radius, first, sweep = rows.T
-    u = first + sweep * t
-    return np.stack((x + radius * np.cos(u), y + radius * np.sin(u)), axis=1)
-
-
-def cubic_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns a point on each of some cubics; a row has the control points."""
-    spots: NDArray[np.float64] = (_weights(t)[:, :, None] * rows.reshape(-1, 4, 2)).sum(axis=1)
-    return spots
 
 
 def derivative(curve: Piece, t: float) -> Vec:

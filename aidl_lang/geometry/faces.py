@@ -239,8 +239,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 def _direction(network: Network, use: Use) -> float:
     """Returns the angle at which the polyline of an edge leaves its start."""
-    edge = network.edges[use[0]]
-    inner = edge.inner if use[1] else edge.inner[::-1]
+    inner = network.inner(use)
     target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
     dx, dy = target - network.node_grid[first_node(network, use)]
     return math.atan2(dy, dx)
@@ -293,21 +292,29 @@ def _close_with_outlines(
     return used
 
 
+class Joined:
+    """Groups of things that hang together (union-find)."""
+
+    def __init__(self) -> None:
+        self._parent: dict[object, object] = {}
+
+    def root(self, thing: object) -> object:
+        while (above := self._parent.get(thing, thing)) != thing:
+            self._parent[thing] = thing = self._parent.get(above, above)
+        return thing
+
+    def join(self, one: object, other: object) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+
 def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
     """Returns the uses by connected part, in order of first mention."""
-    parent: dict[int, int] = {}
-
-    def root(node: int) -> int:
-        while parent.setdefault(node, node) != node:
-            parent[node] = parent[parent[node]]
-            node = parent[node]
-        return node
-
+    joined = Joined()
     for use in uses:
-        parent[root(first_node(network, use))] = root(last_node(network, use))
-    parts: dict[int, list[Use]] = defaultdict(list)
+        joined.join(first_node(network, use), last_node(network, use))
+    parts: dict[object, list[Use]] = defaultdict(list)
     for use in uses:
-        parts[root(first_node(network, use))].append(use)
+        parts[joined.root(first_node(network, use))].append(use)
     return list(parts.values())
 
 

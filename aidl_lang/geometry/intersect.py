@@ -1,5 +1,5 @@
 """The points where two curves meet: closed forms for lines and circles, `carriers` for one of those and
-another curve, Newton from a sampling for two others.
+another curve, Newton from a sampling for two others. Of the last two kinds many pairs are worked out at once.
 
 A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here; what
 they share begins and ends at end points, which `network` places on both.
@@ -8,40 +8,65 @@ they share begins and ends at end points, which `network` places on both.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.carriers import on_carrier
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import (
-    derivative,
-    ends,
-    is_closed,
-    locate,
-    point,
-    points,
-    second_derivative,
-)
+from aidl_lang.common.running import checkpoint
+from aidl_lang.geometry.carriers import on_carriers
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import ends, is_closed, locate, point
+from aidl_lang.geometry.tables import Floats, Ints, Table, cross, dot, long
 
-_SAMPLES = {Line: 1, Arc: 32, Circle: 48, Ellipse: 64, Bezier: 32}
+_STEPS = 64
+"""Steps along a curve between its samples."""
+_LAST = 1e-11
+"""Step of Newton's method after which the next one is beneath the last digit."""
+_AT_ONCE, _SAMPLED_AT_ONCE = 1024, 64
+"""Pairs that are compared in one step, which bounds the memory."""
 Crossing = tuple[float, float, Vec]
+Mask = NDArray[np.bool_]
+Step = Callable[[Floats, Floats], tuple[Floats, Floats]]
 
 
 def intersections(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
     """Crossings and touches as (parameter on a, parameter on b, point)."""
-    if isinstance(a, Line) and isinstance(b, Line):
-        return _line_line(a, b, tolerance)
-    if isinstance(a, Line | Arc | Circle) and isinstance(b, Line | Arc | Circle):
-        candidates = _round_candidates(a, b, tolerance)
-        return _on_both(a, b, candidates, tolerance)
-    if isinstance(b, Line | Arc | Circle):
-        return [(t, s, p) for s, t, p in intersections(b, a, tolerance)]
-    if not isinstance(a, Line | Arc | Circle):
-        return _sampled(a, b, tolerance)
-    crossings = [(locate(a, point(b, s), tolerance), s, point(b, s)) for s in on_carrier(a, b, tolerance)]
-    found = _apart([(t, s, p) for t, s, p in crossings if t is not None], tolerance)
+    return all_intersections(Table([a, b]), np.array([[0, 1]]), tolerance)[0]
+
+
+def all_intersections(table: Table, pairs: Ints, tolerance: float) -> list[list[Crossing]]:
+    """Returns for each of some pairs of curves of a table where they meet."""
+    curves, found = table.curves, list[list[Crossing]]([] for _ in pairs)
+    is_plain = np.array([isinstance(curve, Line | Arc | Circle) for curve in curves], dtype=np.bool_)[pairs]
+    for k in np.flatnonzero(is_plain.all(axis=1)).tolist():
+        a, b = (curves[number] for number in pairs[k].tolist())
+        found[k] = _plain(a, b, tolerance)
+    for part in _parts(np.flatnonzero(is_plain[:, 0] != is_plain[:, 1]), _AT_ONCE):
+        is_second = is_plain[part, 1]
+        plain, other = pairs[part, is_second.astype(int)], pairs[part, 1 - is_second]
+        carriers = [curves[number] for number in plain.tolist()]
+        at = on_carriers(carriers, table, other, tolerance)
+        for k, a, number, ts in zip(part.tolist(), carriers, other.tolist(), at, strict=True):
+            crossings = _carried(a, curves[number], ts, tolerance) if ts else []
+            found[k] = crossings if is_plain[k, 0] else [(t, s, p) for s, t, p in crossings]
+    for part in _parts(np.flatnonzero(~is_plain.any(axis=1)), _SAMPLED_AT_ONCE):
+        for row, t, s in _sampled(table, pairs[part], tolerance):
+            found[part[row]].append((t, s, point(curves[pairs[part[row], 0]], t)))
+    return [_apart(crossings, tolerance) if len(crossings) > 1 else crossings for crossings in found]
+
+
+def _parts(numbers: Ints, at_once: int) -> Iterator[Ints]:
+    for begin in range(0, len(numbers), at_once):
+        checkpoint()
+        yield numbers[begin : begin + at_once]
+
+
+def _carried(a: Piece, b: Piece, at: Sequence[float], tolerance: float) -> list[Crossing]:
+    """Returns the crossings among the places at which b meets what carries a."""
+    spots = [(s, point(b, s)) for s in at]
+    found = [(t, s, p) for s, p in spots if (t := locate(a, p, tolerance)) is not None]
     may_lie = len(found) + sum(_on(a, p, tolerance) for p in ends(b)) > 1
     return [] if may_lie and _lie_on_each_other(a, b, tolerance) else found
 
@@ -55,13 +80,17 @@ def meet(a: Piece, b: Piece, tolerance: float) -> bool:
     )
 
 
-def _on_both(a: Piece, b: Piece, candidates: list[Vec], tolerance: float) -> list[Crossing]:
-    found = []
-    for p in candidates:
-        t, s = locate(a, p, tolerance), locate(b, p, tolerance)
-        if t is not None and s is not None:
-            found.append((t, s, p))
-    return found
+def _plain(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
+    """Returns the crossings of lines, arcs and circles, among those of what carries them."""
+    if isinstance(a, Line) and isinstance(b, Line):
+        return _line_line(a, b, tolerance)
+    if isinstance(b, Line):
+        return [(t, s, p) for s, t, p in _plain(b, a, tolerance)]
+    assert isinstance(a, Line | Arc | Circle)
+    assert isinstance(b, Arc | Circle)
+    spots = line_circle(a, b, tolerance) if isinstance(a, Line) else circle_circle(a, b, tolerance)
+    places = ((locate(a, p, tolerance), locate(b, p, tolerance), p) for p in spots)
+    return [(t, s, p) for t, s, p in places if t is not None and s is not None]
 
 
 def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
@@ -78,16 +107,6 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
         return []
     t, s = min(1.0, max(0.0, t)), min(1.0, max(0.0, s))
     return [(t, s, point(a, t))]
-
-
-def _round_candidates(a: Line | Arc | Circle, b: Line | Arc | Circle, tolerance: float) -> list[Vec]:
-    """Returns meeting points of the endless lines and whole circles that carry the two curves."""
-    if isinstance(a, Line):
-        assert not isinstance(b, Line)
-        return line_circle(a, b, tolerance)
-    if isinstance(b, Line):
-        return line_circle(b, a, tolerance)
-    return circle_circle(a, b, tolerance)
 
 
 def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
@@ -123,22 +142,37 @@ def circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Ve
     return [(x - h * dy, y + h * dx), (x + h * dy, y - h * dx)]
 
 
-def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
-    """Crossings and touches, from those of the two polylines and from where these come nearest."""
-    if _lie_on_each_other(a, b, tolerance):
-        return []
-    na, nb = _SAMPLES.get(type(a), 48), _SAMPLES.get(type(b), 48)
-    p, q = points(a, np.linspace(0, 1, na + 1)), points(b, np.linspace(0, 1, nb + 1))
-    found: list[Crossing] = []
-    for t, s in _crossed(p, q):
-        crossing = _newton(a, b, t / na, s / nb, tolerance)
-        if crossing:
-            found.append(_touch_beside(a, b, crossing, tolerance) or crossing)
-    for i, j in _nearest_samples(p, q):
-        touch = _touch(a, b, i / na, j / nb, tolerance)
-        if touch:
-            found.append(touch)
-    return _apart(found, tolerance)
+def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int, float, float]]:
+    """Yields crossings and touches, each with the number of its pair, from those of the two polylines and
+    from where these come nearest.
+    """
+    marks = np.linspace(0, 1, _STEPS + 1)
+    p, q = (
+        table.at(np.repeat(own, len(marks)), np.tile(marks, len(own)))[0].reshape(len(own), -1, 2)
+        for own in pairs.T
+    )
+    away = long(p[:, :, None] - q[:, None])
+    step = np.maximum(*(long(np.diff(x, axis=1)).max(axis=1) for x in (p, q)))
+    lies = _may_lie(away <= step[:, None, None] + tolerance, table.is_closed[pairs])
+    for row in np.flatnonzero(lies).tolist():
+        a, b = (table.curves[number] for number in pairs[row].tolist())
+        lies[row] = _lie_on_each_other(a, b, tolerance)
+    k, t, s = _crossed(p, q, ~lies)
+    t, s, meets = _improved(table, pairs[k], t, s, tolerance, _to_crossing)
+    k, t, s = k[meets], t[meets], s[meets]
+    beside = _improved(table, pairs[k], t, s, tolerance, _to_touch)
+    for row, *crossing, touch, other, is_one in zip(*(x.tolist() for x in (k, t, s, *beside)), strict=True):
+        if is_one:
+            # So close from one to the other that they are one there: the crossing belongs to the touch.
+            a, b = (table.curves[number] for number in pairs[row].tolist())
+            way = touch - crossing[0]
+            way = math.remainder(way, 1.0) if is_closed(a) else way
+            if _on(b, point(a, crossing[0] + way / 2), tolerance):
+                crossing = [touch, other]
+        yield row, crossing[0], crossing[1]
+    k, t, s = _nearest_samples(away, step, ~lies)
+    t, s, meets = _improved(table, pairs[k], t, s, tolerance, _to_touch)
+    yield from zip(*(x[meets].tolist() for x in (k, t, s)), strict=True)
 
 
 def _apart(found: list[Crossing], tolerance: float) -> list[Crossing]:
@@ -172,92 +206,79 @@ def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
     return locate(curve, p, tolerance) is not None
 
 
-def _crossed(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Returns the crossings of two polylines, counted in their sides."""
-    dp, dq = np.diff(p, axis=0)[:, None, :], np.diff(q, axis=0)[None, :, :]
-    gap = q[None, :-1, :] - p[:-1, None, :]
-    cross = dp[..., 0] * dq[..., 1] - dp[..., 1] * dq[..., 0]
+def _may_lie(near: Mask, closed: Mask) -> Mask:
+    """Tells of pairs of curves, whose near samples and kinds are given, whether they may share a stretch."""
+    found = near[:, [0, -1]].any(axis=2), near[:, :, [0, -1]].any(axis=1)
+    count = sum(np.count_nonzero(found[k] & ~closed[:, k : k + 1], axis=1) for k in (0, 1))
+    may: Mask = (count > 1) | closed.all(axis=1)
+    return may
+
+
+def _crossed(p: Floats, q: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
+    """Returns the crossings of the pairs of polylines asked for: the pair's number, and the parameters."""
+    dp, dq = np.diff(p, axis=1)[:, :, None], np.diff(q, axis=1)[:, None]
+    gap, sine = q[:, None, :-1] - p[:, :-1, None], cross(dp, dq)
     with np.errstate(divide="ignore", invalid="ignore"):
-        t = (gap[..., 0] * dq[..., 1] - gap[..., 1] * dq[..., 0]) / cross
-        s = (gap[..., 0] * dp[..., 1] - gap[..., 1] * dp[..., 0]) / cross
+        t, s = cross(gap, dq) / sine, cross(gap, dp) / sine
         # The curves bulge beyond their chords: look a little past each segment.
-        hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2)
-    return [(float(i + t[i, j]), float(j + s[i, j])) for i, j in np.argwhere(hit)]
+        hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2) & asked[:, None, None]
+    k, i, j = np.nonzero(hit)
+    return k, (i + t[hit]) / _STEPS, (j + s[hit]) / _STEPS
 
 
-def _nearest_samples(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """Returns pairs of samples that are nearer than those beside them, and no further apart than neighbouring
-    samples.
+def _nearest_samples(away: Floats, step: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
+    """Returns where samples are nearer than those beside them, and no further apart than neighbours are,
+    in the form of `_crossed`.
     """
-    away = np.hypot(*np.moveaxis(p[:, None, :] - q[None, :, :], -1, 0))
-    padded = np.pad(away, 1, constant_values=np.inf)
-    n, m = away.shape
-    beside = [padded[i : i + n, j : j + m] for i in range(3) for j in range(3)]
-    step = max(np.hypot(*np.diff(x, axis=0).T).max() for x in (p, q))
-    return [(int(i), int(j)) for i, j in np.argwhere((away <= np.min(beside, axis=0)) & (away <= step))]
+    padded = np.pad(away, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
+    n = away.shape[1]
+    beside = [padded[:, i : i + n, j : j + n] for i in range(3) for j in range(3)]
+    near = (away <= step[:, None, None]) & asked[:, None, None]
+    k, i, j = np.nonzero(near & (away <= np.min(beside, axis=0)))
+    return k, i / _STEPS, j / _STEPS
 
 
-def _touch_beside(a: Piece, b: Piece, crossing: Crossing, tolerance: float) -> Crossing | None:
-    """Returns the touch that a crossing belongs to, if the curves run so close from one to the other that
-    they are one there.
+def _improved(
+    table: Table, pairs: Ints, t: Floats, s: Floats, tolerance: float, step: Step
+) -> tuple[Floats, Floats, Mask]:
+    """Returns parameters on pairs of curves after steps of Newton's method, and which are crossings, or
+    touches, within the tolerance.
     """
-    t, s, _ = crossing
-    (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
-    if abs(ax * by - ay * bx) > 0.1 * math.hypot(ax, ay) * math.hypot(bx, by):
-        return None
-    touch = _touch(a, b, t, s, tolerance)
-    if touch is None:
-        return None
-    way = math.remainder(touch[0] - t, 1.0) if is_closed(a) else touch[0] - t
-    return touch if _on(b, point(a, t + way / 2), tolerance) else None
-
-
-def _touch(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:
-    """Returns the touch where the curves are parallel and within the tolerance, by Newton on (b - a)·a' = 0
-    and a' x b' = 0.
-    """
+    a, b = pairs.T
+    t, s = table.within(a, t), table.within(b, s)
+    left, order = np.arange(len(t)), 2 if step is _to_touch else 1
     for _ in range(30):
-        t, s = _within(a, t), _within(b, s)
-        (x, y), (u, v) = point(a, t), point(b, s)
-        ex, ey = u - x, v - y
-        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
-        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
-        f, g = ex * ax + ey * ay, ax * by - ay * bx
-        ft, fs = ex * cx + ey * cy - ax * ax - ay * ay, bx * ax + by * ay
-        gt, gs = cx * by - cy * bx, ax * dy - ay * dx
-        determinant = ft * gs - fs * gt
-        if not determinant:
+        if not len(left):
             break
-        dt, ds = (fs * g - gs * f) / determinant, (gt * f - ft * g) / determinant
-        t, s = t + max(-0.1, min(0.1, dt)), s + max(-0.1, min(0.1, ds))
-        if abs(dt) + abs(ds) < 1e-14:
-            break
-    t, s = _within(a, t), _within(b, s)
-    p, (ax, ay), (bx, by) = point(a, t), derivative(a, t), derivative(b, s)
-    parallel = abs(ax * by - ay * bx) <= 1e-6 * math.hypot(ax, ay) * math.hypot(bx, by)
-    return (t, s, p) if parallel and math.dist(p, point(b, s)) <= tolerance else None
+        dt, ds = step(table.at(a[left], t[left], order), table.at(b[left], s[left], order))
+        moves = np.isfinite(dt)
+        left, dt, ds = left[moves], dt[moves], ds[moves]
+        t[left], s[left] = table.within(a[left], t[left] + dt), table.within(b[left], s[left] + ds)
+        left = left[np.abs(dt) + np.abs(ds) >= _LAST]
+    ours, theirs = table.at(a, t, 1), table.at(b, s, 1)
+    meets = long(ours[0] - theirs[0]) <= tolerance
+    if step is _to_touch:
+        meets &= np.abs(cross(ours[1], theirs[1])) <= 1e-6 * long(ours[1]) * long(theirs[1])
+    return t, s, meets
 
 
-def _newton(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:
-    for _ in range(20):
-        t, s = _within(a, t), _within(b, s)
-        (x, y), (u, v) = point(a, t), point(b, s)
-        ex, ey = u - x, v - y
-        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
-        cross = ax * by - ay * bx
-        if abs(cross) <= 1e-12 * math.hypot(ax, ay) * math.hypot(bx, by):
-            break
-        dt, ds = (ex * by - ey * bx) / cross, (ex * ay - ey * ax) / cross
-        t, s = t + dt, s + ds
-        if abs(dt) + abs(ds) < 1e-14:
-            break
-    t, s = _within(a, t), _within(b, s)
-    p = point(a, t)
-    return (t, s, p) if math.dist(p, point(b, s)) <= tolerance else None
+def _to_crossing(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Returns the steps to where b - a is nothing; NaN where the curves are parallel."""
+    sine, e = cross(a[1], b[1]), b[0] - a[0]
+    sine = np.where(np.abs(sine) > 1e-12 * long(a[1]) * long(b[1]), sine, np.nan)
+    return cross(e, b[1]) / sine, cross(e, a[1]) / sine
 
 
-def _within(curve: Piece, t: float) -> float:
-    return t % 1.0 if is_closed(curve) else min(1.0, max(0.0, t))
+def _to_touch(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Returns the steps to where the curves are parallel and side by side: (b - a)·a' = 0 and a' x b' = 0."""
+    e = b[0] - a[0]
+    f, g = dot(e, a[1]), cross(a[1], b[1])
+    ft, fs = dot(e, a[2]) - dot(a[1], a[1]), dot(b[1], a[1])
+    gt, gs = cross(a[2], b[1]), cross(a[1], b[2])
+    determinant = ft * gs - fs * gt
+    determinant = np.where(determinant, determinant, np.nan)
+    steps = (fs * g - gs * f) / determinant, (gt * f - ft * g) / determinant
+    return np.clip(steps[0], -0.1, 0.1), np.clip(steps[1], -0.1, 0.1)
 
 
 def self_crossing(curve: Bezier) -> tuple[float, float] | None:

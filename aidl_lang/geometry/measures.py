@@ -18,6 +18,7 @@ from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Loop, Region
 
 Floats = NDArray[np.float64]
@@ -48,11 +49,7 @@ def measure(region: Region) -> Measures:
 
 
 def region_bounds(region: Region) -> Bounds:
-    boxes = [bounds(piece) for face in region.faces for piece in face.outer.pieces]
-    if not boxes:
-        return 0.0, 0.0, 0.0, 0.0
-    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
-    return min(lefts), min(bottoms), max(rights), max(tops)
+    return union_bounds([bounds(piece) for face in region.faces for piece in face.outer.pieces])
 
 
 def area(region: Region) -> float:

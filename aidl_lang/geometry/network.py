@@ -24,26 +24,24 @@ from aidl_lang.geometry.evaluate import (
     TAU,
     Bounds,
     bounds,
-    cubic_points,
     ends,
     is_closed,
     locate,
     part,
     point,
-    points,
-    round_points,
     round_range,
 )
-from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
+from aidl_lang.geometry.intersect import all_intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_rows
-from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.separation import Hulls
+from aidl_lang.geometry.tables import Table
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
 FINE_CHORD = CHORD / 100
 """The same for curves that come so close to each other that their chords cross."""
-_PER_PAIR = 1e-3
+_PER_PAIR = 1e-4
 """Seconds of a processor that it takes at least to find where two cubics meet that may."""
 GRID = 1e-8
 """Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""
@@ -52,21 +50,19 @@ NODE, UNKNOWN = -1, -2
 
 T = TypeVar("T")
 Ints = NDArray[np.int64]
-_NO_POINTS: Ints = np.zeros((0, 2), dtype=np.int64)
 Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
 
 @record(slots=True)
 class Edge:
-    """The part `t0..t1` of a curve between two nodes, with the grid points strictly between them."""
+    """The part `t0..t1` of a curve between two nodes."""
 
     curve: int
     t0: float
     t1: float
     start: int
     end: int
-    inner: Ints
 
 
 class TooCoarse(Exception):  # noqa: N818 (not an error of ours: what is under way begins again)
@@ -122,6 +118,7 @@ class Network:
         self.edges: list[Edge] = []
         self._known: dict[tuple[int, ...], int] = {}
         self._fine: set[int] = set()
+        self._table = Table(self.curves)
         self.uses: list[list[Use]] = self._arrange()
         self._draw_polylines()
 
@@ -142,37 +139,39 @@ class Network:
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
-        own_nodes = np.array(own_ends, dtype=np.int64)
-        near = near_rows(self.boxes, self.tolerance)
-        pairs = meeting(self.curves, near, self.tolerance, own_nodes, np.array(self.nodes))
+        own_nodes = np.array(own_ends, dtype=np.int64).reshape(-1, 2)
+        places = np.array(self.nodes).reshape(-1, 2)
+        hulls = Hulls(self._table, self.tolerance)
+        pairs = hulls.meeting(near_rows(self.boxes, self.tolerance), own_nodes, places)
         is_cubic = np.array([isinstance(curve, Bezier) for curve in self.curves], dtype=np.bool_)
         give_up(_PER_PAIR * np.count_nonzero(is_cubic[pairs].all(axis=1)))
-        for i, j in pairs.tolist():
-            checkpoint()
-            self._cut_pair(i, j, cuts, own_ends)
+        # One curve twice is not cut: its edges are shared.
+        pairs = pairs[[self.curves[i] != self.curves[j] for i, j in pairs.tolist()]]
+        for number, node in self._ends_on_others(hulls, pairs, own_nodes, places):
+            t = locate(self.curves[number], self.nodes[node], self.tolerance)
+            if t is not None:
+                cuts[number].append((t, node))
+        crossings = all_intersections(self._table, pairs, self.tolerance)
+        for (i, j), found in zip(pairs.tolist(), crossings, strict=True):
+            for t, s, p in found:
+                node = self.node(p)
+                for number, at in ((i, t), (j, s)):
+                    if node not in own_ends[number]:
+                        cuts[number].append((at, node))
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
 
-    def _cut_pair(
-        self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]
-    ) -> None:
-        """Places the ends of each of two curves on the other, then cuts both where they meet."""
-        if self.curves[i] == self.curves[j]:
-            return  # one curve twice: its edges are shared
-        for one, other in ((i, j), (j, i)):
-            curve, box = self.curves[other], self.boxes[other]
-            for end in dict.fromkeys(own_ends[one]):
-                p = self.nodes[end]
-                if end in own_ends[other] or not _inside(p, box, self.tolerance):
-                    continue
-                t = locate(curve, p, self.tolerance)
-                if t is not None:
-                    cuts[other].append((t, end))
-        for t, s, p in intersections(self.curves[i], self.curves[j], self.tolerance):
-            node = self.node(p)
-            if node not in own_ends[i]:
-                cuts[i].append((t, node))
-            if node not in own_ends[j]:
-                cuts[j].append((s, node))
+    def _ends_on_others(
+        self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: NDArray[np.float64]
+    ) -> Iterator[tuple[int, int]]:
+        """Yields the curves that may pass an end of one they are paired with, and the node there."""
+        for one, other in (pairs.T, pairs.T[::-1]):
+            for side in (0, 1):
+                node = own_nodes[one, side]
+                is_new = (own_nodes[other] != node[:, None]).all(axis=1)
+                if side:
+                    is_new &= node != own_nodes[one, 0]
+                is_new[is_new] = hulls.may_hold(other[is_new], places[node[is_new]])
+                yield from zip(other[is_new].tolist(), node[is_new].tolist(), strict=True)
 
     def _split(self, number: int, cuts: list[tuple[float, int]]) -> list[Use]:
         curve = self.curves[number]
@@ -193,7 +192,7 @@ class Network:
             edge = self.edges[known]
             return known, self._same_way(edge, number, t0, t1, start)
         self._known[key] = len(self.edges)
-        self.edges.append(Edge(number, t0, t1, start, end, _NO_POINTS))
+        self.edges.append(Edge(number, t0, t1, start, end))
         return len(self.edges) - 1, True
 
     def _same_way(self, edge: Edge, number: int, t0: float, t1: float, start: int) -> bool:
@@ -207,76 +206,44 @@ class Network:
     # -- polylines and the way back ------------------------------------------------------------------------
 
     def _draw_polylines(self) -> None:
-        """Gives each edge its inner points, then indexes all."""
+        """Finds the points within each edge, then makes a sorted table of all grid points with the edge that
+        they lie inside of (-1 for nodes).
+        """
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
             _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
         ]
-        inner = dict(self._inner_points([k for k, count in enumerate(counts) if count > 1], counts))
-        self.edges = [
-            Edge(e.curve, e.t0, e.t1, e.start, e.end, inner.get(k, _NO_POINTS)) for k, e in enumerate(edges)
-        ]
-        self._index()
+        inner = self._sizes = np.array(counts, dtype=np.int64) - 1
+        begins = np.cumsum(inner) - inner
+        number = np.repeat(np.arange(len(edges)), inner)
+        share = (np.arange(1, len(number) + 1) - begins[number]) / (inner[number] + 1)
+        parts = np.array([(e.curve, e.t0, e.t1 - e.t0) for e in edges]).reshape(-1, 3)[number]
+        spots = self._table.at(parts[:, 0].astype(np.int64), parts[:, 1] + parts[:, 2] * share)[0]
+        nodes = np.array(self.nodes, dtype=float).reshape(-1, 2)
+        self._grid = self.to_grid(np.concatenate((nodes, spots)))
+        self._offset = begins + len(nodes) if edges else np.zeros(1, dtype=np.int64)
+        self.node_grid = self._grid[: len(nodes)]
+        keys, owner = pack(self._grid), np.concatenate((np.full(len(nodes), -1), number))
+        order = np.lexsort((owner, keys))
+        self._keys, self._owner, self._number = keys[order], owner[order], order
+        self._sides: tuple[Ints, Sides] | None = None
+        self.straight: dict[tuple[int, int], int] = {}  # the line edge between two nodes
+        for k in np.flatnonzero(inner == 0).tolist():
+            edge = edges[k]
+            self.straight[edge.start, edge.end] = self.straight[edge.end, edge.start] = k
 
-    def _inner_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
-        """Yields the inner points of edges cut into many chords: those of circles and arcs in one go,
-        likewise those of Bézier curves.
-        """
-        rounds, cubics = [], []
-        for k in numbers:
-            curve = self.curves[self.edges[k].curve]
-            if isinstance(curve, Arc | Circle):
-                rounds.append((k, (*curve.center, curve.radius, *round_range(curve))))
-            elif isinstance(curve, Bezier):
-                cubics.append((k, (*curve.p0, *curve.p1, *curve.p2, *curve.p3)))
-            else:
-                edge = self.edges[k]
-                ts = edge.t0 + (edge.t1 - edge.t0) * np.arange(1, counts[k]) / counts[k]
-                yield k, self.to_grid(points(curve, ts))
-        for found, at in ((rounds, round_points), (cubics, cubic_points)):
-            if found:
-                table = np.array([row for _, row in found])
-                yield from self._along([k for k, _ in found], table, counts, at)
-
-    def _along(
-        self,
-        numbers: Sequence[int],
-        table: NDArray[np.float64],
-        counts: Sequence[int],
-        at: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]],
-    ) -> Iterator[tuple[int, Ints]]:
-        """Yields the inner points of edges of curves of one kind, which have a row each."""
-        parts = np.array([(self.edges[k].t0, self.edges[k].t1 - self.edges[k].t0) for k in numbers])
-        count = np.array([counts[k] for k in numbers])
-        row = np.repeat(np.arange(len(numbers)), count - 1)
-        place = np.arange(1, len(row) + 1) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1)
-        t = parts[row, 0] + parts[row, 1] * place / count[row]
-        grids = np.split(self.to_grid(at(table[row], t)), np.cumsum(count - 1)[:-1])
-        yield from zip(numbers, grids, strict=True)
+    def inner(self, use: Use) -> Ints:
+        """Returns the grid points strictly between the ends of an edge, in the direction of the use."""
+        begin = self._offset[use[0]]
+        found = self._grid[begin : begin + self._sizes[use[0]]]
+        return found if use[1] else found[::-1]
 
     def refine(self) -> None:
         """Cuts the curves finer whose chords crossed."""
         self._fine |= self.blurred
         self.blurred = set()
         self._draw_polylines()
-
-    def _index(self) -> None:
-        """Makes a sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
-        self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
-        inner = [e.inner for e in self.edges if len(e.inner)]
-        sizes = np.array([len(self.node_grid), *(len(e.inner) for e in self.edges)])
-        self._grid, self._sizes = np.concatenate([self.node_grid, *inner]), sizes[1:]
-        keys = pack(self._grid)
-        owner = np.repeat(np.arange(-1, len(self.edges)), sizes)
-        order = np.lexsort((owner, keys))
-        self._keys, self._owner, self._number = keys[order], owner[order], order
-        self._offset = np.cumsum(sizes)[:-1] if self.edges else np.zeros(1, dtype=np.int64)
-        self._sides: tuple[Ints, Sides] | None = None
-        self._straight: dict[tuple[int, int], int] = {}
-        for k, edge in enumerate(self.edges):
-            if not len(edge.inner):
-                self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
 
     def polyline(self, uses: Sequence[Use]) -> NDArray[np.float64]:
         """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
@@ -285,7 +252,7 @@ class Network:
             edge = self.edges[number]
             node = edge.start if forward else edge.end
             rows.append(self.node_grid[node : node + 1])
-            rows.append(edge.inner if forward else edge.inner[::-1])
+            rows.append(self.inner((number, forward)))
         return np.concatenate(rows).astype(np.float64) * GRID
 
     def piece(self, use: Use) -> Piece:
@@ -339,17 +306,13 @@ class Network:
         """Returns all sides of polylines, and the numbers of their edges."""
         if self._sides is None:
             lines = []
-            for edge in self.edges:
+            for number, edge in enumerate(self.edges):
                 nodes = self.node_grid[[edge.start, edge.end]]
-                line = np.concatenate((nodes[:1], edge.inner, nodes[1:])) * GRID
+                line = np.concatenate((nodes[:1], self.inner((number, True)), nodes[1:])) * GRID
                 lines.append(np.concatenate((line[:-1], line[1:]), axis=1))
             numbers = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
             self._sides = numbers, Sides(np.concatenate(lines))
         return self._sides
-
-    def straight(self, start: int, end: int, default: int) -> int:
-        """Returns the line edge between two nodes."""
-        return self._straight.get((start, end), default)
 
 
 def with_finer_chords(network: Network, work: Callable[[], T]) -> T:
@@ -392,10 +355,6 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
 def _extent(curve: Piece) -> float:
     left, bottom, right, top = bounds(curve)
     return max(right - left, top - bottom)
-
-
-def _inside(p: Vec, box: Bounds, margin: float) -> bool:
-    return box[0] - margin <= p[0] <= box[2] + margin and box[1] - margin <= p[1] <= box[3] + margin
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:

@@ -334,7 +334,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contac
     free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch
-    held = {path for pair in contacts.near() if pair.is_close for path in (pair.a, pair.b)}
+    held = {path for pair in contacts.near for path in pair}
     structures = {s.path: s for s in root.walk()}
     lonely: dict[object, list[SolvedStructure]] = {}
     for path in paths:
@@ -393,21 +393,23 @@ def marked_detached(root: SolvedStructure) -> set[str]:
     }
 
 
-def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str] | None) -> Diagnostic:
+def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str]) -> Diagnostic:
     """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
     structure, is_one = structures[0], len(structures) == 1
-    message = f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part"
-    hints = ["if that is meant, say so: `@detached` before its definition"]
-    if nearest is not None:
-        gap, other = nearest
-        to = "" if is_one else f" to `{structure.path}`"
-        message += f"; the nearest{to}, `{other}`, is {rough(gap)} mm away"
-        hints.insert(0, "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`")
+    to = "" if is_one else f" to `{structure.path}`"
+    message = (
+        f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part; "
+        f"the nearest{to}, `{nearest[1]}`, is {rough(nearest[0])} mm away"
+    )
+    hints = (
+        "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`",
+        "if that is meant, say so: `@detached` before its definition",
+    )
     span, fix = structure.span, None
     if span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text):
         fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
     label = "stands by itself" if is_one else "each stands by itself"
-    return Diagnostic("W0705", message, span, label, hints=tuple(hints), fix=fix)
+    return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)
 
 
 def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic:

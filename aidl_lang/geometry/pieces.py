@@ -6,7 +6,6 @@ single geometry consists of.
 
 from __future__ import annotations
 
-import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,10 +15,10 @@ from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
-from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.contacts import UNNOTICED, Solid
+from aidl_lang.geometry.distance import lie_within, nearest_region
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.faces import OwnFace
+from aidl_lang.geometry.faces import Joined, OwnFace
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.notes import marked_detached
@@ -57,11 +56,7 @@ class _Piece:
     def meets(self, section: Section, region: Region) -> bool:
         if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
             return True
-        return self.gap(region) <= UNNOTICED
-
-    def gap(self, region: Region) -> float:
-        closest = region_distance(self.region, region)
-        return closest[0] if closest else 0.0
+        return lie_within(self.region, region, UNNOTICED)
 
 
 def loose_piece_notes(
@@ -69,7 +64,7 @@ def loose_piece_notes(
     walk: Bodies,
     masses: Sequence[Mass],
     solids: Sequence[Solid],
-    pairs: Sequence[Contact],
+    pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
     """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest. A solid that
     is the whole program is a drawing without parts, in which gaps are as good as lines.
@@ -122,21 +117,20 @@ def _area(section: Section) -> str:
 
 
 def _groups(
-    pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[Contact]
+    pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[tuple[str, str]]
 ) -> list[list[_Piece]]:
     """Returns groups of pieces that hold together, directly or by other bodies; the largest group first."""
-    joined = _Joined()
-    for contact in pairs:
-        if contact.is_close:
-            if own.path not in (contact.a, contact.b):
-                joined.join(contact.a, contact.b)
-                continue
-            other = known[contact.b if contact.a == own.path else contact.a]
-            for number, piece in enumerate(pieces):
-                if piece.meets(other.section, other.region):
-                    joined.join(number, other.path)
+    joined = Joined()
+    for pair in pairs:
+        if own.path not in pair:
+            joined.join(*pair)
+            continue
+        other = known[pair[pair[0] == own.path]]
+        for number, piece in enumerate(pieces):
+            if piece.meets(other.section, other.region):
+                joined.join(number, other.path)
     for i, j in near_pairs([piece.box for piece in pieces], UNNOTICED):
-        if pieces[i].gap(pieces[j].region) <= UNNOTICED:
+        if lie_within(pieces[i].region, pieces[j].region, UNNOTICED):
             joined.join(i, j)
     of: dict[int, int] = {}
     for number, piece in enumerate(pieces):
@@ -146,21 +140,6 @@ def _groups(
     for number, piece in enumerate(pieces):
         groups.setdefault(joined.root(number), []).append(piece)
     return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
-
-
-class _Joined:
-    """Groups of things that hang together (union-find)."""
-
-    def __init__(self) -> None:
-        self._parent: dict[object, object] = {}
-
-    def root(self, thing: object) -> object:
-        while (above := self._parent.get(thing, thing)) != thing:
-            thing = above
-        return thing
-
-    def join(self, one: object, other: object) -> None:
-        self._parent[self.root(one)] = self.root(other)
 
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:
@@ -184,14 +163,8 @@ def _is_meant(piece: _Piece, alike: Counter[object]) -> bool:
 
 
 def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece]) -> Diagnostic:
-    gap, nearest = math.inf, rest[0]
-    for bound, piece, other in sorted(
-        ((_between(p.box, q.box), p, q) for p in group for q in rest), key=lambda found: found[0]
-    ):
-        if bound >= gap:
-            break
-        if (found := piece.gap(other.region)) < gap:
-            gap, nearest = found, other
+    gap, place = nearest_region([piece.region for piece in group], [piece.region for piece in rest])
+    nearest = rest[place]
     names, beside = _names(solid, group), _names(solid, [nearest])
     first = group[0].faces[0].geometries[0]
     touches = "touch" if len(names) > 1 else "touches"
@@ -217,7 +190,7 @@ def fallen_piece_notes(
     walk: Bodies,
     masses: Sequence[Mass],
     solids: Sequence[Solid],
-    pairs: Sequence[Contact],
+    pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each hole that cuts pieces free which nothing else holds, as the inside of an
     O.
@@ -328,14 +301,13 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
     return found
 
 
-def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[str, list[Solid]]:
+def _held_by_others(solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
     """Returns for each body those that touch or overlap it."""
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
-    for pair in pairs:
-        if pair.is_close:
-            held.setdefault(pair.a, []).append(known[pair.b])
-            held.setdefault(pair.b, []).append(known[pair.a])
+    for a, b in pairs:
+        held.setdefault(a, []).append(known[b])
+        held.setdefault(b, []).append(known[a])
     return held
 
 
@@ -415,11 +387,6 @@ def _stencil_fix(texts: set[Span]) -> Fix | None:
         return None
     ends = sorted((Span(span.source, span.end - 1, span.end) for span in texts), key=lambda end: end.start)
     return Fix("bridge the letters: `stencil: true`", tuple(Edit(end, ", stencil: true)") for end in ends))
-
-
-def _between(a: Bounds, b: Bounds) -> float:
-    """Returns the distance of two boxes."""
-    return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
 
 
 def _names(solid: SolvedStructure, pieces: Iterable[_Piece]) -> list[str]:

@@ -142,7 +142,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
     between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
     ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
-    edges[between] = [network.straight(a, b, STRAIGHT) for a, b in ways]
+    edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
     # Chords that cross where their curves only touch leave vertices unknown to the network.
     changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
     unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
@@ -232,7 +232,7 @@ def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], en
     if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
         forward = first == edge.start
         if edge.start == edge.end:
-            forward = int(place[begin[1]]) < len(edge.inner) / 2
+            forward = int(place[begin[1]]) < len(network.inner((number, True))) / 2
         t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
     else:
         t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
@@ -276,7 +276,7 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
         return None
     if a.t1 == b.t0:
         return Run(a.curve, a.t0, b.t1, a.start, b.end)
-    if is_closed(network.curves[a.curve]) and abs(a.t1 - b.t0) == 1:
+    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
         return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
     return None
 

@@ -14,7 +14,7 @@ combination of these; things without a share in it are held.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -24,7 +24,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import gradients
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Relation
 from aidl_lang.solver.tiers import DEEP, ENDLESS, POSITIONS, RIDING
 
@@ -54,9 +54,6 @@ SPARING = 8
 MOST = 400
 """The most moved unknowns that are thinned; above, the nearest point is kept."""
 
-Giver: TypeAlias = list[int]
-"""The columns of what gives way as one."""
-
 
 def givers(hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> frozenset[int]:
     """Returns the unknowns that shall give way besides those of `scope`, whose rows are left as they are at
@@ -73,6 +70,7 @@ class _Rest:
     others  (r, k) those along the others; `columns` (r, k) without what the free ones reach
     lack    (r,) what the rows need, counted from where the search began
     rest    (r,) the part of it that the free ones do not reach
+    owner   (r,) the constraint of each row
     """
 
     free: Floats
@@ -80,6 +78,7 @@ class _Rest:
     lack: Floats
     columns: Floats
     rest: Floats
+    owner: Ints
 
     @cached_property
     def size(self) -> float:
@@ -98,9 +97,13 @@ class _Rest:
         matrix = np.hstack((self.free, self.others[:, chosen]))
         return float(np.linalg.norm(np.linalg.lstsq(matrix, self.lack, rcond=NOTHING)[0]))
 
-    def fewest(self, among: Sequence[Giver], given: Sequence[int]) -> list[int]:
-        """Returns the columns of as few of these as take up, beside those `given`, what all of them can."""
-        chosen: list[Giver] = []
+    def fewest(
+        self, among: Sequence[list[int]], given: Sequence[int], first: Collection[int] = ()
+    ) -> list[int]:
+        """Returns the columns of as few of these as take up, beside those `given`, what all of them can. Of
+        those that help alike one that begins with a column of `first` is taken.
+        """
+        chosen: list[list[int]] = []
         left = self.left(given)
         goal = self.left([*given, *(k for columns in among for k in columns)])
         while left > goal + NOTHING:
@@ -112,7 +115,7 @@ class _Rest:
             ties = [each for length, each in tried if length <= least + NOTHING]
             best = ties[0]
             if len(ties) > 1:
-                best = min(ties, key=lambda e: round(self.way([*held, *e]), 6))
+                best = min(ties, key=lambda e: (e[0] not in first, round(self.way([*held, *e]), 6)))
             left = least
             chosen.append(best)
         for each in reversed(chosen[:-1]):
@@ -160,11 +163,15 @@ class _Loosening:
         dearest class what all cheaper ones leave of it, and so on down.
         """
         able.sort(key=lambda k: self.hierarchy.name(locked[k]))
+        constraints = self.hierarchy.problem.constraints
+        contrary = rest.owner[np.abs(rest.rest) > NOTHING * rest.size].tolist()
+        placed = frozenset[int]().union(*(constraints[i].placed for i in contrary))
         found: list[int] = []
         for dearness in sorted({dear[k] for k in able}, reverse=True):
             given = [*found, *(k for k in able if dear[k] < dearness)]
             parts = self._grouped([k for k in able if dear[k] == dearness], lambda k: self._part(locked[k]))
-            chosen = set(rest.fewest(parts, given))
+            following = [k for k in able if dearness[0] > POSITIONS and locked[k] in placed]
+            chosen = set(rest.fewest(parts, given, following))
             things = self._grouped(
                 [k for k in able if k in chosen], lambda k: ("thing", int(self.thing[locked[k]]))
             )
@@ -226,6 +233,7 @@ class _Loosening:
         hierarchy = self.hierarchy
         hierarchy.refresh(constraints)
         owned = hierarchy.rows(constraints)
+        owner = np.array([index for index in constraints for _ in hierarchy.rows([index])], dtype=np.int64)
         place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
         matrix = np.zeros((len(owned), len(place)))
         ends = None if any(map(hierarchy.is_kept, place)) else hierarchy.values.still()
@@ -235,8 +243,7 @@ class _Loosening:
                 if unknown in place:
                     matrix[i, place[unknown]] = slope / row.scale
         matrix = np.nan_to_num(matrix * hierarchy.problem.scale[list(place)])
-        nodes = hierarchy.values.nodes
-        lack = np.nan_to_num(np.array([-nodes[row.expression] / row.scale for row in owned]))
+        lack = np.nan_to_num([-hierarchy.values.nodes[row.expression] / row.scale for row in owned])
         free = matrix[:, : len(self.free)]
         counts = np.array([row.relation is Relation.EQUAL for row in owned]) | (
             lack < -hierarchy.settings.tolerance
@@ -254,7 +261,7 @@ class _Loosening:
         columns = others - basis @ (basis.T @ others)
         columns[:, np.linalg.norm(columns, axis=0) <= NOTHING * np.linalg.norm(others, axis=0)] = 0.0
         lack = lack[counts] + free[counts] @ self.moved
-        return _Rest(free[counts], others, lack, columns, rest)
+        return _Rest(free[counts], others, lack, columns, rest, owner[counts])
 
     def _part(self, unknown: int) -> tuple[str, int]:
         """Returns what gives way with an unknown: a size, a frame, or the inside of a group."""

@@ -179,7 +179,7 @@ def test_a_spline_that_crosses_itself_everywhere_is_refused_before_it_is_cut(mon
     data = dxf(lambda d: d.modelspace().add_open_spline([*points, points[0]]))
     world = MemoryWorld({}, {"a.dxf": data})
     program = SourceFile("a.aidl", 'import "a.dxf" as art\nsolid a { edge = art() }\n')
-    monkeypatch.setattr(network, "intersections", lambda *_: pytest.fail("curves were cut"))
+    monkeypatch.setattr(network, "all_intersections", lambda *_: pytest.fail("curves were cut"))
     (found,) = [d for d in compile(program, world).diagnostics if d.is_error]
     assert found.code == "E0805"
     assert found.span is not None

@@ -384,3 +384,14 @@ def test_booleans_of_finished_regions_add_up(one: SolvedGeometry, other: SolvedG
     assert both + either == pytest.approx(area(a) + area(b), rel=1e-6, abs=1e-3)
     assert area(without(a, b)) + both == pytest.approx(area(a), rel=1e-6, abs=1e-3)
     assert (clearance(a, b) == 0) == (both > 0) or clearance(a, b) < 1e-4
+
+
+@pytest.mark.parametrize("x", [k / 10 for k in range(21, 30)])
+def test_a_line_across_an_ellipse_leaves_its_outline_in_one_piece_past_its_start(x: float):
+    blob = structure(
+        "solid", "blob", primitive("e", Ellipse((0, 0), 3, 1.7, 0.3)), rectangle("r", -5, -1, 0, 1)
+    )
+    line = structure("drawing", "line", primitive("l", Line((x, -4), (x - 0.3, 4))))
+    drawing = draw(model(structure("assembly", "a", blob, line)))[0]
+    arcs = [p for p in drawing.regions["a.blob"].pieces if isinstance(p, EllipseArc)]
+    assert len(arcs) == 1

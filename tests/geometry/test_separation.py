@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import ends, locate
 from aidl_lang.geometry.intersect import intersections
-from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.separation import Hulls
+from aidl_lang.geometry.tables import Table
 
 TOLERANCE = 1e-5
 
@@ -62,7 +63,8 @@ def may_meet(curves: list[Piece]) -> dict[tuple[int, int], bool]:
     nodes = np.array([[places.index(p) for p in ends(curve)] for curve in curves])
     pairs = list(combinations(range(len(curves)), 2))
     rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    found = {(i, j) for i, j in meeting(curves, rows, TOLERANCE, nodes, np.array(places)).tolist()}
+    hulls = Hulls(Table(curves), TOLERANCE)
+    found = {(i, j) for i, j in hulls.meeting(rows, nodes, np.array(places)).tolist()}
     return {pair: pair in found for pair in pairs}
 
 
