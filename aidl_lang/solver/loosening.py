@@ -129,8 +129,7 @@ class _Loosening:
     def __init__(self, hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> None:
         self.hierarchy, self.tiers, self.scope = hierarchy, tiers, scope
         self.free = sorted(scope.free)
-        values = hierarchy.values.unknowns
-        moved = np.array([values[unknown] - before[unknown] for unknown in self.free])
+        moved = np.array([hierarchy.values.unknowns[unknown] - before[unknown] for unknown in self.free])
         self.moved = moved / hierarchy.problem.scale[self.free]
         is_large = len(hierarchy.rows(scope.constraints)) * len(scope.free) > MANY
         self.constraints = hierarchy.unmet(scope.constraints) if is_large else scope.constraints
@@ -245,9 +244,8 @@ class _Loosening:
         matrix = np.nan_to_num(matrix * hierarchy.problem.scale[list(place)])
         lack = np.nan_to_num([-hierarchy.values.nodes[row.expression] / row.scale for row in owned])
         free = matrix[:, : len(self.free)]
-        counts = np.array([row.relation is Relation.EQUAL for row in owned]) | (
-            lack < -hierarchy.settings.tolerance
-        )
+        counts = np.array([row.relation is Relation.EQUAL for row in owned])
+        counts |= lack < -hierarchy.settings.tolerance
         basis = _basis(free[counts])
         rest = lack[counts] - basis @ (basis.T @ lack[counts])
         if float(np.linalg.norm(rest)) <= NOTHING * float(np.linalg.norm(lack[counts])):
