@@ -8,13 +8,13 @@ cheap; a pair that is not listed is apart.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
-from functools import cached_property, partial
 from itertools import combinations
 from typing import Literal
 
 from aidl_lang.common.records import record
+from aidl_lang.common.running import Later
 from aidl_lang.geometry.distance import lie_within, nearest_region, region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area
@@ -59,41 +59,40 @@ class Solid:
 
 @record()
 class Contacts:
-    """The pairs of some bodies, whose sections are those of a network."""
+    """The pairs of some bodies, in their order: those `near` touch or overlap, visibly; of `all` see above."""
 
-    solids: Sequence[Solid] = ()
-    network: Network = field(default_factory=partial(Network, ()), repr=False, compare=False)
-
-    def __getstate__(self) -> dict[str, object]:
-        """Returns what a pickle keeps: what is worked out on demand is worked out now."""
-        return {"solids": (), "network": None, "near": self.near, "all": self.all}
-
-    @cached_property
-    def near(self) -> tuple[tuple[str, str], ...]:
-        """The pairs that touch or overlap, as far as a reader can see."""
-        reach = max(UNNOTICED, self.network.tolerance)
-        pairs = sorted(near_pairs([solid.box for solid in self.solids], reach + self.network.tolerance))
-        couples = ((self.solids[i], self.solids[j]) for i, j in pairs)
-        return tuple(
-            (a.path, b.path)
-            for a, b in couples
-            if _shared(self.network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
-        )
-
-    @cached_property
-    def all(self) -> tuple[Contact, ...]:
-        """All pairs (see above), in the order of the bodies."""
-        pairs: Iterable[tuple[int, int]] = combinations(range(len(self.solids)), 2)
-        if len(self.solids) > ALL_PAIRS:
-            pairs = sorted(near_pairs([solid.box for solid in self.solids], NEAR * self.network.size))
-        return tuple(_compare(self.network, self.solids[i], self.solids[j]) for i, j in pairs)
+    bodies: Sequence[tuple[str, Region]] = ()
+    near: Callable[[], tuple[tuple[str, str], ...]] = field(default=tuple, repr=False, compare=False)
+    all: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
 
     def nearest(self, path: str) -> tuple[float, str]:
         """Returns the distance (mm) from a body to the nearest other, and its path."""
-        own = [solid.region for solid in self.solids if solid.path == path]
-        others = [solid for solid in self.solids if solid.path != path]
-        gap, place = nearest_region(own, [solid.region for solid in others])
-        return gap, others[place].path
+        own = [region for name, region in self.bodies if name == path]
+        others = [(name, region) for name, region in self.bodies if name != path]
+        gap, place = nearest_region(own, [region for _, region in others])
+        return gap, others[place][0]
+
+
+def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
+    """Returns the contacts between some bodies, whose sections are those of a network."""
+
+    def near() -> tuple[tuple[str, str], ...]:
+        reach = max(UNNOTICED, network.tolerance)
+        pairs = sorted(near_pairs([solid.box for solid in solids], reach + network.tolerance))
+        couples = ((solids[i], solids[j]) for i, j in pairs)
+        return tuple(
+            (a.path, b.path)
+            for a, b in couples
+            if _shared(network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
+        )
+
+    def everything() -> tuple[Contact, ...]:
+        pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
+        if len(solids) > ALL_PAIRS:
+            pairs = sorted(near_pairs([solid.box for solid in solids], NEAR * network.size))
+        return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+
+    return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
 
 
 def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:

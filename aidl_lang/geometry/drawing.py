@@ -15,7 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
 from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
 from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
-from aidl_lang.geometry.contacts import Contact, Contacts, Solid
+from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
@@ -124,7 +124,7 @@ class Drawing:
     @property
     def pairs(self) -> tuple[Contact, ...]:
         """The contacts between the bodies."""
-        return self.contacts.all
+        return self.contacts.all()
 
     @property
     def size(self) -> float:
@@ -155,7 +155,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for path in (m.structure.path for m in masses)
     )
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
-    touching = Contacts(solids, network)
+    touching = contacts(network, solids)
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
@@ -195,10 +195,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += loose_piece_notes(root, walk, masses, solids, touching.near)
+        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
         notes += unseen
         notes += _covered_letters(root, walk, masses, ground, order)
-        notes += fallen_piece_notes(root, walk, masses, solids, touching.near)
+        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.thin import thin_wall_notes

@@ -334,7 +334,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contac
     free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch
-    held = {path for pair in contacts.near for path in pair}
+    held = {path for pair in contacts.near() for path in pair}
     structures = {s.path: s for s in root.walk()}
     lonely: dict[object, list[SolvedStructure]] = {}
     for path in paths:

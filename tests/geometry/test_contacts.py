@@ -58,8 +58,8 @@ def test_only_pairs_that_come_near_are_compared_before_they_are_asked_for():
     shapes = [circle("c", x, 0, 1) for x in (0, 2, 5, 7.0005)]
     solids = [structure("solid", f"p{i}", shape) for i, shape in enumerate(shapes)]
     found = draw(model(structure("assembly", "a", *solids)))[0].contacts
-    assert found.near == (("a.p0", "a.p1"), ("a.p2", "a.p3"))
-    apart = [(p.a, p.b, pytest.approx(p.gap)) for p in found.all if (p.a, p.b) not in found.near]
+    assert found.near() == (("a.p0", "a.p1"), ("a.p2", "a.p3"))
+    apart = [(p.a, p.b, pytest.approx(p.gap)) for p in found.all() if (p.a, p.b) not in found.near()]
     assert apart == [
         ("a.p0", "a.p2", 3),
         ("a.p0", "a.p3", 5.0005),

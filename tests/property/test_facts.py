@@ -48,7 +48,7 @@ FACTS: Mapping[str, Callable[[Compiled], object]] = {
     "motions": lambda found: found.model and found.model.motions,
     "sizes": lambda found: found.model and found.model.sizes,
     "mentions": lambda found: found.model and [c.mentions() for c in found.model.constraints],
-    "near": lambda found: found.drawing and found.drawing.contacts.near,
+    "near": lambda found: found.drawing and found.drawing.contacts.near(),
     "pairs": lambda found: found.drawing and found.drawing.pairs,
     "conflicts": lambda found: found.conflicts(),
     "again": lambda found: pickle.loads(pickle.dumps(found)).diagnostics,
