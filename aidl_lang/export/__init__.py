@@ -410,7 +410,7 @@ def _stl(job: Job) -> Exported:
 
 
 def _3mf(job: Job) -> Exported:
-    from aidl_lang.export.mesh import to_3mf
+    from aidl_lang.export.threemf import to_3mf
 
     return to_3mf(job)
 

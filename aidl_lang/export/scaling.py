@@ -11,8 +11,6 @@ from aidl_lang.geometry.curves import Piece, Vec, image
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face, Loop
 
-# --- Scales and moves pictures and what is in them.
-
 
 def scaled(picture: Picture, factor: float) -> Picture:
     """Returns the picture with all its lengths multiplied."""

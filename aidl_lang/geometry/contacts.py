@@ -59,7 +59,7 @@ class Solid:
 
 @record()
 class Contacts:
-    """The pairs of some bodies, in their order: those `near` touch or overlap, visibly; of `all` see above."""
+    """The pairs of some bodies, in order: those `near` touch or overlap; of `all` see above."""
 
     bodies: Sequence[tuple[str, Region]] = ()
     near: Callable[[], tuple[tuple[str, str], ...]] = field(default=tuple, repr=False, compare=False)

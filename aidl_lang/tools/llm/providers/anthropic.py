@@ -7,7 +7,8 @@ from typing import Any
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Sampling, Usage
 from aidl_lang.tools.llm.providers.connection import Connection
-from aidl_lang.tools.llm.providers.server import Draft, Server, count, dig, one_line, words
+from aidl_lang.tools.llm.providers.draft import Draft, count, dig, one_line, words
+from aidl_lang.tools.llm.providers.server import Server
 
 MAX_TOKENS = 8192
 """The default limit: the API wants one, and every model allows at least this."""
