@@ -14,7 +14,8 @@ import httpx2
 
 from aidl_lang.tools.llm.messages import Message, ProviderError, Reply, Sampling, Usage
 from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, Connection, without_credentials
-from aidl_lang.tools.llm.providers.draft import UNKNOWN, (
+from aidl_lang.tools.llm.providers.draft import (
+    UNKNOWN,
     Draft,
     dig,
     one_line,
