@@ -42,6 +42,7 @@ _BROKEN = (
     AttributeError,
     EOFError,
     LookupError,
+    NameError,
     NotImplementedError,
     RecursionError,
     TypeError,
