@@ -59,7 +59,7 @@ class Env:
 class BuildingLimits:
     """Bounds on what a program may build; exceeding one is a diagnostic."""
 
-    entities: int = 100_000
+    entities: int = 120_000
     turns: int = 200_000
     depth: int = 60
     constraints: int = 50_000
