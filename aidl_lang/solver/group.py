@@ -169,7 +169,7 @@ class Group:
             if hierarchy.clock.expired:
                 hierarchy.timed_out = True
                 break
-            more = givers(hierarchy, self.tiers, scope, before)
+            more = givers(hierarchy, self.tiers, scope, extra, before)
             if not more:
                 break
             positions = [tier for tier in tiers if tier < POSITIONS]

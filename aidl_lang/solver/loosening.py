@@ -55,11 +55,17 @@ MOST = 400
 """The most moved unknowns that are thinned; above, the nearest point is kept."""
 
 
-def givers(hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> frozenset[int]:
+def givers(
+    hierarchy: Hierarchy, tiers: Tiers, scope: Scope, taken: frozenset[int], before: Mapping[int, float]
+) -> frozenset[int]:
     """Returns the unknowns that shall give way besides those of `scope`, whose rows are left as they are at
-    the current values, found on the way from those `before`; none if nobody can help.
+    the current values, found on the way from those `before`; none if nobody can help. Where those `taken`
+    already would do by their slopes, but did not, somebody else has to.
     """
-    return _Loosening(hierarchy, tiers, scope, before).givers()
+    found = _Loosening(hierarchy, tiers, scope, scope.free, before).givers()
+    if not found and taken:
+        found = _Loosening(hierarchy, tiers, scope, scope.free - taken, before).givers()
+    return found
 
 
 @record()
@@ -126,9 +132,16 @@ class _Rest:
 
 
 class _Loosening:
-    def __init__(self, hierarchy: Hierarchy, tiers: Tiers, scope: Scope, before: Mapping[int, float]) -> None:
+    def __init__(
+        self,
+        hierarchy: Hierarchy,
+        tiers: Tiers,
+        scope: Scope,
+        free: frozenset[int],
+        before: Mapping[int, float],
+    ) -> None:
         self.hierarchy, self.tiers, self.scope = hierarchy, tiers, scope
-        self.free = sorted(scope.free)
+        self.free = sorted(free)
         moved = np.array([hierarchy.values.unknowns[unknown] - before[unknown] for unknown in self.free])
         self.moved = moved / hierarchy.problem.scale[self.free]
         is_large = len(hierarchy.rows(scope.constraints)) * len(scope.free) > MANY
