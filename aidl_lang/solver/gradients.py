@@ -7,7 +7,6 @@ same rows again and again, does not use this.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -235,24 +234,3 @@ class Sorted:
 
     def members(self, part: int) -> Ints:
         return self.of[self.first[part] : self.first[part] + self.count[part]]
-
-
-def lots(*sizes: Ints) -> list[Ints]:
-    """Groups parts by their sizes, each rounded up to a power of two."""
-    exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
-    found: dict[tuple[int, ...], list[int]] = defaultdict(list)
-    for part, size in enumerate(zip(*exponents.tolist(), strict=True)):
-        found[size].append(part)
-    return [np.array(parts) for parts in found.values()]
-
-
-def stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: Ints) -> Floats:
-    """Returns the rows of each part that has a slot as one matrix of a stack, filled up with zeros."""
-    slot_of_row = np.append(slot, -1)[of_row]
-    at = np.flatnonzero(slot_of_row >= 0)
-    picked = matrix.take(at)
-    row = at[picked.rows]
-    height, width = (int(sizes.count[slot >= 0].max(initial=0)) for sizes in (rows, columns))
-    stack = np.zeros((int(slot.max()) + 1, height, width))
-    stack[slot_of_row[row], rows.place[row], columns.place[picked.columns]] = picked.entries
-    return stack

@@ -8,6 +8,7 @@ taken to the null space of J, lie in the same space, and span it when there are 
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import field
 from functools import cached_property
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
-from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, lots, stacked
+from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected
 from aidl_lang.solver.operations import Bools, Floats, Ints
 
 SEEN = 1e-7
@@ -132,7 +133,7 @@ def mobility(
     if not len(observables):
         return found
     parts = _Parts(equations, known, observables, watch, unknowns)
-    for members in lots(parts.rows.count, parts.columns.count, parts.seen.count):
+    for members in _lots(parts.rows.count, parts.columns.count, parts.seen.count):
         if parts.columns.count[members[0]] > LARGE:
             for part in members.tolist():
                 _settle_large(parts, part, found)
@@ -183,8 +184,8 @@ def _part_of_rows(matrix: Sparse, part: Ints) -> Ints:
 def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
     slot = np.full(len(parts.columns.count), -1)
     slot[members] = np.arange(len(members))
-    jacobian = stacked(parts.equations, parts.equation_part, parts.rows, parts.columns, slot)
-    observed = stacked(parts.observables, parts.observable_part, parts.seen, parts.columns, slot)
+    jacobian = _stacked(parts.equations, parts.equation_part, parts.rows, parts.columns, slot)
+    observed = _stacked(parts.observables, parts.observable_part, parts.seen, parts.columns, slot)
     if jacobian.shape[1]:
         _, sigma, vt = np.linalg.svd(jacobian, full_matrices=False)
         decided = ~((sigma > DOUBT) & (sigma < RANK)).any(axis=1)
@@ -295,7 +296,7 @@ def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
     """Returns the rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
     found = np.zeros(keys, dtype=np.int64)
-    for members in lots(order.count):
+    for members in _lots(order.count):
         slot = np.full(keys, -1)
         slot[members] = np.arange(len(members))
         own = np.flatnonzero(slot[key] >= 0)
@@ -304,3 +305,24 @@ def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
         if stack.size:
             found[members] = np.count_nonzero(np.linalg.svd(stack, compute_uv=False) > least, axis=1)
     return found
+
+
+def _lots(*sizes: Ints) -> list[Ints]:
+    """Groups parts by their sizes, each rounded up to a power of two."""
+    exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
+    found: dict[tuple[int, ...], list[int]] = defaultdict(list)
+    for part, size in enumerate(zip(*exponents.tolist(), strict=True)):
+        found[size].append(part)
+    return [np.array(parts) for parts in found.values()]
+
+
+def _stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: Ints) -> Floats:
+    """Returns the rows of each part that has a slot as one matrix of a stack, filled up with zeros."""
+    slot_of_row = np.append(slot, -1)[of_row]
+    at = np.flatnonzero(slot_of_row >= 0)
+    picked = matrix.take(at)
+    row = at[picked.rows]
+    height, width = (int(sizes.count[slot >= 0].max(initial=0)) for sizes in (rows, columns))
+    stack = np.zeros((int(slot.max()) + 1, height, width))
+    stack[slot_of_row[row], rows.place[row], columns.place[picked.columns]] = picked.entries
+    return stack
