@@ -280,14 +280,14 @@ class _ConflictSearch:
         proof.
         """
         relaxation = self._relaxation(constraints)
-        owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
+        owner = self.hierarchy.owners(constraints)
         return sorted({owner[row] for row in relaxation.smallest()})
 
     def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
         """Returns the residual of each member of a conflict that is one row where the others hold; empty if
         that is not known.
         """
-        owner = [index for index in conflict for _ in self.hierarchy.rows([index])]
+        owner = self.hierarchy.owners(conflict)
         gaps = self._relaxation(conflict).gaps()
         return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)
 

@@ -283,6 +283,10 @@ class Hierarchy:
     def rows(self, indices: Iterable[int]) -> list[Row]:
         return [row for index in indices for row in self.problem.constraints[index].rows]
 
+    def owners(self, indices: Iterable[int]) -> list[int]:
+        """Returns the constraint of each of their `rows`."""
+        return [index for index in indices for _ in self.problem.constraints[index].rows]
+
     def refresh(self, indices: Iterable[int]) -> None:
         """Brings the nodes of these constraints up to date."""
         self.values.update([row.expression for row in self.rows(indices)])

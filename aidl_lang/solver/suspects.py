@@ -47,23 +47,23 @@ class Linearised:
     """
 
     def __init__(self, hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> None:
-        rows = [(index, row) for index in constraints for row in hierarchy.rows([index])]
+        rows = hierarchy.rows(constraints)
         hierarchy.refresh(constraints)
-        found = gradients(hierarchy.values, [row.expression for _, row in rows])
+        found = gradients(hierarchy.values, [row.expression for row in rows])
         columns = {unknown: k for k, unknown in enumerate(sorted(free))}
         self.jacobian = np.zeros((len(rows), len(columns)))
         self.distance = np.zeros(len(rows))
-        self.inequality = np.array([row.relation is Relation.AT_MOST for _, row in rows], dtype=np.bool_)
-        self.owner = np.array([index for index, _ in rows], dtype=np.int64)
+        self.inequality = np.array([row.relation is Relation.AT_MOST for row in rows], dtype=np.bool_)
+        self.owner = np.array(hierarchy.owners(constraints), dtype=np.int64)
         scale = hierarchy.problem.scale
-        for i, (_, row) in enumerate(rows):
+        for i, row in enumerate(rows):
             for unknown, slope in found[row.expression].items():
                 if unknown in columns:
                     self.jacobian[i, columns[unknown]] = slope * scale[unknown]
             self.distance[i] = hierarchy.values.nodes[row.expression]
         self.jacobian, self.distance = np.nan_to_num(self.jacobian), np.nan_to_num(self.distance)
         length = np.linalg.norm(self.jacobian, axis=1)
-        size = np.array([row.scale for _, row in rows])
+        size = np.array([row.scale for row in rows])
         flat = length * size <= FAINT * np.abs(self.distance)
         self.jacobian[flat] = 0.0
         length = np.where(flat, 1.0, length)
