@@ -5,7 +5,7 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
@@ -37,9 +37,10 @@ from aidl_lang.geometry.overhanging import overhanging_notes
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
+from aidl_lang.geometry.sections import Section, fill, intersection, is_nothing
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
-from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
+from aidl_lang.geometry.styles import Style, idle_areas, idle_looks, is_filled, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
@@ -77,7 +78,8 @@ class Stroke:
     `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
     `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
-    which is filled where it can be; `pieces` are their outlines.
+    or an area with a look of its own (`is_area`), which is filled where it can be; `pieces` are their
+    outlines.
     """
 
     path: str
@@ -87,6 +89,7 @@ class Stroke:
     role: str = "drawing"
     over: str | None = None
     faces: tuple[Face, ...] = ()
+    is_area: bool = False
 
 
 @record()
@@ -172,6 +175,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
+    material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
+    areas = _areas(root, shapes, network, material)
+    lying += _lying_areas(stacked(root), shapes, styles, areas, network)
     drawings = [s.path for s in root.walk() if s.kind == "drawing"]
     on_parts = [shape for path in drawings for shape in shapes[path]] + [
         s for e in engraved.values() for s in e
@@ -179,7 +185,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     inked = [number for shape in on_parts for number in shape.numbers]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
     unseen: list[Diagnostic] = []
-    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground, unseen))
+    strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground, unseen))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
@@ -192,7 +198,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
+            is_seen = isinstance(f, InnerLoop) and (
+                styles[f.structure.path].has_seams or any(map(is_filled, f.face.geometries))
+            )
+            if not is_seen:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += loose_piece_notes(root, walk, masses, solids, touching.near())
@@ -204,7 +213,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             from aidl_lang.geometry.thin import thin_wall_notes
 
             notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
-        notes += idle_looks(root, paths, styles)
+        loose = {g.path for f in walk.findings if isinstance(f, LooseCurves) for g, _ in f.curves}
+        notes += [*idle_looks(root, paths, styles), *idle_areas(root, areas, loose)]
         notes += idle_orders(root, paths)
         return ordered(by_statement([*notes, *empty]))
 
@@ -367,6 +377,7 @@ def _strokes(
     shapes: dict[str, list[Shape]],
     engraved: dict[str, list[Shape]],
     walk: Bodies,
+    areas: dict[str, Section],
     styles: dict[str, Style],
     regions: dict[str, Region],
     ground: Ground,
@@ -378,11 +389,15 @@ def _strokes(
     for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+            yield from _inked(
+                structure, shapes[path], style, ground, place, areas, is_own=path in own, notes=notes
+            )
         for shape in engraved.get(path, ()):
             look = styled(replace(style, color=None), shape.geometry)
             for pieces, faces in _told_apart([shape], ground.network, is_area=look.is_area):
                 yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
+        if structure.kind != "drawing":
+            yield from _colored(structure, style, ground.network, areas)
         if style.is_blind and path in regions:
             yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
@@ -398,7 +413,8 @@ def _inked(
     shapes: list[Shape],
     style: Style,
     ground: Ground,
-    place: int,
+    place: float,
+    areas: Collection[str],
     *,
     is_own: bool,
     notes: list[Diagnostic],
@@ -406,6 +422,7 @@ def _inked(
     """Yields the strokes of a drawing; reports those in the colour of what they lie on, and those under a
     body unless others of the same array are seen.
     """
+    places = _places(drawing, place)
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
     seen: set[str] = set()
@@ -413,7 +430,7 @@ def _inked(
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
-        numbers = shape.numbers
+        numbers, place = shape.numbers, places[shape.geometry.path]
         hidden = ground.hides(look.color, numbers, place)
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)
@@ -429,12 +446,69 @@ def _inked(
         # What is engraved as areas is one area, the rest a stroke for each shape.
         alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
     for (look, over, _), together in alike.items():
-        for pieces, faces in _told_apart(together, ground.network, is_area=look.is_area):
-            yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
+        geometry = together[0].geometry
+        is_area = geometry.path in areas and not look.is_area
+        for pieces, faces in _told_apart(together, ground.network, is_area=is_area or look.is_area):
+            is_face = is_area and bool(faces)
+            yield Stroke(drawing.path, geometry.path, pieces, look, "drawing", over, faces, is_face)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
     for by, names in covered.items():
         if whole := [name for name in names if name.partition("[")[0] not in seen]:
             notes.append(covered_note(drawing, whole, by))
+
+
+def _areas(
+    root: SolvedStructure, shapes: dict[str, list[Shape]], network: Network, material: dict[str, Section]
+) -> dict[str, Section]:
+    """Returns the areas with looks of their own, by the path of the geometry: what it encloses, in a body of
+    its material.
+    """
+    found = {}
+    for structure in root.walk():
+        for shape in shapes[structure.path] if structure.kind != "hole" else ():
+            if is_filled(shape.geometry):
+                section = union_of(own_faces(network, [shape]).faces)
+                if structure.kind != "drawing":
+                    section = intersection(section, material.get(structure.path, fill([], "NonZero")))
+                if not is_nothing(section):
+                    found[shape.geometry.path] = section
+    return found
+
+
+def _lying_areas(
+    order: Iterable[SolvedStructure],
+    shapes: dict[str, list[Shape]],
+    styles: dict[str, Style],
+    areas: dict[str, Section],
+    network: Network,
+) -> Iterator[StackedBody]:
+    """Yields the areas as what others lie on."""
+    for place, structure in enumerate(order):
+        places = _places(structure, place)
+        for shape in shapes[structure.path]:
+            path = shape.geometry.path
+            if (section := areas.get(path)) is not None:
+                look = styled(styles[structure.path], shape.geometry)
+                box = union_bounds([network.boxes[number] for number in shape.numbers])
+                yield StackedBody(path, places[path], look.color, section, box, is_clear=look.is_clear)
+
+
+def _places(structure: SolvedStructure, place: float) -> dict[str, float]:
+    """Returns the places of the geometry of a structure in the order of drawing: above the structure itself,
+    below the next one.
+    """
+    count = len(structure.drawn) + 1
+    return {g.path: place + k / count for k, g in enumerate(structure.drawn, 1)}
+
+
+def _colored(
+    structure: SolvedStructure, style: Style, network: Network, areas: dict[str, Section]
+) -> Iterator[Stroke]:
+    """Yields the areas of a body that have looks of their own."""
+    for geometry in structure.drawn:
+        if (section := areas.get(geometry.path)) is not None:
+            region, look = trace(network, section).region, styled(style, geometry)
+            yield Stroke(structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True)
 
 
 def _told_apart(

@@ -38,7 +38,7 @@ class StackedBody:
     """
 
     path: str
-    place: int
+    place: float
     color: str | None
     section: Section
     box: Bounds
@@ -53,7 +53,7 @@ class Ground:
     bodies: Sequence[StackedBody]
     inked: Sequence[int]
 
-    def hides(self, color: str | None, curves: Sequence[int], place: int) -> list[bool]:
+    def hides(self, color: str | None, curves: Sequence[int], place: float) -> list[bool]:
         """Returns for each edge of some curves drawn at a place whether the body below has nearly their
         colour.
         """
@@ -67,7 +67,7 @@ class Ground:
         own = self.bodies[body].color
         return own is not None and look_alike(own, color)
 
-    def covering(self, curves: Sequence[int], place: int) -> str | None:
+    def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         first = bisect_right(self._places, place)
         if not curves or first == len(self.bodies):
@@ -80,7 +80,7 @@ class Ground:
             (b.path for b in map(self.bodies.__getitem__, sorted(over)) if _lies_within(box, b.box)), None
         )
 
-    def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
+    def covered_part(self, curves: Sequence[int], place: float) -> tuple[float, list[str]]:
         """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
         bodies.
         """
@@ -95,7 +95,7 @@ class Ground:
         covered = sum(long for over, long in zip(above, lengths, strict=True) if over)
         return covered / (sum(lengths) or 1.0), [self.bodies[k].path for k in by]
 
-    def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
+    def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
         faces is an inlay and shows them.
         """
@@ -110,7 +110,7 @@ class Ground:
         return [edge for curve in curves for edge, _ in self.network.uses[curve]]
 
     @cached_property
-    def _places(self) -> list[int]:
+    def _places(self) -> list[float]:
         return [body.place for body in self.bodies]
 
     @cached_property
@@ -141,7 +141,9 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
     """Returns the diagnostic on curves of a drawing that a later body covers."""
     around, _, name = by.rpartition(".")
     hint = f"write the drawing below `{name}`, or inside it"
-    if around == drawing.path.rpartition(".")[0]:
+    if around == drawing.path:
+        hint = f"write {'it' if len(names) == 1 else 'them'} below `{name}`"
+    elif around == drawing.path.rpartition(".")[0]:
         hint += f", or say `@in_front({name})` before it"
     return Diagnostic(
         "W0709",
