@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from typing import TypeAlias
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
@@ -19,7 +20,7 @@ from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
+from aidl_lang.geometry.faces import Shape, region_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -40,10 +41,11 @@ from aidl_lang.geometry.seams import inner_seams, visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
-from aidl_lang.geometry.trace import Traced, trace, trace_all
+from aidl_lang.geometry.trace import Traced, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
+_Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
 
 
 @record()
@@ -143,9 +145,10 @@ class Findings:
 def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
     root, unusable = model.root, list[Diagnostic]()
-    curves, boxes, shapes, engraved = _collect(root, unusable)
+    (curves, boxes), ink, shapes, engraved = _collect(root, unusable)
     clips, around = clip_shapes(root, len(curves))
-    network = Network([*curves, *around], [*boxes, *map(bounds, around)])
+    boxes += map(bounds, around)
+    network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
     network, walk, masses, traced, gaps = _closed(root, network, shapes, clips, blind)
@@ -169,17 +172,11 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     )
     order = {structure.path: place for place, structure in enumerate(stacked(root))}
     lying = [
-        StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
+        StackedBody(b.path, order[b.path], b.style.color, m.section, b.region, b.box, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
-    drawings = [s.path for s in root.walk() if s.kind == "drawing"]
-    on_parts = [shape for path in drawings for shape in shapes[path]] + [
-        s for e in engraved.values() for s in e
-    ]
-    inked = [number for shape in on_parts for number in shape.numbers]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
-    unseen: list[Diagnostic] = []
-    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground, unseen))
+    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
+    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
@@ -196,7 +193,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += loose_piece_notes(root, walk, masses, solids, touching.near())
-        notes += unseen
+        notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground, order)
         notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
@@ -228,7 +225,7 @@ def _closed(
     found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
-        joined = Network(without_gaps(network.curves, gaps))
+        joined = Network(without_gaps(network.curves, gaps), box=network.box)
         then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
@@ -258,12 +255,13 @@ def _arranged(
 
 def _collect(
     root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]], dict[str, list[Shape]]]:
-    """Returns all curves that can be drawn, numbered, their boxes, and by structure the shapes they belong
-    to, and the outlines that a file says are engraved.
+) -> tuple[_Curves, _Curves, dict[str, list[Shape]], dict[str, list[Shape]]]:
+    """Returns all curves that can be drawn, numbered, with their boxes: those that bound material, and those
+    of strokes, which nothing is cut by. And by structure the shapes they belong to, and the outlines that a
+    file says are engraved.
     """
-    curves: list[Piece] = []
-    boxes: list[Bounds] = []
+    solid: _Curves = ([], [])
+    ink: _Curves = ([], [])
     shapes: dict[str, list[Shape]] = {}
     engraved: dict[str, list[Shape]] = {}
     for structure in root.walk():
@@ -280,6 +278,7 @@ def _collect(
                 if usable is None:
                     vanished.append(leaf)
                     continue
+                curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
                 leaves.append((leaf, len(curves)))
                 curves.append(usable[0])
                 boxes.append(usable[1])
@@ -295,7 +294,7 @@ def _collect(
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
-    return curves, boxes, shapes, engraved
+    return solid, ink, shapes, engraved
 
 
 def _has_strokes(geometry: SolvedGeometry) -> bool:
@@ -370,7 +369,6 @@ def _strokes(
     styles: dict[str, Style],
     regions: dict[str, Region],
     ground: Ground,
-    notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
     """Yields the curves of drawings, and those of other structures that bound nothing."""
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
@@ -378,10 +376,10 @@ def _strokes(
     for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own)
         for shape in engraved.get(path, ()):
             look = styled(replace(style, color=None), shape.geometry)
-            for pieces, faces in _told_apart([shape], ground.network, is_area=look.is_area):
+            for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
                 yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
         if style.is_blind and path in regions:
             yield Stroke(path, path, regions[path].pieces, style, over=style.color)
@@ -401,60 +399,63 @@ def _inked(
     place: int,
     *,
     is_own: bool,
-    notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """Yields the strokes of a drawing; reports those in the colour of what they lie on, and those under a
-    body unless others of the same array are seen.
-    """
-    lost: dict[str, list[str]] = {}
-    covered: dict[str, list[str]] = {}
-    seen: set[str] = set()
+    """Yields the strokes of a drawing."""
     alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
-        numbers = shape.numbers
-        hidden = ground.hides(look.color, numbers, place)
-        if (by := ground.covering(numbers, place)) is not None:
-            covered.setdefault(by, []).append(shape.geometry.name)
-        else:
-            seen.add(shape.geometry.name.partition("[")[0])
-        if by is None and shape.geometry.type == LETTERING:
-            share, over_it = ground.covered_part(numbers, place)
-            if share >= COVERED:
-                notes.append(lettering_note(drawing, shape.geometry, share, over_it))
-        if is_asked and look.color and hidden and all(hidden):
-            lost.setdefault(look.color, []).append(shape.geometry.name)
-        over = look.color if any(hidden) and not is_asked else None
+        is_hidden = not is_asked and ground.hides(look.color, shape.numbers, place, wholly=False)
+        over = look.color if is_hidden else None
         # What is engraved as areas is one area, the rest a stroke for each shape.
         alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
     for (look, over, _), together in alike.items():
-        for pieces, faces in _told_apart(together, ground.network, is_area=look.is_area):
+        for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
             yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
-    notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
-    for by, names in covered.items():
-        if whole := [name for name in names if name.partition("[")[0] not in seen]:
-            notes.append(covered_note(drawing, whole, by))
+
+
+def _unseen(
+    root: SolvedStructure, shapes: dict[str, list[Shape]], styles: dict[str, Style], ground: Ground
+) -> Iterator[Diagnostic]:
+    """Yields warnings on strokes in the colour of what they lie on, and on those under a body unless others
+    of the same array are seen.
+    """
+    own = _colored_drawings(root)
+    drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
+    for place, drawing in drawings:
+        lost: dict[str, list[str]] = {}
+        covered: dict[str, list[str]] = {}
+        seen: set[str] = set()
+        for shape in shapes[drawing.path]:
+            look, numbers = styled(styles[drawing.path], shape.geometry), shape.numbers
+            if (by := ground.covering(numbers, place)) is not None:
+                covered.setdefault(by, []).append(shape.geometry.name)
+            else:
+                seen.add(shape.geometry.name.partition("[")[0])
+            if by is None and shape.geometry.type == LETTERING:
+                share, over_it = ground.covered_part(numbers, place)
+                if share >= COVERED:
+                    yield lettering_note(drawing, shape.geometry, share, over_it)
+            is_asked = drawing.path in own or "color" in shape.geometry.attributes
+            if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
+                lost.setdefault(look.color, []).append(shape.geometry.name)
+        yield from (unseen_note(drawing, names, color) for color, names in lost.items())
+        for by, names in covered.items():
+            if whole := [name for name in names if name.partition("[")[0] not in seen]:
+                yield covered_note(drawing, whole, by)
 
 
 def _told_apart(
-    shapes: Sequence[Shape], network: Network, *, is_area: bool
+    shapes: Sequence[Shape], curves: Sequence[Piece], *, is_area: bool
 ) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
     """Yields the lines of shapes, and with its faces the outlines of what is filled of them: letters, what
     closed shapes of a file enclose together, as in a solid, and all that is to be an area.
     """
-    drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
+    drawn = [(leaf, curves[number]) for shape in shapes for leaf, number in shape.leaves]
     parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
     filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
-    inked = [
-        Shape(shape.geometry, tuple((leaf, k) for leaf, k in shape.leaves if id(leaf) in filled))
-        for shape in shapes
-    ]
-    found, before = own_faces(network, [shape for shape in inked if shape.leaves]), len(network.blurred)
-    region, loose = trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
-    if len(network.blurred) > before:  # small ones have crossing chords in a large drawing
-        known = ((s.geometry, [(leaf, network.curves[k]) for leaf, k in s.leaves]) for s in inked)
-        region, loose = region_of((g, leaves) for g, leaves in known if leaves)
+    known = ((s.geometry, [(leaf, curves[k]) for leaf, k in s.leaves if id(leaf) in filled]) for s in shapes)
+    region, loose = region_of((g, leaves) for g, leaves in known if leaves)
     filled -= {id(leaf) for leaf in loose}
     if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
         yield lines, ()

@@ -99,12 +99,15 @@ class Network:
 
     A result may have vertices that no curve owns: chords crossed where their curves do not. `blurred` has the
     numbers of these curves; work done by `with_finer_chords` is then begun again with these curves cut finer.
+    `box` is that of the whole drawing, of which these may be a part.
     """
 
-    def __init__(self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None) -> None:
+    def __init__(
+        self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None, box: Bounds | None = None
+    ) -> None:
         self.curves = list(curves)
         self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
-        self.box = union_bounds(self.boxes)
+        self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
         self.size = max(right - left, top - bottom) or 1.0
         self.tolerance = RELATIVE_TOLERANCE * self.size
