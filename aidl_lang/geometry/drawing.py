@@ -19,7 +19,7 @@ from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_cl
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
+from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, all_bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape, region_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
@@ -31,6 +31,7 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
+from aidl_lang.geometry.letters import lettering
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
@@ -207,7 +208,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 
     plans = tuple(_plans(root))
     boxes = [b.box for b in bodies]
-    boxes += [bounds(piece) for s in strokes for piece in s.pieces]
+    boxes += all_bounds(piece for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
     return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
@@ -273,15 +274,16 @@ def _collect(
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            for leaf in _leaves(geometry):
-                usable = _usable(leaf.curve) if leaf.curve else None
-                if usable is None:
+            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in _leaves(geometry)]
+            around = iter(all_bounds(curve for _, curve in found if curve is not None))
+            for leaf, curve in found:
+                if curve is None or not _has_extent(box := next(around)):
                     vanished.append(leaf)
                     continue
                 curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
                 leaves.append((leaf, len(curves)))
-                curves.append(usable[0])
-                boxes.append(usable[1])
+                curves.append(curve)
+                boxes.append(box)
             numbers = {id(leaf): (leaf, number) for leaf, number in leaves}
             engraved.setdefault(structure.path, []).extend(
                 Shape(part, tuple(numbers[id(leaf)] for leaf in part.parts if id(leaf) in numbers))
@@ -312,10 +314,8 @@ def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
         yield from _leaves(part)
 
 
-def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
-    """Returns the curve with positive radii, and its box; None if it has no extent or no finite
-    coordinates.
-    """
+def _usable(curve: Piece) -> Piece | None:
+    """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
     if not is_finite(curve):
         return None
     if isinstance(curve, Circle):
@@ -326,12 +326,14 @@ def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
         curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
     if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
         return None
-    if isinstance(curve, Circle | Arc) and not curve.radius > 0:
-        return None
-    box = bounds(curve)
+    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
+
+
+def _has_extent(box: Bounds) -> bool:
+    """Tells whether a curve can be drawn that has this box."""
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
-        return None
-    return (curve, box) if math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH else None
+        return False
+    return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
@@ -451,13 +453,19 @@ def _told_apart(
     """Yields the lines of shapes, and with its faces the outlines of what is filled of them: letters, what
     closed shapes of a file enclose together, as in a solid, and all that is to be an area.
     """
-    drawn = [(leaf, curves[number]) for shape in shapes for leaf, number in shape.leaves]
-    parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
-    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
-    known = ((s.geometry, [(leaf, curves[k]) for leaf, k in s.leaves if id(leaf) in filled]) for s in shapes)
-    region, loose = region_of((g, leaves) for g, leaves in known if leaves)
-    filled -= {id(leaf) for leaf in loose}
-    if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
+    drawn = {id(leaf): curves[number] for shape in shapes for leaf, number in shape.leaves}
+    parts = [part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled]
+    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)} & drawn.keys()
+    letters = [part.walk() for part in parts if part.type == "glyph"]
+    written = [[drawn[id(leaf)] for leaf in letter if id(leaf) in filled] for letter in letters]
+    region = lettering(written) if sum(map(len, written)) == len(filled) > 0 else None
+    if region is None:
+        known = (
+            (s.geometry, [(leaf, curves[k]) for leaf, k in s.leaves if id(leaf) in filled]) for s in shapes
+        )
+        region, loose = region_of((g, leaves) for g, leaves in known if leaves)
+        filled -= {id(leaf) for leaf in loose}
+    if lines := tuple(curve for leaf, curve in drawn.items() if leaf not in filled):
         yield lines, ()
     if region:
         yield region.pieces, region.faces
@@ -476,4 +484,4 @@ def _colored_drawings(root: SolvedStructure) -> set[str]:
 def _plans(root: SolvedStructure) -> Iterator[PlanBox]:
     for structure in root.walk():
         if structure.is_empty and (box := structure.box) is not None:
-            yield PlanBox(structure.path, structure.name, (box.left, box.bottom, box.right, box.top))
+            yield PlanBox(structure.path, structure.name, box.bounds)
