@@ -23,9 +23,10 @@ from aidl_lang.geometry.tessellate import region_polygons
 
 @record(slots=True)
 class Clipped:
-    """The parts of a curve that lie inside; `is_whole` if no part of it lies outside."""
+    """The parts of a curve that lie inside, and the others; `is_whole` if none of these is off the border."""
 
     inner: tuple[Piece, ...]
+    outer: tuple[Piece, ...]
     is_whole: bool
 
 
@@ -52,7 +53,7 @@ def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
 def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool = False) -> list[Clipped]:
     """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:
-        return [Clipped((), is_whole=False) for _ in curves]
+        return [Clipped((), (curve,), is_whole=False) for curve in curves]
     boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
     size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
     tolerance = RELATIVE_TOLERANCE * size
@@ -121,17 +122,20 @@ def _stretch(
 def _clipped(
     curve: Piece, stretches: Sequence[Stretch], within: Sequence[bool], with_border: bool
 ) -> Clipped:
-    inner: list[Stretch] = []
+    sides: tuple[list[Stretch], list[Stretch]] = ([], [])
     for stretch, is_within in zip(stretches, within, strict=True):
-        if not (with_border if stretch.on_border else is_within):
-            continue
-        if inner and inner[-1].t1 == stretch.t0:
-            before = inner.pop()
+        same = sides[0 if (with_border if stretch.on_border else is_within) else 1]
+        if same and same[-1].t1 == stretch.t0:
+            before = same.pop()
             stretch = Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
-        inner.append(stretch)
-    if is_closed(curve) and len(inner) > 1 and inner[-1].t1 == inner[0].t0 + 1:
-        last, first = inner.pop(), inner[0]
-        inner[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
+        same.append(stretch)
+    for same in sides if is_closed(curve) else ():
+        if len(same) > 1 and same[-1].t1 == same[0].t0 + 1:
+            last, first = same.pop(), same[0]
+            same[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
     is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
-    pieces = (curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in inner)
-    return Clipped(tuple(pieces), is_whole)
+    inner, outer = (
+        tuple(curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in same)
+        for same in sides
+    )
+    return Clipped(inner, outer, is_whole)

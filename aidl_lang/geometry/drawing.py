@@ -274,7 +274,7 @@ def _collect(
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in _leaves(geometry)]
+            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
             around = iter(all_bounds(curve for _, curve in found if curve is not None))
             for leaf, curve in found:
                 if curve is None or not _has_extent(box := next(around)):
@@ -302,16 +302,6 @@ def _collect(
 def _has_strokes(geometry: SolvedGeometry) -> bool:
     """Tells whether there are letters of strokes in what is drawn of a geometry."""
     return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
-
-
-def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
-    """Yields the primitives with curves, construction geometry aside."""
-    if geometry.construction:
-        return
-    if geometry.curve is not None:
-        yield geometry
-    for part in geometry.parts:
-        yield from _leaves(part)
 
 
 def _usable(curve: Piece) -> Piece | None:

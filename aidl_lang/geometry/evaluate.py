@@ -245,6 +245,11 @@ def bounds(curve: Piece) -> Bounds:
     return min(xs), min(ys), max(xs), max(ys)
 
 
+def are_near(a: Bounds, b: Bounds) -> bool:
+    """Tells whether two boxes touch or overlap."""
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
 def all_bounds(curves: Iterable[Piece]) -> list[Bounds]:
     """Returns the bounding box of each of some curves; those of many cubics are worked out at once."""
     every = list(curves)

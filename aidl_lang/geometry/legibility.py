@@ -14,7 +14,7 @@ from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.geometry.clipping import stretches_beside
 from aidl_lang.geometry.curves import Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, part, point
+from aidl_lang.geometry.evaluate import Bounds, are_near, part, point
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import GRID, Network, union_bounds
 from aidl_lang.geometry.region import Region
@@ -65,7 +65,8 @@ class Ground:
         or else somewhere.
         """
         below = self._around(curves, range(bisect_left(self._places, place)))
-        alike = {k for k in below if color is not None and self._is_alike(k, color)}
+        seen = ((k, self.bodies[k].color) for k in below)
+        alike = {k for k, own in seen if own is not None and color is not None and look_alike(own, color)}
         if not alike:
             return False
         asked = all if wholly else any
@@ -73,10 +74,6 @@ class Ground:
         if found is wholly:  # by the middles alone it may still be otherwise
             return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
         return found
-
-    def _is_alike(self, body: int, color: str) -> bool:
-        own = self.bodies[body].color
-        return own is not None and look_alike(own, color)
 
     def covering(self, curves: Sequence[int], place: int) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
@@ -103,7 +100,7 @@ class Ground:
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
         """Returns those of some bodies whose boxes meet that of some curves."""
         box = union_bounds([self.boxes[curve] for curve in curves])
-        return [k for k in bodies if curves and _meet(box, self.bodies[k].box)]
+        return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
 
     def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
         """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
@@ -130,7 +127,7 @@ class Ground:
         outlines = [self.bodies[k].region for k in bodies]
         around = union_bounds(boxes)
         near = [(p, b) for r in outlines for p, b in zip(r.pieces, r.boxes.tolist(), strict=True)]
-        near = [(p, b) for p, b in near if _meet(around, b)]
+        near = [(p, b) for p, b in near if are_near(around, b)]
         boxes += [b for _, b in near]
         cut = stretches_beside(own, [p for p, _ in near], boxes, self.network.tolerance)
         parts = [(curve, stretch) for curve, of in zip(own, cut, strict=True) for stretch in of]
@@ -146,10 +143,6 @@ class Ground:
         on_grid = self.network.to_grid(np.array(spots)) * np.float64(GRID)
         within = np.array([inside_mask(self.bodies[k].section, on_grid) for k in bodies])
         return [[k for k, is_in in zip(bodies, of, strict=True) if is_in] for of in within.T.tolist()]
-
-
-def _meet(one: Bounds, other: Bounds) -> bool:
-    return one[0] <= other[2] and other[0] <= one[2] and one[1] <= other[3] and other[1] <= one[3]
 
 
 def _lies_within(inner: Bounds, outer: Bounds) -> bool:

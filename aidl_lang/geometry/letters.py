@@ -48,10 +48,6 @@ def lettering(letters: Sequence[Sequence[Piece]]) -> Region | None:
 @lru_cache(maxsize=512)
 def united(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
     """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
-    return tuple(_points(piece) for piece in _united(outline).pieces)
-
-
-def _united(outline: tuple[Curve, ...]) -> Region:
     network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
     numbers = {id(curve): number for number, curve in enumerate(network.curves)}
     contours = [[numbers[id(piece)] for piece in contour] for contour in _contours(network.curves)]
@@ -60,7 +56,7 @@ def _united(outline: tuple[Curve, ...]) -> Region:
         uses = [[use for number in contour for use in network.uses[number]] for contour in contours]
         return trace(network, fill([network.polyline(u) for u in uses if u], "NonZero")).region
 
-    return with_finer_chords(network, traced)
+    return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
 
 
 _ROUNDS = 4
@@ -72,7 +68,7 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
     """Returns the outline of a character through which bridges lead to all that it encloses: upright ones of
     that width, above and below the middle of each counter, through the strokes next to it.
     """
-    region = lettering([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or _united(outline)
+    region = lettering([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or Region()
     for wider in range(_ROUNDS):
         counters = [hole for face in region.faces for hole in face.holes]
         if not counters:

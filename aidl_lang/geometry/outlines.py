@@ -53,12 +53,9 @@ def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
     out.
     """
-    if g.construction:
-        return
-    if g.curve is not None and is_finite(g.curve) and max(map(abs, bounds(g.curve))) <= LARGEST:
-        yield g, g.curve
-    for part in g.parts:
-        yield from _leaves(part)
+    for leaf in g.leaves():
+        if (curve := leaf.curve) and is_finite(curve) and max(map(abs, bounds(curve))) <= LARGEST:
+            yield leaf, curve
 
 
 def _shown(g: SolvedGeometry) -> SolvedGeometry:

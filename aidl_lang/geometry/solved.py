@@ -128,14 +128,18 @@ class SolvedGeometry:
         for part in self.parts:
             yield from part.walk()
 
-    def curves(self) -> Iterator[Piece]:
-        """Yields the drawn curves in order of writing; none of construction geometry."""
+    def leaves(self) -> Iterator[SolvedGeometry]:
+        """Yields the primitives with drawn curves in order of writing; none of construction geometry."""
         if self.construction:
             return
         if self.curve is not None:
-            yield self.curve
+            yield self
         for part in self.parts:
-            yield from part.curves()
+            yield from part.leaves()
+
+    def curves(self) -> Iterator[Piece]:
+        """Yields these curves."""
+        return (leaf.curve for leaf in self.leaves() if leaf.curve is not None)
 
 
 @record()
