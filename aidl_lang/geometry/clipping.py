@@ -45,11 +45,6 @@ class Stretch:
         return (self.t0 + self.t1) / 2
 
 
-def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
-    """Returns the parts of curves that lie inside, without what runs along the border."""
-    return [piece for one in clipped_each(curves, region) for piece in one.inner]
-
-
 def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool = False) -> list[Clipped]:
     """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:

@@ -163,6 +163,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
+        if m.inner
         for path, pieces in visible_seams(network, m, traced)
     )
     asked = {path: faces for path, faces in walk.faces.items() if styles[path].has_seams}

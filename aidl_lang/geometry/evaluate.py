@@ -7,6 +7,7 @@ its rightmost point), through the eccentric anomaly of an ellipse, and the usual
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from operator import attrgetter
@@ -43,11 +44,12 @@ NO_LENGTH = 1e-7
 _VALUES = {kind: attrgetter(*names) for kind, names in FIELDS.items()}
 
 
-def is_finite(curve: Piece) -> bool:
-    """Tells whether every number of the curve is finite."""
-    return all(
-        math.isfinite(n) for v in _VALUES[type(curve)](curve) for n in (v if isinstance(v, tuple) else (v,))
-    )
+def is_finite(curve: Piece, most: float = sys.float_info.max) -> bool:
+    """Tells whether every number of the curve is finite, and no larger than that."""
+    for value in _VALUES[type(curve)](curve):
+        if not (max(map(abs, value)) <= most if isinstance(value, tuple) else abs(value) <= most):
+            return False
+    return True
 
 
 def is_closed(curve: Piece) -> bool:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.evaluate import Bounds, all_bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Loop, Region
 
@@ -49,7 +49,7 @@ def measure(region: Region) -> Measures:
 
 
 def region_bounds(region: Region) -> Bounds:
-    return union_bounds([bounds(piece) for face in region.faces for piece in face.outer.pieces])
+    return union_bounds(all_bounds(piece for face in region.faces for piece in face.outer.pieces))
 
 
 def area(region: Region) -> float:

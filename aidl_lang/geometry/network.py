@@ -181,7 +181,9 @@ class Network:
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
-            whole = is_closed(curve) or (not isinstance(curve, Line) and _extent(curve) > 4 * self.tolerance)
+            left, bottom, right, top = self.boxes[number]
+            is_large = max(right - left, top - bottom) > 4 * self.tolerance
+            whole = is_closed(curve) or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
 
@@ -353,11 +355,6 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
     sweep = abs(round_range(curve)[1]) * share
     step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(radius, chord))))
     return max(2, min(2000, math.ceil(sweep / step)))
-
-
-def _extent(curve: Piece) -> float:
-    left, bottom, right, top = bounds(curve)
-    return max(right - left, top - bottom)
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:

@@ -11,7 +11,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped, clipped_each
+from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
 from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
@@ -54,7 +54,7 @@ def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     out.
     """
     for leaf in g.leaves():
-        if (curve := leaf.curve) and is_finite(curve) and max(map(abs, bounds(curve))) <= LARGEST:
+        if (curve := leaf.curve) and is_finite(curve, LARGEST):
             yield leaf, curve
 
 
@@ -196,7 +196,7 @@ class _Outliner:
             return self._tiled(g, recipe, groups, curves)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
-            lines = clipped(curves[0], regions[1])
+            lines = [piece for one in clipped_each(curves[0], regions[1]) for piece in one.inner]
             if not lines:
                 self.notes.append(notes.nothing_left(g, recipe))
             return lines
@@ -275,6 +275,8 @@ class _Outliner:
         """Returns the geometry with all finishes that are about its corners. `told`: the structure whose
         program hears of those that do not fit; elsewhere they are passed over.
         """
+        if not self.finishes:
+            return list(geometry)
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
         near = NEAR * _extent([c for _, c in leaves])
         works: list[Work] = []

@@ -26,6 +26,7 @@ from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section
+from aidl_lang.geometry.tessellate import Polygon, polygon_area
 
 T = TypeVar("T")
 STRAIGHT = -3
@@ -73,7 +74,7 @@ def trace(network: Network, section: Section) -> Traced:
 
 def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
     """Traces many regions at once, which spares most of the table look-ups."""
-    faces = [[c.to_polygons() for c in _components(section)] for section in sections]
+    faces = [_components(section) for section in sections]
     sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
     number = 0
     result = []
@@ -90,10 +91,12 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
     return result
 
 
-def _components(section: Section) -> list[Section]:
-    """Returns the connected faces, one outer polygon each."""
-    count = section.num_contour()
-    return [section] if count == 1 else section.decompose() if count else []
+def _components(section: Section) -> list[list[Polygon]]:
+    """Returns the polygons of the connected faces, of which each has one outer one."""
+    polygons = section.to_polygons()
+    if len(polygons) < 2 or sum(polygon_area(polygon) > 0 for polygon in polygons) == 1:
+        return [polygons] if polygons else []
+    return [part.to_polygons() for part in section.decompose()]
 
 
 def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
