@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
@@ -10,7 +11,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped, clipped_each
+from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
 from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
@@ -53,16 +54,18 @@ def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
     out.
     """
-    if g.construction:
-        return
-    if g.curve is not None and is_finite(g.curve) and max(map(abs, bounds(g.curve))) <= LARGEST:
-        yield g, g.curve
-    for part in g.parts:
-        yield from _leaves(part)
+    for leaf in g.leaves():
+        if (curve := leaf.curve) and is_finite(curve, LARGEST):
+            yield leaf, curve
 
 
 def _shown(g: SolvedGeometry) -> SolvedGeometry:
-    return replace(g, construction=False)
+    return replace(g, construction=False) if g.construction else g
+
+
+def _with_parts(g: SolvedGeometry, parts: tuple[SolvedGeometry, ...]) -> SolvedGeometry:
+    """Returns a geometry with these parts; itself if it has them."""
+    return g if all(map(operator.is_, parts, g.parts)) else replace(g, parts=parts)
 
 
 @record(frozen=False)
@@ -96,11 +99,12 @@ class _Outliner:
                 self._finished([_shown(self._drawn(g))], s.finishes, s)
         if s.kind == "drawing" and inside is not None:
             finished = clipped_ink(finished, inside)
+        derived = (curve for g in geometry for curve in g.curves())
         return replace(
             s,
             geometry=geometry,
             structures=children,
-            box=_box(s, geometry, children),
+            box=Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
             finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
             inside=inside if s.clip else None,
@@ -131,7 +135,7 @@ class _Outliner:
     def _completed(self, g: SolvedGeometry) -> SolvedGeometry:
         """Returns a geometry with the curves of derived outlines as parts, its own or those of its parts."""
         if g.recipe is None or g.curve is not None or any(True for _ in _leaves(_shown(g))):
-            return replace(g, parts=tuple(map(self._completed, g.parts)))
+            return _with_parts(g, tuple(map(self._completed, g.parts)))
         exact = self._exact(g, g.recipe)
         self.derived.add(g.path)
         return replace(exact, parts=(*map(self._completed, g.parts), *exact.parts))
@@ -141,7 +145,7 @@ class _Outliner:
         if that differs (the source has fillets, or less is left than the formula says).
         """
         if g.recipe is None or g.path in self.derived or not any(True for _ in _leaves(_shown(g))):
-            return replace(g, parts=tuple(map(self._drawn, g.parts)))
+            return _with_parts(g, tuple(map(self._drawn, g.parts)))
         exact = self._exact(g, g.recipe)
         regions = [_region([_shown(one)]) for one in (g, exact)]
         areas = [area(r) for r in regions]
@@ -193,7 +197,7 @@ class _Outliner:
             return self._tiled(g, recipe, groups, curves)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
-            lines = clipped(curves[0], regions[1])
+            lines = [piece for one in clipped_each(curves[0], regions[1]) for piece in one.inner]
             if not lines:
                 self.notes.append(notes.nothing_left(g, recipe))
             return lines
@@ -272,6 +276,8 @@ class _Outliner:
         """Returns the geometry with all finishes that are about its corners. `told`: the structure whose
         program hears of those that do not fit; elsewhere they are passed over.
         """
+        if not self.finishes:
+            return list(geometry)
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
         near = NEAR * _extent([c for _, c in leaves])
         works: list[Work] = []
@@ -462,20 +468,3 @@ def _deepest(region: Region, too_deep: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if offset(region, -middle) else (low, middle)
     return low
-
-
-def _box(
-    s: SolvedStructure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
-) -> Box | None:
-    """Returns the box with the curves derived since it was read out."""
-    boxes = [s.box] if s.box is not None else []
-    boxes += [Box(*bounds(c)) for g in geometry for c in g.curves()]
-    boxes += [c.box for c in children if c.box is not None and c.kind != "hole"]
-    if not boxes:
-        return None
-    return Box(
-        min(b.left for b in boxes),
-        min(b.bottom for b in boxes),
-        max(b.right for b in boxes),
-        max(b.top for b in boxes),
-    )
