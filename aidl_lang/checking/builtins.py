@@ -95,6 +95,7 @@ along(x, curve, pitch: length, inset: length?, turn: bool?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
+centroid(of)
 outline_clearance(a, b)
 overlaps(a, b)
 """

@@ -110,6 +110,7 @@ RESULTS: Mapping[str, Type] = {
     **{kind: GeometryType(kind) for kind in PRIMITIVES},
     "area": NumberType(None),
     "perimeter": _LENGTH,
+    "centroid": PointType(),
     "clearance": _LENGTH,
     "bb": BoxType(),
 }

@@ -111,21 +111,22 @@
   (#any-of? @function.builtin
     "fillet" "chamfer" "offset" "shell" "thick" "hull" "union" "intersect" "cut" "difference" "clip"
     "tiled" "mirror" "copy" "move" "rotate" "scale" "linear_array" "grid" "along" "polar_array" "fixed"
-    "guess" "written" "nearest" "area" "perimeter" "overlaps" "sin" "cos" "tan" "asin" "acos" "atan"
-    "atan2" "sqrt" "abs" "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range" "enumerate" "zip"
-    "reversed" "str" "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up" "down" "forward"
-    "horizontal_to" "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to" "smooth_to" "wave_to"
-    "zigzag_to" "scallops_to" "bezier_to" "quadratic_to" "close" "mirrored" "move_to" "hatching"
-    "crosshatch" "mesh" "knurling" "threads" "ribs" "slats" "bricks" "tiles" "planks" "checkers" "dots"
-    "honeycomb" "scales" "shingles" "wood_grain" "rays" "distance" "horizontal_distance"
-    "vertical_distance" "gap" "angle" "length" "radius" "diameter" "between" "anchor" "spot" "spots"
-    "vertical_through" "horizontal_through" "clearance" "screw" "clearance_diameter" "nema" "bearing"
-    "mesh_angle" "mix" "lighter" "darker" "hsl" "polar" "norm" "dot" "cross" "unit" "lerp" "turned"
-    "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between" "arccos"
-    "arcsin" "arctan" "arctan2" "at_share" "close_mirrored" "dist" "distance_x" "distance_y" "fix"
-    "ground" "grounded" "horizontal_axis" "lock" "orientation" "outline_distance" "place_in" "places_in"
-    "point_between" "point_in" "rotation" "set_angle" "set_rotation" "stroke" "tilt" "tilted" "translate"
-    "vec" "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
+    "guess" "written" "nearest" "area" "perimeter" "centroid" "overlaps" "sin" "cos" "tan" "asin" "acos"
+    "atan" "atan2" "sqrt" "abs" "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range"
+    "enumerate" "zip" "reversed" "str" "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up"
+    "down" "forward" "horizontal_to" "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to"
+    "smooth_to" "wave_to" "zigzag_to" "scallops_to" "bezier_to" "quadratic_to" "close" "mirrored"
+    "move_to" "hatching" "crosshatch" "mesh" "knurling" "threads" "ribs" "slats" "bricks" "tiles"
+    "planks" "checkers" "dots" "honeycomb" "scales" "shingles" "wood_grain" "rays" "distance"
+    "horizontal_distance" "vertical_distance" "gap" "angle" "length" "radius" "diameter" "between"
+    "anchor" "spot" "spots" "vertical_through" "horizontal_through" "clearance" "screw"
+    "clearance_diameter" "nema" "bearing" "mesh_angle" "mix" "lighter" "darker" "hsl" "polar" "norm"
+    "dot" "cross" "unit" "lerp" "turned" "vector" "direction" "radians" "circumcenter" "anchor_point"
+    "anchored" "angle_between" "arccos" "arcsin" "arctan" "arctan2" "at_share" "close_mirrored" "dist"
+    "distance_x" "distance_y" "fix" "ground" "grounded" "horizontal_axis" "lock" "orientation"
+    "outline_distance" "place_in" "places_in" "point_between" "point_in" "rotation" "set_angle"
+    "set_rotation" "stroke" "tilt" "tilted" "translate" "vec" "vec2" "vec2d" "vector2" "vector2d"
+    "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
