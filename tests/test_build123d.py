@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import aidl_lang
 from aidl_lang.tools import cad
 from tests.compiled import EXAMPLES
+from tests.documents import ROOT, blocks
 
 PLATE = """
 @thickness(3mm) @color("#ff8000")
@@ -105,6 +107,20 @@ class TestWithBuild123d:
         read = build123d.import_step(tmp_path / "part.step")
         solids = sum(solid.volume for child in parts.values() for solid in child.solids())
         assert sum(solid.volume for solid in read.solids()) == pytest.approx(solids, rel=1e-9)
+
+    def test_the_page_says_what_is_printed(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        monkeypatch.chdir(tmp_path)
+        names: dict[str, object] = {}
+        page = list(blocks(ROOT / "docs" / "howto" / "build123d.md"))
+        ran = 0
+        for block, after in pairwise(page):
+            if block.language == "python":
+                exec(block.text, names)
+                assert capsys.readouterr().out == after.text
+                ran += 1
+        assert ran == 2
 
     def test_a_model_that_is_not_ok_is_refused(self) -> None:
         wrong = aidl_lang.compile("solid a { b = circle(radius: fixed(3))\n constrain b.radius == 4 }")
