@@ -11,16 +11,18 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from aidl_site.blocks import address, opening, split, written
+from aidl_site.blocks import PLAYGROUND, address, can_open, opening, split, written
 
 INDEX = "index.md"
 _TARGET = re.compile(r"(\]\(<?)([^)\s>]+)(>?\))|((?:src|href)=\")([^\"]+)(\")")
 _SPAN = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
 _PICTURE = re.compile(r'<img src="images/gallery/(\w+)\.svg"[^>]*>')
+_SHOWN = re.compile(r'<a href="docs/gallery\.md[^"]*">(?=<img src="docs/images/gallery/(\w+)\.svg")')
+"""The link of a picture in the README."""
 _OUTSIDE = re.compile(r"[a-z][a-z0-9+.-]*:|//|#")
 _GUIDES = "docs/guides"
 """Guides to parts of the language, which only evaluations hand out: built, and left out of the search."""
-_FIRST = ("CHANGELOG.md", "CONTRIBUTING.md", "docs/diagnostics")
+_FIRST = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/diagnostics")
 """What the site has beside the files of `docs/`, linked or not."""
 _FAMILIES = {
     "01": "Syntax",
@@ -37,10 +39,13 @@ _FAMILIES = {
 
 
 class Staging:
-    """Writes the pages below a folder. Links that lead nowhere in the checkout are kept in `dead`."""
+    """Writes the pages below a folder. Links that lead nowhere in the checkout are kept in `dead`.
 
-    def __init__(self, root: Path, folder: Path, has_playground: bool) -> None:
-        self.root, self.folder, self.has_playground = root, folder, has_playground
+    address  where the site is, for links that hold elsewhere too; else they are relative
+    """
+
+    def __init__(self, root: Path, folder: Path, has_playground: bool, address: str = "") -> None:
+        self.root, self.folder, self.has_playground, self.address = root, folder, has_playground, address
         self.dead: list[str] = []
         self._waiting: list[PurePosixPath] = []
         self._known: set[PurePosixPath] = set()
@@ -62,8 +67,10 @@ class Staging:
 
     def _home(self, path: PurePosixPath) -> PurePosixPath:
         """Returns where a file or folder of the checkout goes, below the root of the pages."""
-        if path in (PurePosixPath("README.md"), PurePosixPath("docs/README.md")):
+        if path == PurePosixPath("docs/README.md"):
             return PurePosixPath(INDEX)
+        if path == PurePosixPath("README.md"):
+            return PurePosixPath("about.md")
         short = PurePosixPath(*path.parts[1:]) if path.parts[0] == "docs" else path
         if (self.root / path).is_dir():
             return short / INDEX
@@ -83,24 +90,24 @@ class Staging:
 
     def _stage(self, path: PurePosixPath) -> None:
         source, home = self.root / path, self._home(path)
-        if path == PurePosixPath("README.md"):
-            return  # the site begins with `docs/README.md`
         if path == PurePosixPath("docs/diagnostics"):
             self._put(home, self._diagnostics())
         elif source.is_dir():
             self._put(home, self._listing(path))
         elif path.suffix == ".md":
-            self._put(home, self._page(path, source.read_text("utf-8")))
+            self._put(home, self.page(path))
         elif path.suffix == ".aidl":
             self._put(home, self._program(path, source.read_text("utf-8")))
         else:
             (self.folder / home).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source, self.folder / home)
 
-    def _page(self, path: PurePosixPath, text: str) -> str:
-        depth = len(self._home(path).parts) - 1
+    def page(self, path: PurePosixPath) -> str:
+        """Returns a page of the checkout as it is on the site."""
+        text, depth = (self.root / path).read_text("utf-8"), len(self._home(path).parts) - 1
+        is_linked = self.has_playground and not self.address
         pieces = [
-            written(piece, depth, self.has_playground) if is_block else self._prose(path, piece)
+            written(piece, depth, is_linked) if is_block else self._prose(path, piece)
             for is_block, piece in split(text)
         ]
         head = "---\nsearch:\n  exclude: true\n---\n\n" if path.parent == PurePosixPath(_GUIDES) else ""
@@ -122,10 +129,12 @@ class Staging:
             program = self.root / "examples" / "gallery" / f"{found[1]}.aidl"
             if not program.is_file():
                 return found[0]
-            link = html.escape(address(program.read_text("utf-8"), 0))
-            return f'<a href="{link}">{found[0]}</a>\n<a class="aidl-edit" href="{link}">edit</a>'
+            link = f'href="{self.address}{html.escape(address(program.read_text("utf-8"), 0))}"'
+            if found[0].startswith("<a "):
+                return f"<a {link}>"
+            return f'<a {link}>{found[0]}</a>\n<a class="aidl-edit" {link}>edit</a>'
 
-        return _PICTURE.sub(edited, text)
+        return _SHOWN.sub(edited, _PICTURE.sub(edited, text))
 
     def _led(self, path: PurePosixPath, text: str) -> str:
         def led(found: re.Match[str]) -> str:
@@ -136,7 +145,7 @@ class Staging:
 
     def _target(self, path: PurePosixPath, target: str, is_html: bool) -> str:
         """Returns a link of a page as it is from where the page goes."""
-        if _OUTSIDE.match(target) or target.startswith(("playground/", "../playground/")):
+        if _OUTSIDE.match(target) or target.startswith((PLAYGROUND, f"../{PLAYGROUND}")):
             return target
         file, mark, place = target.partition("#")
         wanted = PurePosixPath(os.path.normpath(path.parent / file))
@@ -147,17 +156,18 @@ class Staging:
             wanted /= "README.md"
         self._want(wanted)
         home = self._home(wanted)
-        if wanted == PurePosixPath("README.md"):
-            mark = place = ""
-        if is_html and home.suffix == ".md":
+        if (is_html or self.address) and home.suffix == ".md":
             home = home.with_suffix(".html")
-        return os.path.relpath(home, self._home(path).parent) + mark + place
+        link = f"{self.address}{home}" if self.address else os.path.relpath(home, self._home(path).parent)
+        return link + mark + place
 
     # --- Pages that are made ----------------------------------------------------------------------
 
     def _program(self, path: PurePosixPath, text: str) -> str:
         """Returns the page of a program that another links to."""
-        link = opening(text, len(path.parts) - 1) if self.has_playground else ""
+        link = (
+            opening(text, len(path.parts) - 1) if self.has_playground and can_open("aidl", "", text) else ""
+        )
         return f"# {path.name}\n\n`{path}`\n\n{link}\n\n```aidl\n{text}```\n"
 
     def _listing(self, path: PurePosixPath) -> str:

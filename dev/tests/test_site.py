@@ -18,6 +18,7 @@ from aidl_lang.tools.reference.collect import reference
 from aidl_site import checking, pictures
 from aidl_site.__main__ import CONFIGURATION
 from aidl_site.blocks import address, can_open, split, written
+from aidl_site.readme import outside
 from aidl_site.staging import Staging
 from tests.commands import Result, aidl  # noqa: F401 (a fixture)
 from tests.documents import ROOT, Block, blocks
@@ -90,7 +91,8 @@ def test_links_in_code_stay_as_they_are(tmp_path: Path) -> None:
     (tmp_path / "docs" / "diagnostics").mkdir(parents=True)
     (tmp_path / "examples").mkdir()
     (tmp_path / "examples" / "a.aidl").write_text("solid a { }\n")
-    (tmp_path / "CHANGELOG.md").write_text("# Changes\n")
+    for name in ("README.md", "CHANGELOG.md"):
+        (tmp_path / name).write_text("# A page\n")
     (tmp_path / "CONTRIBUTING.md").write_text("# Contributing\n")
     page = "# A\n\n`[x](gone.md)` [y](../examples/a.aidl) [z](gone.md)\n\n```text\n[x](gone.md)\n```\n"
     (tmp_path / "docs" / "a.md").write_text(page)
@@ -202,3 +204,19 @@ def _commands(block: Block) -> Iterator[tuple[list[str], str]]:
 
 def _pattern(said: str) -> str:
     return re.escape(said.strip()).replace("…", r"[\s\S]*?")
+
+
+# --- The README elsewhere --------------------------------------------------------------------------
+
+
+def test_the_readme_leads_to_the_site_wherever_it_is_read() -> None:
+    text = outside(ROOT, "https://example.org/aidl")
+    links = re.findall(r"\]\(([^)]+)\)", text) + re.findall(r'(?:src|href)="([^"]+)"', text)
+    assert [link for link in links if not link.startswith("https://")] == []
+    shown = re.findall(
+        r'<a href="https://example\.org/aidl/playground/(#[^"]+)"><img src="[^"]+/(\w+)\.svg"', text
+    )
+    programs = {name: (ROOT / "examples" / "gallery" / f"{name}.aidl").read_text("utf-8") for name in GALLERY}
+    assert {name: opened(link) for link, name in shown} == programs
+    assert "https://example.org/aidl/reference/README.html" in links
+    assert "Open in the playground" not in text
