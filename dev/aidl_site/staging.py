@@ -21,7 +21,9 @@ _SHOWN = re.compile(r'<a href="docs/gallery\.md[^"]*">(?=<img src="docs/images/g
 """The link of a picture in the README."""
 _OUTSIDE = re.compile(r"[a-z][a-z0-9+.-]*:|//|#")
 _GUIDES = "docs/guides"
-"""Guides to parts of the language, which only evaluations hand out: built, and left out of the search."""
+"""Guides to parts of the language, which only evaluations hand out: built, and left out of the search, as are
+the source of the library and documents that are tests."""
+_UNSEARCHED = "---\nsearch:\n  exclude: true\n---\n\n"
 _FIRST = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/diagnostics")
 """What the site has beside the files of `docs/`, linked or not."""
 _FAMILIES = {
@@ -67,13 +69,13 @@ class Staging:
 
     def _home(self, path: PurePosixPath) -> PurePosixPath:
         """Returns where a file or folder of the checkout goes, below the root of the pages."""
-        if path == PurePosixPath("docs/README.md"):
-            return PurePosixPath(INDEX)
         if path == PurePosixPath("README.md"):
-            return PurePosixPath("about.md")
+            return PurePosixPath("about.md")  # the site begins with `docs/README.md`
         short = PurePosixPath(*path.parts[1:]) if path.parts[0] == "docs" else path
         if (self.root / path).is_dir():
             return short / INDEX
+        if path.name == "README.md":
+            return short.with_name(INDEX)
         return short.with_suffix(".md") if path.suffix == ".aidl" else short
 
     def _want(self, path: PurePosixPath) -> None:
@@ -110,8 +112,8 @@ class Staging:
             written(piece, depth, is_linked) if is_block else self._prose(path, piece)
             for is_block, piece in split(text)
         ]
-        head = "---\nsearch:\n  exclude: true\n---\n\n" if path.parent == PurePosixPath(_GUIDES) else ""
-        return head + "".join(pieces)
+        is_unsearched = path.is_relative_to(_GUIDES) or path.parts[0] == "tests"
+        return _UNSEARCHED * is_unsearched + "".join(pieces)
 
     def _prose(self, path: PurePosixPath, text: str) -> str:
         """Returns prose with its links led to where their targets go; spans of code stay as they are."""
@@ -168,7 +170,8 @@ class Staging:
         link = (
             opening(text, len(path.parts) - 1) if self.has_playground and can_open("aidl", "", text) else ""
         )
-        return f"# {path.name}\n\n`{path}`\n\n{link}\n\n```aidl\n{text}```\n"
+        head = _UNSEARCHED * (path.parts[0] == "stdlib")
+        return f"{head}# {path.name}\n\n`{path}`\n\n{link}\n\n```aidl\n{text}```\n"
 
     def _listing(self, path: PurePosixPath) -> str:
         """Returns the page of a folder of programs."""

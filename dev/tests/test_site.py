@@ -53,7 +53,7 @@ def test_every_program_that_stands_alone_has_a_link_that_opens_it(pages: Path) -
     tried = 0
     for page in sorted((ROOT / "docs").rglob("*.md")):
         home = pages / page.relative_to(ROOT / "docs")
-        home = home.with_name("index.md") if home == pages / "README.md" else home
+        home = home.with_name("index.md") if home.name == "README.md" else home
         shown = [b.text for b in blocks(page) if can_open(b.language, b.note, b.text)]
         text = home.read_text("utf-8")
         links = re.findall(r'<p class="aidl-open" data-search-exclude><a href="([^"]+)">', text)
@@ -139,7 +139,8 @@ def test_the_menu_names_pages_that_there_are_and_all_of_the_reference(pages: Pat
     assert [page for page in menu if not (pages / page).is_file()] == []
     assert len(set(menu)) == len(menu)
     topics = {f"reference/{topic.name}.md" for topic in reference().topics}
-    hand_written = {p.relative_to(ROOT / "docs").as_posix() for f in ("start", "howto") for p in _pages(f)}
+    found = {p.relative_to(ROOT / "docs").as_posix() for f in ("start", "howto") for p in _pages(f)}
+    hand_written = {path.replace("README.md", "index.md") for path in found}
     assert sorted((topics | hand_written) - set(menu)) == []
 
 
@@ -218,5 +219,5 @@ def test_the_readme_leads_to_the_site_wherever_it_is_read() -> None:
     )
     programs = {name: (ROOT / "examples" / "gallery" / f"{name}.aidl").read_text("utf-8") for name in GALLERY}
     assert {name: opened(link) for link, name in shown} == programs
-    assert "https://example.org/aidl/reference/README.html" in links
+    assert "https://example.org/aidl/reference/index.html" in links
     assert "Open in the playground" not in text
