@@ -76,8 +76,11 @@ def main() -> int:
     if options.check:
         dead = checking.dead(work / "site")
     else:
+        builder = shutil.which(options.builder)
+        if builder is None:
+            parser.error(f"there is no command `{options.builder}`; `make site` installs it")
         try:
-            dead = build(root, work, options.builder, options.address, options.playground)
+            dead = build(root, work, os.path.abspath(builder), options.address, options.playground)
         except (OSError, subprocess.CalledProcessError) as reason:
             sys.exit(f"the site is not built: {reason}")
     for link in dead:
