@@ -18,7 +18,9 @@ _TARGET = re.compile(r"(\]\(<?)([^)\s>]+)(>?\))|((?:src|href)=\")([^\"]+)(\")")
 _SPAN = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
 _PICTURE = re.compile(r'<img src="images/gallery/(\w+)\.svg"[^>]*>')
 _SHOWN = re.compile(r'<a href="docs/gallery\.md[^"]*">(?=<img src="docs/images/gallery/(\w+)\.svg")')
-"""The link of a picture in the README."""
+"""The link of a picture of the gallery in the README."""
+_DRAWN = re.compile(r"!\[[^\]]*\]\(docs/images/(\w+)\.svg\)")
+"""A picture of another example there."""
 _OUTSIDE = re.compile(r"[a-z][a-z0-9+.-]*:|//|#")
 _GUIDES = "docs/guides"
 """Guides to parts of the language, which only evaluations hand out: built, and left out of the search, as are
@@ -125,18 +127,24 @@ class Staging:
         return "".join([*parts, self._led(path, text[place:])])
 
     def _with_edits(self, text: str) -> str:
-        """Returns prose in which each picture of a program of the gallery opens it in the playground."""
+        """Returns prose in which pictures of examples open their programs in the playground."""
+
+        def link(program: str) -> str | None:
+            path = self.root / "examples" / f"{program}.aidl"
+            return self.address + address(path.read_text("utf-8"), 0) if path.is_file() else None
 
         def edited(found: re.Match[str]) -> str:
-            program = self.root / "examples" / "gallery" / f"{found[1]}.aidl"
-            if not program.is_file():
+            if (target := link(f"gallery/{found[1]}")) is None:
                 return found[0]
-            link = f'href="{self.address}{html.escape(address(program.read_text("utf-8"), 0))}"'
+            opens = f'href="{html.escape(target)}"'
             if found[0].startswith("<a "):
-                return f"<a {link}>"
-            return f'<a {link}>{found[0]}</a>\n<a class="aidl-edit" {link}>edit</a>'
+                return f"<a {opens}>"
+            return f'<a {opens}>{found[0]}</a>\n<a class="aidl-edit" {opens}>edit</a>'
 
-        return _SHOWN.sub(edited, _PICTURE.sub(edited, text))
+        def drawn(found: re.Match[str]) -> str:
+            return found[0] if (target := link(found[1])) is None else f"[{found[0]}]({target})"
+
+        return _DRAWN.sub(drawn, _SHOWN.sub(edited, _PICTURE.sub(edited, text)))
 
     def _led(self, path: PurePosixPath, text: str) -> str:
         def led(found: re.Match[str]) -> str:

@@ -219,5 +219,9 @@ def test_the_readme_leads_to_the_site_wherever_it_is_read() -> None:
     )
     programs = {name: (ROOT / "examples" / "gallery" / f"{name}.aidl").read_text("utf-8") for name in GALLERY}
     assert {name: opened(link) for link, name in shown} == programs
+    for name in ("telephone", "motor_bracket"):
+        picture = re.search(rf"\[!\[[^\]]+\]\([^)]+/images/{name}\.svg\)\]\(([^)]+)\)", text)
+        assert picture
+        assert opened(picture[1]) == (ROOT / "examples" / f"{name}.aidl").read_text("utf-8")
     assert "https://example.org/aidl/reference/index.html" in links
     assert "Open in the playground" not in text
