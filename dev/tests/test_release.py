@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import aidl_lang
@@ -54,3 +55,25 @@ def test_what_stands_in_the_way_is_told() -> None:
     assert faults("v0.3.0", later, section(LOG, "0.3.0")) == [
         "CHANGELOG.md says `unreleased` where the date of 0.3.0 belongs"
     ]
+
+
+def test_workflows_run_what_there_is() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
+    for path in (ROOT / ".github" / "workflows").glob("*.yml"):
+        text = path.read_text("utf-8")
+        runs = re.findall(r"(?:run: |^ {10,})(.*)$", text, re.MULTILINE)
+        assert {target for run in runs for target in re.findall(r"\bmake ([a-z-]+)", run)} <= targets, path
+        named = [
+            word.strip("\"'") for run in runs for word in run.split() if re.match(r"\"?(\.ci|tests)/", word)
+        ]
+        assert [name for name in named if not (ROOT / name).exists()] == [], path
+        modules = {module for run in runs for module in re.findall(r"-m (aidl_\w+(?:\.\w+)*)", run)}
+        assert [m for m in modules if not (ROOT / "dev" / f"{m.replace('.', '/')}.py").is_file()] == []
+        assert "permissions:\n  contents: read\n" in text, "no job may more than it says"
+
+
+def test_reports_tell_the_version_and_the_program() -> None:
+    for name in ("bug", "wish"):
+        text = (ROOT / ".github" / "ISSUE_TEMPLATE" / f"{name}.yml").read_text("utf-8")
+        assert "`aidl --version`" in text
+        assert "id: program" in text

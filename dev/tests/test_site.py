@@ -197,6 +197,38 @@ def test_the_tutorial_goes_as_it_says(
     assert ran >= 9
 
 
+PART = """
+@thickness(4mm) @material("birch")
+solid part {
+    body = rectangle(center: fixed((0, 0)), width: 60, height: 30)
+    hole eye { rim = circle(center: fixed((0, 0)), radius: 4) }
+}
+"""
+SERVERS = ("preview", "mcp", "lsp", "generate")
+
+
+@pytest.mark.parametrize("page", [*_pages("howto"), *_pages("start")], ids=lambda page: page.stem)
+def test_commands_on_a_page_are_understood(
+    page: Path,
+    aidl: Callable[..., Result],  # noqa: F811
+    folder: Path,
+) -> None:
+    """With a part in place of the program that they name."""
+    commands = [
+        words for block in blocks(page) if block.language == "console" for words, _ in _commands(block)
+    ]
+    for words in commands:
+        if words[0] != "aidl" or words[1] in SERVERS:
+            continue
+        for name in words[2:]:
+            if name.endswith(".aidl"):
+                (folder / name).write_text(PART)
+        if words[1] == "new":
+            (folder / f"{words[2]}.aidl").unlink(missing_ok=True)
+        result = aidl(*(word.strip("'") for word in words[1:]))
+        assert result.code == 0, (words, result)
+
+
 def _commands(block: Block) -> Iterator[tuple[list[str], str]]:
     for piece in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
         line, _, said = piece.partition("\n")
