@@ -205,10 +205,10 @@ class Model:
 
     def to_build123d(self, thickness: float | None = None) -> Compound:
         """Returns the shapes as build123d has them, under their dotted paths: Parts of what has a thickness
-        (`thickness` is that of solids without one, mm), Sketches of what has none, and Curves of strokes.
+        (`thickness` is that of solids without one, mm), Sketches of what has none, Curves of strokes, and
+        a joint at each named circle and point.
 
-        Raises AidlError for a model that is not `ok`, if build123d is not installed, or for a body that makes
-        no valid shape.
+        Raises AidlError for a model that is not `ok` or makes no valid shape, and without build123d.
         """
         from aidl_lang.tools.cad import to_build123d
 

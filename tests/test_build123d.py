@@ -91,6 +91,25 @@ class TestWithBuild123d:
         measured = [size.X, size.Y, size.Z]
         assert measured == pytest.approx([30, 5, 8], abs=1e-6)
 
+    def test_circles_and_points_are_joints_on_the_face_that_is_seen(self) -> None:
+        plate = aidl_lang.compile(PLATE).to_build123d()
+        assert tuple(plate.joints["bore.rim"].location.position) == pytest.approx((0, 0, 3))
+        upright = """
+        assembly a {
+            @thickness(5mm) @orientation(front) solid wall {
+                body = rectangle(center: fixed((20, 0)), width: 30, height: 8)
+                hole h { rim = circle(center: fixed((21, 1)), radius: 2) }
+            }
+            @detached @thickness(5mm) solid floor { disc = circle(center: fixed((90, 0)), radius: 3) }
+        }
+        """
+        wall, floor = aidl_lang.compile(upright).to_build123d().children
+        seen = wall.joints["h.rim"].location
+        assert tuple(seen.position) == pytest.approx((21, 0, 1))
+        assert tuple(seen.orientation) == pytest.approx((90, 0, 0))  # z points to the front
+        assert list(floor.joints) == ["disc"]
+        assert tuple(floor.joints["disc"].location.position) == pytest.approx((90, 0, 5))
+
     @pytest.mark.parametrize("name", ["motor_bracket", "finger_box", "gear_pair", "wrench"])
     def test_examples_have_the_volume_that_is_measured(self, name: str, tmp_path: Path) -> None:
         """Also those in a STEP file that build123d reads."""
@@ -120,7 +139,7 @@ class TestWithBuild123d:
                 exec(block.text, names)
                 assert capsys.readouterr().out == after.text
                 ran += 1
-        assert ran == 2
+        assert ran == 3
 
     def test_a_model_that_is_not_ok_is_refused(self) -> None:
         wrong = aidl_lang.compile("solid a { b = circle(radius: fixed(3))\n constrain b.radius == 4 }")
