@@ -6,6 +6,7 @@ import html
 import re
 import zlib
 from base64 import urlsafe_b64encode
+from urllib.parse import quote
 
 PLAYGROUND = "playground/"
 """The folder of the playground, below the root of the site."""
@@ -14,21 +15,24 @@ _FENCE = re.compile(r"^( *)(```+|~~~+)\s*([\w-]*)[ \t]*(.*)$")
 _IMPORT = re.compile(r'^\s*import\b.*"', re.MULTILINE)
 
 
-def fragment(program: str) -> str:
-    """Returns what stands after `#` in a link to the playground: raw deflate of UTF-8, as base64url."""
+def fragment(program: str, name: str = "") -> str:
+    """Returns what stands after `#` in a link to the playground: raw deflate of UTF-8, as base64url, and the
+    name of its file if it has one.
+    """
     packer = zlib.compressobj(9, zlib.DEFLATED, -15)
     packed = packer.compress(program.encode()) + packer.flush()
-    return "code=" + urlsafe_b64encode(packed).decode().rstrip("=")
+    said = f"name={quote(name)}&" if name else ""
+    return f"{said}code=" + urlsafe_b64encode(packed).decode().rstrip("=")
 
 
-def address(program: str, depth: int) -> str:
+def address(program: str, depth: int, name: str = "") -> str:
     """Returns the relative address that opens a program, from a page that lies in so many folders."""
-    return f"{'../' * depth}{PLAYGROUND}#{fragment(program)}"
+    return f"{'../' * depth}{PLAYGROUND}#{fragment(program, name)}"
 
 
-def opening(program: str, depth: int) -> str:
+def opening(program: str, depth: int, name: str = "") -> str:
     """Returns the line of HTML that opens a program in the playground."""
-    link = f'<a href="{html.escape(address(program, depth))}">Open in the playground</a>'
+    link = f'<a href="{html.escape(address(program, depth, name))}">Open in the playground</a>'
     return f'<p class="aidl-open" data-search-exclude>{link}</p>'
 
 

@@ -82,4 +82,4 @@ def _dead_on(folder: Path, path: Path, page: _Page, pages: Mapping[Path, _Page])
 
 
 def _is_place(fragment: str, page: _Page) -> bool:
-    return unquote(fragment) in page.places or fragment.startswith("code=")
+    return unquote(fragment) in page.places or "code=" in fragment

@@ -131,7 +131,7 @@ class Staging:
 
         def link(program: str) -> str | None:
             path = self.root / "examples" / f"{program}.aidl"
-            return self.address + address(path.read_text("utf-8"), 0) if path.is_file() else None
+            return self.address + address(path.read_text("utf-8"), 0, path.name) if path.is_file() else None
 
         def edited(found: re.Match[str]) -> str:
             if (target := link(f"gallery/{found[1]}")) is None:
@@ -175,9 +175,8 @@ class Staging:
 
     def _program(self, path: PurePosixPath, text: str) -> str:
         """Returns the page of a program that another links to."""
-        link = (
-            opening(text, len(path.parts) - 1) if self.has_playground and can_open("aidl", "", text) else ""
-        )
+        is_linked = self.has_playground and can_open("aidl", "", text)
+        link = opening(text, len(path.parts) - 1, path.name) if is_linked else ""
         head = _UNSEARCHED * (path.parts[0] == "stdlib")
         return f"{head}# {path.name}\n\n`{path}`\n\n{link}\n\n```aidl\n{text}```\n"
 

@@ -38,7 +38,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def opened(link: str) -> str:
     """The program that the playground shows for a link: what its own reader does."""
-    code = link.partition("#code=")[2]
+    code = link.partition("#")[2].rpartition("code=")[2]
     return zlib.decompress(urlsafe_b64decode(code + "=" * (-len(code) % 4)), -15).decode()
 
 
@@ -70,6 +70,7 @@ def test_every_picture_of_the_gallery_can_be_edited(pages: Path) -> None:
     links = re.findall(r'<a class="aidl-edit" href="([^"]+)">edit</a>', text)
     programs = [(ROOT / "examples" / "gallery" / f"{name}.aidl").read_text("utf-8") for name in GALLERY]
     assert [opened(html.unescape(link)) for link in links] == programs
+    assert [link.partition("#name=")[2].partition("&")[0] for link in links] == [f"{n}.aidl" for n in GALLERY]
 
 
 def test_what_does_not_stand_alone_has_no_link() -> None:
