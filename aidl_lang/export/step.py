@@ -51,7 +51,6 @@ _NO_TIME = "1970-01-01T00:00:00"
 """A fixed time, which readers want: the same drawing gives the same file at any time."""
 _ACCURACY = 1e-9
 """Distance within which ends meet, relative to the size of the drawing."""
-_MILLIMETRE = 1e-3
 _SETTINGS = {
     "write.step.schema": "AP214IS",
     "write.step.unit": "MM",
@@ -69,7 +68,7 @@ _REFUSALS = (
 
 
 @record()
-class _Part:
+class Product:
     """A product: its name, its solids, faces or edges, and its style."""
 
     name: str
@@ -80,14 +79,19 @@ class _Part:
 
 def to_step(job: Job) -> Exported:
     """Writes the STEP file. Raises ExportError (E0918) for a body that cannot be placed or made solid."""
-    tolerance = max(1e-7, _ACCURACY * job.drawing.size)
-    parts = [*_bodies(job, tolerance), *_strokes(job, tolerance)]
+    tolerance, parts = products(job)
     with _settings(tolerance):
         data = _File(job.model.root.path, parts).data()
     return Exported(data, notes=tuple(placement_notes(job.model.root, job.drawing)))
 
 
-def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
+def products(job: Job) -> tuple[float, list[Product]]:
+    """Returns the distance within which ends meet, mm, and the shapes. Raises as `to_step` does."""
+    tolerance = max(1e-7, _ACCURACY * job.drawing.size)
+    return tolerance, [*_bodies(job, tolerance), *_strokes(job, tolerance)]
+
+
+def _bodies(job: Job, tolerance: float) -> Iterator[Product]:
     for placed in placed_bodies(job):
         body = placed.body
         with _refusals(body.path):
@@ -97,14 +101,14 @@ def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
             tools = [t for r in placed.recesses for t in Shapes(r.plane, tolerance, r.depth).recess(r)]
             if tools:
                 made = [solid for shape in made for solid in without(shape, tools)]
-        yield _Part(body.path, made, body.style)
+        yield Product(body.path, made, body.style)
 
 
-def _strokes(job: Job, tolerance: float) -> Iterator[_Part]:
+def _strokes(job: Job, tolerance: float) -> Iterator[Product]:
     for stroke, plane in placed_strokes(job):
         with _refusals(stroke.geometry):
             made = Shapes(plane, tolerance).curves(stroke.pieces)
-        yield _Part(stroke.geometry, made, stroke.style, is_stroke=True)
+        yield Product(stroke.geometry, made, stroke.style, is_stroke=True)
 
 
 def _valid(make: Callable[[Face], TopoDS_Shape], face: Face) -> TopoDS_Shape:
@@ -161,12 +165,12 @@ class _File:
     breaks long texts anywhere.
     """
 
-    def __init__(self, root: str, parts: Sequence[_Part]) -> None:
+    def __init__(self, root: str, parts: Sequence[Product]) -> None:
         self._numbers: dict[str, int] = {}
         self._name = root
         self._parts = parts
         self._document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
-        XCAFDoc_DocumentTool.SetLengthUnit_s(self._document, _MILLIMETRE)
+        XCAFDoc_DocumentTool.SetLengthUnit_s(self._document, 1e-3)  # mm
         main = self._document.Main()
         self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(main)
         self._layers = XCAFDoc_DocumentTool.LayerTool_s(main)
@@ -242,13 +246,14 @@ class _File:
                 raise StdFail_NotDone("not transferred")
             if part.style.color is None or not found:
                 continue
-            color = STEPConstruct_Styles.EncodeColor_s(_color(part.style.color))
+            parts = (value / 255 for value in rgb(part.style.color))
+            said = Quantity_Color(*parts, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+            color = STEPConstruct_Styles.EncodeColor_s(said)
             colors = (None, color) if part.is_stroke else (color, None)
             shown = STEPConstruct_RenderingProperties()
             if part.style.is_clear and not part.is_stroke:
-                shown = STEPConstruct_RenderingProperties(
-                    color, 1.0 - (1.0 if part.style.opacity is None else part.style.opacity)
-                )
+                opacity = 1.0 if part.style.opacity is None else part.style.opacity
+                shown = STEPConstruct_RenderingProperties(color, 1.0 - opacity)
             items = HArray1_StepRepr_RepresentationItem(1, len(found))
             for number, item in enumerate(found, 1):
                 look = styles.MakeColorPSA(item, *colors, shown)
@@ -266,7 +271,7 @@ class _File:
         self._shapes.UpdateAssemblies()
         return whole
 
-    def _product(self, part: _Part) -> TDF_Label:
+    def _product(self, part: Product) -> TDF_Label:
         label = self._shapes.AddShape(together(part.shapes), False)
         self._call(label, part.name)
         if part.style.layer is not None:
@@ -282,11 +287,6 @@ class _File:
     def _number(self, text: str) -> str:
         """Returns the placeholder of a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
-
-
-def _color(css: str) -> Quantity_Color:
-    parts = (value / 255 for value in rgb(css))
-    return Quantity_Color(*parts, Quantity_TypeOfColor.Quantity_TOC_sRGB)
 
 
 def _ascii(text: str) -> TCollection_HAsciiString:

@@ -238,7 +238,7 @@ def test_doc_answers_plain_questions_at_once(aidl: Aidl, question: str, answer: 
 
 def test_doc_lists_all_names_by_topic(aidl: Aidl) -> None:
     listed = aidl("doc").out
-    assert listed.startswith("The language\n  solid ")
+    assert listed.startswith("Rectangles and what is made from them\n  square ")
     assert re.search(r"^  slot +\S", listed, flags=re.MULTILINE)
 
 

@@ -127,22 +127,11 @@ class Reference:
 
 
 TOPICS = (
-    *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
-    *("arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "path", "spline", "text"),
-    *("outlines", "patterns", "operations"),
-    *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
-    *(
-        "clearance",
-        "joints",
-        "hardware",
-        "fasteners",
-        "mounts",
-        "gear",
-        "dimensions",
-        "numbers",
-        "colors",
-        "exactness",
-    ),
+    *("rectangles", "corners", "rounds", "polygons", "triangles", "quadrilaterals", "geometry", "path"),
+    *("text", "arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "spline"),
+    *("relations", "placement", "arrangements", "sizes", "constraints", "tangency", "symmetry", "measures"),
+    *("clearance", "operations", "outlines", "patterns", "joints", "hardware", "mounts", "fasteners", "gear"),
+    *("dimensions", "language", "numbers", "colors", "exactness"),
 )
 """Topics that come first, in this order; the others follow by name."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 import re
-import sys
 from base64 import standard_b64encode
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -53,15 +52,14 @@ def fit(width: float, height: float, screen: Screen) -> Extent:
 
 def cell_size(descriptor: int) -> tuple[int, int]:
     """Pixels of a cell of the terminal behind a file descriptor, or `CELL`."""
-    if sys.platform == "win32":
-        return CELL
-    import fcntl
     import struct
-    import termios
 
     try:
+        import fcntl  # not on Windows
+        import termios
+
         told = fcntl.ioctl(descriptor, termios.TIOCGWINSZ, bytes(8))
-    except OSError:
+    except (ImportError, OSError):
         return CELL
     rows, columns, width, height = struct.unpack("HHHH", told)
     return plausible(width // columns, height // rows) if rows and columns else CELL
