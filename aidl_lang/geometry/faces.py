@@ -151,16 +151,11 @@ def _degrees(network: Network, uses: Iterable[Use]) -> Counter[int]:
     return Counter([*(edge.start for edge in edges), *(edge.end for edge in edges)])
 
 
-def _is_odd(network: Network, uses: Iterable[Use]) -> bool:
-    """Tells whether an odd number of edges end in some node."""
-    return any(d % 2 for d in _degrees(network, uses).values())
-
-
 def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
     """Returns the edges that join loops and bound no face, but for those that are run through twice. There
     are none where every node has an even degree.
     """
-    if not _is_odd(network, uses):
+    if not any(d % 2 for d in _degrees(network, uses).values()):
         return set()
     _, bounding = _outlines(network, uses)
     return {edge for edge, count in Counter(edge for edge, _ in uses).items() if count == 1} - bounding
@@ -170,7 +165,7 @@ def _alternating(network: Network, uses: list[Use]) -> Section:
     """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
     enclosed.
     """
-    if _is_odd(network, uses):
+    if any(d % 2 for d in _degrees(network, uses).values()):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
 

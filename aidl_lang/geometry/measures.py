@@ -63,10 +63,8 @@ def perimeter(region: Region) -> float:
 def loop_area(loop: Loop) -> float:
     """Returns the area of a loop, positive counter-clockwise."""
     start = ends(loop.pieces[0])[0]
-    area = sum(
-        _bezier_area(piece, start) if isinstance(piece, Bezier) else _moments(piece, start)[0]
-        for piece in loop.pieces
-    )
+    pieces = loop.pieces
+    area = sum(_bezier_area(p, start) if isinstance(p, Bezier) else _moments(p, start)[0] for p in pieces)
     return -area if loop.reversed else area
 
 
