@@ -5,10 +5,12 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from typing import TypeAlias
+
+import numpy as np
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
@@ -20,7 +22,7 @@ from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, all_bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, region_of
+from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
@@ -33,16 +35,18 @@ from aidl_lang.geometry.legibility import (
 )
 from aidl_lang.geometry.letters import lettered_region
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
+from aidl_lang.geometry.network import GRID, Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
 from aidl_lang.geometry.overhanging import overhanging_notes
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
+from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
-from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
-from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.geometry.styles import Style, idle_areas, idle_looks, is_filled, styled, styles_of
+from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.trace import Traced, trace, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
@@ -80,7 +84,8 @@ class Stroke:
     `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
     `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
-    which is filled where it can be; `pieces` are their outlines.
+    or an area with a look of its own (`is_area`), which is filled where it can be; `pieces` are their
+    outlines.
     """
 
     path: str
@@ -90,6 +95,21 @@ class Stroke:
     role: str = "drawing"
     over: str | None = None
     faces: tuple[Face, ...] = ()
+    is_area: bool = False
+
+
+@record()
+class _Area:
+    """An area with a look of its own: as a section on the grid of the network, and as a region; and what of
+    its geometry bounds nothing.
+    """
+
+    section: Section
+    region: Region
+    loose: tuple[Piece, ...] = ()
+
+
+_Areas: TypeAlias = Mapping[str, _Area]
 
 
 @record()
@@ -177,8 +197,11 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         StackedBody(b.path, order[b.path], b.style.color, m.section, b.region, b.box, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
+    material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
+    areas = dict(_areas(root, shapes, network, material, ink[0]))
+    lying += _lying_areas(stacked(root), styles, areas)
     ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
-    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground))
+    strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
@@ -191,7 +214,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
+            is_seen = isinstance(f, InnerLoop) and (
+                styles[f.structure.path].has_seams or any(map(is_filled, f.face.geometries))
+            )
+            if not is_seen:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += loose_piece_notes(root, walk, masses, solids, touching.near())
@@ -203,7 +229,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             from aidl_lang.geometry.thin import thin_wall_notes
 
             notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
-        notes += idle_looks(root, paths, styles)
+        loose = {g.path for f in walk.findings if isinstance(f, LooseCurves) for g, _ in f.curves}
+        notes += [*idle_looks(root, paths, styles), *idle_areas(root, areas, loose)]
         notes += idle_orders(root, paths)
         return ordered(by_statement([*notes, *empty]))
 
@@ -359,6 +386,7 @@ def _strokes(
     shapes: dict[str, list[Shape]],
     engraved: dict[str, list[Shape]],
     walk: Bodies,
+    areas: _Areas,
     styles: dict[str, Style],
     regions: dict[str, Region],
     ground: Ground,
@@ -369,11 +397,15 @@ def _strokes(
     for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own)
+            yield from _inked(structure, shapes[path], style, ground, place, areas, is_own=path in own)
         for shape in engraved.get(path, ()):
             look = styled(replace(style, color=None), shape.geometry)
             for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
                 yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
+        if structure.kind != "drawing":
+            for geometry in structure.drawn:
+                if geometry.path in areas:
+                    yield from _colored(structure, geometry, style, areas[geometry.path])
         if style.is_blind and path in regions:
             yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
@@ -389,7 +421,8 @@ def _inked(
     shapes: list[Shape],
     style: Style,
     ground: Ground,
-    place: int,
+    place: float,
+    areas: _Areas,
     *,
     is_own: bool,
 ) -> Iterator[Stroke]:
@@ -403,8 +436,12 @@ def _inked(
         # What is engraved as areas is one area, the rest a stroke for each shape.
         alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
     for (look, over, _), together in alike.items():
+        geometry = together[0].geometry
+        if geometry.path in areas and not look.is_area:
+            yield from _colored(drawing, geometry, style, areas[geometry.path])
+            continue
         for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
-            yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
+            yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
 
 
 def _unseen(
@@ -415,12 +452,14 @@ def _unseen(
     """
     own = _colored_drawings(root)
     drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
-    for place, drawing in drawings:
+    for at, drawing in drawings:
         lost: dict[str, list[str]] = {}
         covered: dict[str, list[str]] = {}
         seen: set[str] = set()
+        places = _places(drawing, at)
         for shape in shapes[drawing.path]:
             look, numbers = styled(styles[drawing.path], shape.geometry), shape.numbers
+            place = places[shape.geometry.path]
             if (by := ground.covering(numbers, place)) is not None:
                 covered.setdefault(by, []).append(shape.geometry.name)
             else:
@@ -436,6 +475,65 @@ def _unseen(
         for by, names in covered.items():
             if whole := [name for name in names if name.partition("[")[0] not in seen]:
                 yield covered_note(drawing, whole, by)
+
+
+def _areas(
+    root: SolvedStructure,
+    shapes: dict[str, list[Shape]],
+    network: Network,
+    material: dict[str, Section],
+    ink: Sequence[Piece],
+) -> Iterator[tuple[str, _Area]]:
+    """Yields the areas with looks of their own, with the path of the geometry: what it encloses, in a body of
+    its material.
+    """
+    for structure in root.walk():
+        of = material.get(structure.path, fill([], "NonZero"))
+        for shape in shapes[structure.path] if structure.kind != "hole" else ():
+            if not is_filled(shape.geometry):
+                continue
+            loose: tuple[Piece, ...] = ()
+            if structure.kind == "drawing":
+                found = list(_told_apart([shape], ink, is_area=True))
+                region = Region(next((faces for _, faces in found if faces), ()))
+                loose = next((lines for lines, faces in found if not faces), ())
+                polygons = map(np.array, region_polygons(region, network.tolerance))
+                section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
+            else:
+                section = intersection(union_of(own_faces(network, [shape]).faces), of)
+                region = trace(network, section).region
+            if region:
+                yield shape.geometry.path, _Area(section, region, loose)
+
+
+def _lying_areas(
+    order: Iterable[SolvedStructure], styles: dict[str, Style], areas: _Areas
+) -> Iterator[StackedBody]:
+    """Yields the areas as what others lie on."""
+    for at, structure in enumerate(order):
+        places = _places(structure, at)
+        for g in structure.drawn:
+            if (area := areas.get(g.path)) is not None:
+                look, box = styled(styles[structure.path], g), region_bounds(area.region)
+                section, region = area.section, area.region
+                yield StackedBody(g.path, places[g.path], look.color, section, region, box, look.is_clear)
+
+
+def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
+    """Returns the places of the geometry of a structure in the order of drawing: above the structure itself,
+    below the next one.
+    """
+    count = len(structure.drawn) + 1
+    return {g.path: at + k / count for k, g in enumerate(structure.drawn, 1)}
+
+
+def _colored(
+    structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
+) -> Iterator[Stroke]:
+    look, region = styled(style, geometry), area.region
+    yield Stroke(structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True)
+    if area.loose:
+        yield Stroke(structure.path, geometry.path, area.loose, look)
 
 
 def _told_apart(

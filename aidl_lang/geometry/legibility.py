@@ -41,7 +41,7 @@ class StackedBody:
     """
 
     path: str
-    place: int
+    place: float
     color: str | None
     section: Section
     region: Region
@@ -60,7 +60,7 @@ class Ground:
     curves: Sequence[Piece]
     boxes: Sequence[Bounds]
 
-    def hides(self, color: str | None, curves: Sequence[int], place: int, *, wholly: bool) -> bool:
+    def hides(self, color: str | None, curves: Sequence[int], place: float, *, wholly: bool) -> bool:
         """Tells whether the body below some curves drawn at a place has nearly their colour: all along them,
         or else somewhere.
         """
@@ -77,7 +77,7 @@ class Ground:
         # By the middles alone it may still be otherwise.
         return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
 
-    def covering(self, curves: Sequence[int], place: int) -> str | None:
+    def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
         over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
@@ -85,7 +85,7 @@ class Ground:
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
 
-    def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
+    def covered_part(self, curves: Sequence[int], place: float) -> tuple[float, list[str]]:
         """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
         bodies.
         """
@@ -94,7 +94,7 @@ class Ground:
         covered = sum(long for long, over in parts if over)
         return covered / (sum(long for long, _ in parts) or 1.0), [self.bodies[k].path for k in by]
 
-    def _above(self, curves: Sequence[int], place: int) -> list[int]:
+    def _above(self, curves: Sequence[int], place: float) -> list[int]:
         """Returns the bodies that are drawn over a place and may hide some curves."""
         later = range(bisect_right(self._places, place), len(self.bodies))
         return self._around(curves, [k for k in later if not self.bodies[k].is_clear])
@@ -104,7 +104,7 @@ class Ground:
         box = union_bounds([self.boxes[curve] for curve in curves])
         return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
 
-    def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
+    def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
         faces is an inlay and shows them.
         """
@@ -116,7 +116,7 @@ class Ground:
         return (hidden.area() / faces.area() if hidden is not None else 0.0), by
 
     @cached_property
-    def _places(self) -> list[int]:
+    def _places(self) -> list[float]:
         return [body.place for body in self.bodies]
 
     def _parts(self, curves: Sequence[int], bodies: Sequence[int]) -> list[tuple[Piece, list[int]]]:
@@ -163,7 +163,9 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
     """Returns the diagnostic on curves of a drawing that a later body covers."""
     around, _, name = by.rpartition(".")
     hint = f"write the drawing below `{name}`, or inside it"
-    if around == drawing.path.rpartition(".")[0]:
+    if around == drawing.path:
+        hint = f"write {'it' if len(names) == 1 else 'them'} below `{name}`"
+    elif around == drawing.path.rpartition(".")[0]:
         hint += f", or say `@in_front({name})` before it"
     return Diagnostic(
         "W0709",

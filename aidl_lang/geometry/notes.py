@@ -58,8 +58,8 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
         tuple(Label(g.span, "already covers it") for g in finding.around[:2] if g.span),
         (
             f"to cut it out, put it into a hole: `{hole}`",
-            "to draw it on top, put it into a `drawing`, in another colour into a `solid` beside this one; "
-            f"{GUIDE}",
+            f'to draw it on top, give it a look of its own, as `@color("gold")` before it, or put it into a '
+            f"`drawing`; {GUIDE}",
         ),
         _wrap_fix(s, face.geometries) if one else None,
     )

@@ -24,6 +24,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.styles import is_filled
 from aidl_lang.geometry.tiling import (
     MOST,
     Lattice,
@@ -423,7 +424,7 @@ def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result)
 
 def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[SolvedGeometry]:
     """Returns the geometry of a drawing as far as it lies in a region or along its border: parts of curves,
-    and the outlines of what is left of filled letters.
+    and the outlines of what is left of filled letters and areas.
     """
     leaves = [leaf for g in geometry for leaf in _leaves(g)]
     found = clipped_each([c for _, c in leaves], region, with_border=True)
@@ -433,8 +434,8 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
         return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
 
     def inner(g: SolvedGeometry) -> SolvedGeometry:
-        if g.filled and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
-            return replace(g, parts=parts(g, common(_region([g]), region).pieces))
+        if (g.filled or is_filled(g)) and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
+            return replace(g, curve=None, parts=parts(g, common(_region([g]), region).pieces))
         curve, one = kept.get(id(g), (None, None))
         if one is None or one.inner == (curve,):
             return replace(g, parts=tuple(map(inner, g.parts)))
