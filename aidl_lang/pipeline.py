@@ -377,7 +377,7 @@ def _finish(
         if settings.solving.explain:
             with watch("fixes"):
                 if any(d.fix is not None for d in told):
-                    from aidl_lang.explaining.verifying import verified
+                    from aidl_lang.explaining.trials import verified
 
                     told = verified(told, [*diagnostics, *told], trials)
                 told = tries.answered(told, [*diagnostics, *told], built.model)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.building.lower import lower
 from aidl_lang.checking import builtins
-from aidl_lang.checking.variants import FORBIDDEN, Variant
+from aidl_lang.checking.subset import FORBIDDEN, Variant
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile

@@ -10,8 +10,7 @@ from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.resolve import resolve
-from aidl_lang.checking.subset import adapted
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant, adapted
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch

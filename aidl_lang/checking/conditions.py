@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from aidl_lang.checking import rules
-from aidl_lang.checking.builtins import EDITS, FINISHES
+from aidl_lang.checking.builtins import EDITS, FINISHES, PRIMITIVE
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolving.declare import made_by
 from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import AnyType, GeometryType, StructureType, TruthType
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast

@@ -6,12 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking import fields
-from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace
-from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking import builtins
+from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace, body_of, of_symbol, part
 from aidl_lang.checking.resolving.complaints import renamed, respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.standard import body_of, part
+from aidl_lang.checking.rules import a, shown
 from aidl_lang.checking.synonyms import FIELDS, MEMBERS
 from aidl_lang.checking.types import (
     ANY,
@@ -24,7 +23,6 @@ from aidl_lang.checking.types import (
     StructureType,
     Type,
 )
-from aidl_lang.checking.wording import a, shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import find, fold, nearest
 from aidl_lang.common.prose import first_few, ticked
@@ -66,11 +64,11 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
         case GeometryType(kind):
             if base.of is not None:
                 return _of_shape(check, base, node)
-            if kind in fields.PRIMITIVE:
-                return _field(check, base, node, fields.PRIMITIVE[kind])
+            if kind in builtins.PRIMITIVE:
+                return _field(check, base, node, builtins.PRIMITIVE[kind])
             return Fact(ANY, base.reads)
         case PointType():
-            return _field(check, base, node, fields.PRIMITIVE["point"])
+            return _field(check, base, node, builtins.PRIMITIVE["point"])
         case BoxType():
             return _field(check, base, node, {})
         case _:
@@ -83,11 +81,11 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:
     """Returns the fact of `a.rim` for a list: of each member's; sides of a list may be those of its group."""
-    settings = fields.PATTERN.get(base.pattern, {})
+    settings = builtins.PATTERN.get(base.pattern, {})
     if (key := find(node.name.text, settings)) is not None:
         return Fact(settings[key], base.reads)
     element = base.element()
-    if element.is_any or fields.is_box_name(node.name.text) or find(node.name.text, fields.BOX):
+    if element.is_any or builtins.is_box_name(node.name.text) or find(node.name.text, builtins.BOX):
         return Fact(ANY, base.reads)
     return member_of(check, element, node).listed()
 
@@ -106,7 +104,7 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
                 node.name,
                 fix=Fix(f"write `{path}`", (Edit(at, path),), is_sure=True),
             )
-        return _field(check, base, node, fields.STRUCTURE, list(scope.values))
+        return _field(check, base, node, builtins.STRUCTURE, list(scope.values))
     symbol = scope.values[key]
     _means(check, node, symbol)
     if symbol.kind is SymbolKind.ARGUMENT:
@@ -121,9 +119,9 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 def _holding(check: Inference, scope: SymbolScope, name: str) -> list[str]:
     """Returns the structures in a scope that have a structure or geometry of a name that all things lack."""
-    if any(find(name, table) for table in (fields.STRUCTURE, fields.BOX, fields.FINISH)):
+    if any(find(name, table) for table in (builtins.STRUCTURE, builtins.BOX, builtins.FINISH)):
         return []
-    if fields.is_box_name(name) or fold(name) in FIELDS:
+    if builtins.is_box_name(name) or fold(name) in FIELDS:
         return []
     inner = (
         (key, symbol.node) for key, symbol in scope.values.items() if isinstance(symbol.node, ast.Structure)
@@ -152,7 +150,7 @@ def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:
     scope = body_of(check, base.of)
     key = find(node.name.text, scope.values)
     if key is None:
-        if find(node.name.text, dict.fromkeys(fields.OUTLINE)):
+        if find(node.name.text, dict.fromkeys(builtins.OUTLINE)):
             return Fact(ANY, base.reads)
         return _field(check, base, node, {}, list(scope.values))
     _means(check, node, scope.values[key])
@@ -164,14 +162,14 @@ def _field(
 ) -> Fact:
     """Returns the fact of a field of a primitive or a structure, or of one of the box that everything has."""
     name = node.name.text
-    if fields.is_box_name(name):
+    if builtins.is_box_name(name):
         return Fact(BoxType(), base.reads)
-    for table in (own, fields.BOX, fields.FINISH):
+    for table in (own, builtins.BOX, builtins.FINISH):
         key = find(name, table)
         if key is not None:
             _means(check, node, Symbol(key, SymbolKind.FIELD))
             return Fact(table[key], base.reads)
-    names = [*known, *own, *fields.BOX]
+    names = [*known, *own, *builtins.BOX]
     meant = next((m for m in MEMBERS.get(fold(name), ()) if find(m, dict.fromkeys(names))), None)
     if meant is not None:
         return _in_other_words(check, base, node, meant)

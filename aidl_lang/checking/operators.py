@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import rules, units
-from aidl_lang.checking.facts import Fact, is_number, is_point
-from aidl_lang.checking.standard import body_of
+from aidl_lang.checking.facts import Fact, body_of, is_number, is_point
+from aidl_lang.checking.rules import a, in_box, shown
 from aidl_lang.checking.types import (
     ANY,
     GeometryType,
@@ -18,7 +18,6 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
 )
-from aidl_lang.checking.wording import a, in_box, shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.syntax import ast
 

@@ -33,8 +33,8 @@ from aidl_lang.export.marks import (
     Picture,
     Stop,
     Text,
+    scaled,
 )
-from aidl_lang.export.scaling import scaled
 from aidl_lang.geometry.boolean import without
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke

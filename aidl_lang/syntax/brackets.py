@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -14,6 +13,7 @@ from aidl_lang.syntax.trouble import (
     line_end,
     replaced,
 )
+from aidl_lang.syntax.tables import END, Token, begins_line
 from aidl_lang.syntax.words import VALUE_STARTS
 
 CLOSE_BLOCK = "close the block"

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
-from aidl_lang.syntax.tokens import END, Token
-from aidl_lang.syntax.trouble import SyntaxProblem, Trouble, replaced
+from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
+from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced
+from aidl_lang.syntax.tables import END, Token
 from aidl_lang.syntax.words import describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
@@ -34,7 +34,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     missing.nameless_structure,
     missing.repeated_placement,
     missing.out_of_place_in_constrain,
-    placements.placement_in_expression,
+    missing.placement_in_expression,
     spelling.reserved_word,
     missing.else_without_if,
     brackets.unclosed_arguments,

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -18,6 +17,7 @@ from aidl_lang.syntax.trouble import (
     replaced,
     statement_end,
 )
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
 
 # --- Prose ----------------------------------------------------------------------------------------
 

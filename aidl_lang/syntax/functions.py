@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -17,6 +16,7 @@ from aidl_lang.syntax.trouble import (
     replaced,
     statement_end,
 )
+from aidl_lang.syntax.tables import END, Token, begins_line
 
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, line_end, replaced
+from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, line_end, replaced
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, is_open_comment, tokenize
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
     QUOTES,

@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.completion.constraints import forms, read
 from aidl_lang.tools.ide.workspace import Workspace, look

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
 from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.references import Refusal

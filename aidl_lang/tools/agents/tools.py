@@ -12,7 +12,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Edit, has_errors
 from aidl_lang.common.drawing_time import TooLongError

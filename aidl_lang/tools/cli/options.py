@@ -9,25 +9,25 @@ from typing import TYPE_CHECKING
 from aidl_lang.tools.cli.report import UseError
 
 if TYPE_CHECKING:
-    from aidl_lang.checking.variants import Variant
+    from aidl_lang.checking.subset import Variant
     from aidl_lang.tools.llm.messages import Sampling
     from aidl_lang.tools.llm.providers import Closable, Price
 
 
 def size(text: str) -> tuple[float, float]:
-    from aidl_lang.checking import sizes
+    from aidl_lang.checking import units
 
     try:
-        return sizes.size(text)
+        return units.size(text)
     except ValueError as reason:
         raise argparse.ArgumentTypeError(str(reason)) from None
 
 
 def length(text: str) -> float:
-    from aidl_lang.checking import sizes
+    from aidl_lang.checking import units
 
     try:
-        return sizes.length(text)
+        return units.length(text)
     except ValueError as reason:
         raise argparse.ArgumentTypeError(str(reason)) from None
 
@@ -278,7 +278,7 @@ def _definition(text: str) -> tuple[str, str]:
 
 
 def _variant(text: str) -> Variant:
-    from aidl_lang.checking.variants import Variant
+    from aidl_lang.checking.subset import Variant
 
     try:
         return Variant(text)

@@ -99,7 +99,7 @@ def _screen(width: int | None) -> Screen:
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
     """Returns the picture in a protocol."""
-    from aidl_lang.export.scaling import coarse, framed
+    from aidl_lang.export.marks import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)
     across, down = extent.pixels
@@ -115,7 +115,7 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
 
 
 def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
-    from aidl_lang.export.scaling import coarse, outlined, separated
+    from aidl_lang.export.marks import coarse, outlined, separated
     from aidl_lang.tools.terminal.characters import PIXELS, cells, text, written
 
     across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]

@@ -10,7 +10,7 @@ from aidl_lang.common.names import fold, is_spelled_in
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tokens import Token
+from aidl_lang.syntax.tables import Token
 from aidl_lang.tools.ide.site import around
 from aidl_lang.tools.ide.workspace import Project, View
 

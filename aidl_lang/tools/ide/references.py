@@ -12,8 +12,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import load_tables, tokenize
 from aidl_lang.tools.ide.meaning import Mention, Place, mention_at, mentions, place_of
 from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.site import around

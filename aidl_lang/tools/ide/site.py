@@ -13,7 +13,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.parser import parse, standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, Tokens
 from aidl_lang.tools.ide.workspace import View, look
 
 # --- Finds the nodes and the token at an offset.

@@ -9,9 +9,8 @@ from pathlib import Path
 
 from aidl_lang import pipeline
 from aidl_lang.checking.allowing import audible
-from aidl_lang.checking.resolving.drawings import ImportedDrawing, digest
-from aidl_lang.checking.resolving.imports import SUFFIX
-from aidl_lang.checking.resolving.resolution import Resolution
+from aidl_lang.checking.resolving.imports import SUFFIX, ImportedDrawing, digest
+from aidl_lang.checking.resolving.symbols import Resolution
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.common.names import fold
@@ -21,7 +20,7 @@ from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, nor
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.memory import Memory
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tokens import Tokens, tokenize
+from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.tools.ide.positions import applied
 from aidl_lang.typecheck import Program
 

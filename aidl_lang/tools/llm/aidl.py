@@ -8,7 +8,7 @@ from collections import Counter
 from dataclasses import field, replace
 
 from aidl_lang import parser, pipeline
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common.resources import resource
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.pages import entry_blocks

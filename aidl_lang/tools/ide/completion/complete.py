@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from aidl_lang.checking.types import TextType
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.kinds import kind_of
+from aidl_lang.syntax.words import kind_of
 from aidl_lang.tools.ide.completion import names, words
 from aidl_lang.tools.ide.completion.constraints import constraints
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, Use, context_of

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import lru_cache, partial
 
-from aidl_lang.checking import fields
+from aidl_lang.checking import builtins
+from aidl_lang.checking.facts import result
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.declare import is_definition
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.standard import result
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -167,7 +167,7 @@ def _makes(context: Context, signature: Signature) -> bool:
 def result_type(context: Context, signature: Signature) -> Type:
     """Returns the result type of a callable, as far as it is the same for all arguments."""
     if signature.kind is None:
-        return fields.RESULTS.get(signature.name, ANY)
+        return builtins.RESULTS.get(signature.name, ANY)
     if signature.kind is ast.ShapeDefinition:
         return GeometryType(signature.name)
     if signature.kind is ast.Structure:
@@ -221,7 +221,7 @@ def kind_of(signature: Signature) -> SymbolKind:
             return SymbolKind.CONSTRAINT
         case ast.Structure:
             return SymbolKind.TEMPLATE
-        case None if isinstance(fields.RESULTS.get(signature.name), GeometryType):
+        case None if isinstance(builtins.RESULTS.get(signature.name), GeometryType):
             return SymbolKind.SHAPE
         case _:
             return SymbolKind.FUNCTION

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.kinds import KINDS
+from aidl_lang.syntax.words import KINDS
 from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.constraints import constraints
 from aidl_lang.tools.ide.completion.context import Context
