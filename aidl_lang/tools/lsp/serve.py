@@ -16,7 +16,13 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.lsp import wire
 from aidl_lang.tools.lsp.lane import give_room
-from aidl_lang.tools.lsp.requests import actions, appearance, hints, lifecycle, navigation, preview, writing
+from aidl_lang.tools.lsp.requests.actions import register_actions
+from aidl_lang.tools.lsp.requests.appearance import register_appearance
+from aidl_lang.tools.lsp.requests.hints import register_hints
+from aidl_lang.tools.lsp.requests.lifecycle import register_lifecycle
+from aidl_lang.tools.lsp.requests.navigation import register_navigation
+from aidl_lang.tools.lsp.requests.preview import register_preview
+from aidl_lang.tools.lsp.requests.writing import register_writing
 from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import Server
 
@@ -31,8 +37,16 @@ _LOST = 1
 def make(limits: Limits = LIMITS) -> Server:
     """Returns a server with all requests."""
     server = Server(limits)
-    for theme in (lifecycle, navigation, appearance, actions, hints, preview, writing):
-        theme.register(server)
+    for register in (
+        register_lifecycle,
+        register_navigation,
+        register_appearance,
+        register_actions,
+        register_hints,
+        register_preview,
+        register_writing,
+    ):
+        register(server)
     return server
 
 

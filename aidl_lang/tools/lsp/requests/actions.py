@@ -23,7 +23,7 @@ _KINDS = (
 _VERSIONED = "workspace.workspace_edit.document_changes"
 
 
-def register(server: Server) -> None:
+def register_actions(server: Server) -> None:
     options = types.CodeActionOptions(code_action_kinds=_KINDS, resolve_provider=True)
     server.answers_to(types.TEXT_DOCUMENT_CODE_ACTION, options)(_offer)
 

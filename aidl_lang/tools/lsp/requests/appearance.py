@@ -27,7 +27,7 @@ _MODIFIER = {name: 1 << index for index, name in enumerate(MODIFIERS)}
 _FOLD = {"comment": types.FoldingRangeKind.Comment, "imports": types.FoldingRangeKind.Imports}
 
 
-def register(server: Server) -> None:
+def register_appearance(server: Server) -> None:
     tokens = _Tokens()
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)(tokens.full)
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, _LEGEND)(tokens.delta)

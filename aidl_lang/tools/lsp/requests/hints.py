@@ -17,7 +17,7 @@ _OPEN_PREVIEW = "aidl.openPreview"
 """A command of the client's; one without it shows the title all the same."""
 
 
-def register(server: Server) -> None:
+def register_hints(server: Server) -> None:
     answered, ends = _Answered(server), Ends(server)
 
     @server.command(CHECK_ENDS)

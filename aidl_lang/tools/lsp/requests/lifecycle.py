@@ -16,7 +16,7 @@ _SECTION = "aidl"
 log = logging.getLogger(__name__)
 
 
-def register(server: Server) -> None:
+def register_lifecycle(server: Server) -> None:
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         _take_roots(server)

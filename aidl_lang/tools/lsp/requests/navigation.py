@@ -39,7 +39,7 @@ _KIND = {
 }
 
 
-def register(server: Server) -> None:
+def register_navigation(server: Server) -> None:
     server.answers_to(types.TEXT_DOCUMENT_DEFINITION)(_definition)
     server.answers_to(types.TEXT_DOCUMENT_REFERENCES, searches=True)(_references)
     server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)(_highlight)

@@ -37,7 +37,7 @@ _DIMENSIONS = "dimensions"
 T = TypeVar("T")
 
 
-def register(server: Server) -> None:
+def register_preview(server: Server) -> None:
     requests = _Requests(server)
     _answer(server, "aidl/preview", Show, requests.preview)
     _answer(server, "aidl/previewClose", OfDocument, requests.close)

@@ -45,7 +45,7 @@ _PATIENCE = 0.3
 """Seconds that a hover waits for solved values."""
 
 
-def register(server: Server) -> None:
+def register_writing(server: Server) -> None:
     lists = _Lists()
     triggers = [".", "@", "(", '"']
     options = types.CompletionOptions(trigger_characters=triggers, resolve_provider=True)
