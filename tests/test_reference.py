@@ -25,7 +25,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.words import KINDS
 from aidl_lang.tools.reference.collect import Entry, doc, reference
-from aidl_lang.tools.reference.guide import full_guide, guide
+from aidl_lang.tools.reference.pages import full_guide, guide
 from aidl_lang.tools.reference.signatures import exactness, held, parts, split_items
 from tests.documents import ROOT
 

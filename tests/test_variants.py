@@ -30,7 +30,7 @@ from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import Status
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.reference.guide import guide
+from aidl_lang.tools.reference.pages import guide
 from tests.amount import tries
 from tests.documents import ROOT
 from tests.property.programs import Part, Sketch, part, sketches

@@ -11,9 +11,9 @@ import pytest
 
 from aidl_lang.common.processes import MEMORY
 from aidl_lang.common.records import record
+from aidl_lang.tools.agents.calling import Workers
 from aidl_lang.tools.agents.results import Page
 from aidl_lang.tools.agents.tools import Tools
-from aidl_lang.tools.agents.workers import Workers
 
 
 @record()

@@ -9,11 +9,13 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.meaning import mention_at, mentions, place_of
 from aidl_lang.tools.ide.references import (
     CannotError,
     definitions,
     highlights,
+    mention_at,
+    mentions,
+    place_of,
     references,
     rename,
     renameable,

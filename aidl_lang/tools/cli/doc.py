@@ -39,7 +39,7 @@ def register(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.render import TerminalStyle, wants_colour
     from aidl_lang.tools.reference.collect import reference
-    from aidl_lang.tools.reference.data import to_dict
+    from aidl_lang.tools.reference.pages import to_dict
 
     known, words = reference(), " ".join(arguments.name)
     if not words and arguments.picture:

@@ -20,8 +20,7 @@ from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
-    from aidl_lang.tools.llm.language import Language
-    from aidl_lang.tools.llm.messages import Provider
+    from aidl_lang.tools.llm.messages import Language, Provider
 
 _PROGRAM = ".aidl"
 _CODES = 4

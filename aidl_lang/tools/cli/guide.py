@@ -24,7 +24,7 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_lang.tools.reference.guide import full_guide, guide, guide_with
+    from aidl_lang.tools.reference.pages import full_guide, guide, guide_with
 
     if arguments.topics is not None:
         print(guide_with(_topics(arguments.topics)), end="")

@@ -119,8 +119,7 @@ def register(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.processes import prepared
     from aidl_lang.tools.cli.sweep_progress import progress
-    from aidl_lang.tools.sweeping.session import Session
-    from aidl_lang.tools.sweeping.starting import LOCAL, engine, preloads
+    from aidl_lang.tools.sweeping.session import LOCAL, Session, engine, preloads
 
     if arguments.file == files.STANDARD and arguments.resume:
         raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
@@ -181,8 +180,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang.tools.cli.build import options
     from aidl_lang.tools.cli.keywords import said
     from aidl_lang.tools.sweeping.outputs import outputs
-    from aidl_lang.tools.sweeping.session import Job
-    from aidl_lang.tools.sweeping.starting import opened, reproducing
+    from aidl_lang.tools.sweeping.session import Job, opened, reproducing
     from aidl_lang.tools.sweeping.working import Making
 
     settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
@@ -215,12 +213,11 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
 
 
 def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
-    from aidl_lang.tools.sweeping.axes import axis
-    from aidl_lang.tools.sweeping.plan import planned
+    from aidl_lang.tools.sweeping.plan import axis, planned
 
     rows: Rows | None = None
     if arguments.table:
-        from aidl_lang.tools.sweeping.orders import read_table
+        from aidl_lang.tools.sweeping.plan import read_table
 
         rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
@@ -268,7 +265,7 @@ def line(session: Session) -> str:
 def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
     """Prints each failure with its messages and the command that reproduces it."""
     from aidl_lang.common.render import escape
-    from aidl_lang.tools.sweeping.axes import labels
+    from aidl_lang.tools.sweeping.plan import labels
 
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")

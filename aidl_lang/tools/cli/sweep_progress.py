@@ -74,7 +74,7 @@ class _Bar:
 
     def __call__(self, progress: Progress) -> None:
         from aidl_lang.common.render import escape
-        from aidl_lang.tools.sweeping.axes import labels
+        from aidl_lang.tools.sweeping.plan import labels
 
         bar = self._bar
         bar.total, bar.initial = progress.count, progress.kept

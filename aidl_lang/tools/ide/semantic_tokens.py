@@ -11,7 +11,7 @@ from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.meaning import Mention, mentions
+from aidl_lang.tools.ide.references import Mention, mentions
 from aidl_lang.tools.ide.workspace import View
 
 # --- The role of each word of a program, for colours that follow its meaning.

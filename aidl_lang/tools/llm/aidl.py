@@ -20,10 +20,9 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.discretion import Programs, Reader
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.intent import Ledger, Loss, request
-from aidl_lang.tools.llm.language import Verdict
-from aidl_lang.tools.llm.messages import Image
+from aidl_lang.tools.llm.messages import Image, Verdict
 from aidl_lang.tools.mending import Mended, mend
-from aidl_lang.tools.reference.guide import guide
+from aidl_lang.tools.reference.pages import guide
 
 _PIXELS = 512
 """Larger side of the picture of a plan."""

@@ -27,7 +27,7 @@ from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.context import Context, KnownName
-from aidl_lang.tools.ide.completion.draft import Draft, choice, stop
+from aidl_lang.tools.ide.completion.drafts import Draft, choice, stop
 from aidl_lang.tools.vocabulary import vocabulary
 
 # --- The kinds of things that each constraint takes, from the reference's table of all pairs.

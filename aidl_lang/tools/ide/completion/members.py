@@ -32,9 +32,8 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.constraints import forms, kind_of
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use
-from aidl_lang.tools.ide.completion.draft import Draft, stop
-from aidl_lang.tools.ide.completion.words import words_of
-from aidl_lang.tools.ide.meaning import parameter_node
+from aidl_lang.tools.ide.completion.drafts import Draft, stop, words_of
+from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, joined, of_parameter
 from aidl_lang.tools.reference.signatures import parts, things
 from aidl_lang.tools.vocabulary import vocabulary

@@ -27,8 +27,7 @@ from aidl_lang.common.world import FileError
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
-from aidl_lang.tools.ide.completion.draft import Draft
-from aidl_lang.tools.ide.completion.words import Files, importable
+from aidl_lang.tools.ide.completion.drafts import Draft, Files, importable
 from aidl_lang.tools.ide.positions import insert
 from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_entry
 from aidl_lang.tools.reference.collect import reference

@@ -22,7 +22,6 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Settings, Solution, Status, solve
-from aidl_lang.tools.ide.comparing import is_same
 from aidl_lang.tools.ide.dragging.by_params import moved_by_params, turned
 from aidl_lang.tools.ide.dragging.mobility import (
     AXES,
@@ -37,7 +36,7 @@ from aidl_lang.tools.ide.dragging.mobility import (
     values_at,
     ways,
 )
-from aidl_lang.tools.ide.guesses import Guess, guesses
+from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
 from aidl_lang.tools.ide.references import Refusal
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 

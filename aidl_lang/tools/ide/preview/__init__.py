@@ -2,9 +2,8 @@
 
 from aidl_lang.tools.ide.preview.elements import elements_at
 from aidl_lang.tools.ide.preview.making import preview, tried, with_handles
-from aidl_lang.tools.ide.preview.protocol import Writer
+from aidl_lang.tools.ide.preview.protocol import LAYERS, Preview, Writer
 from aidl_lang.tools.ide.preview.sliders import set_knob, worked_out
-from aidl_lang.tools.ide.preview.values import LAYERS, Preview
 
 __all__ = [
     "LAYERS",
