@@ -154,8 +154,8 @@ _HERE = Path(__file__).parent
 
 def page(title: str, columns: Columns, rows: Sequence[Row]) -> bytes:
     """Returns the page."""
-    script = (_HERE / "page.js").read_text(encoding="utf-8")
-    style = (_HERE / "page.css").read_text(encoding="utf-8")
+    script = (_HERE / "sheet.js").read_text(encoding="utf-8")
+    style = (_HERE / "sheet.css").read_text(encoding="utf-8")
     data = {
         "title": title,
         "given": columns.given,
