@@ -182,7 +182,7 @@ def test_without_its_packages_it_says_what_to_install(
 def test_nothing_but_the_protocol_is_on_standard_output() -> None:
     script = (
         "import sys, os, asyncio\n"
-        "from aidl_lang.tools.lsp import wire\n"
+        "from aidl_lang.tools.lsp import serve as wire\n"
         "incoming, outgoing = wire.claim_standard_streams()\n"
         "print('stray'); sys.stdout.flush(); os.write(1, b'stray')\n"
         "os.write(outgoing, os.read(incoming, 99)); assert sys.stdin.read() == ''\n"
