@@ -47,10 +47,17 @@ if TYPE_CHECKING:
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
 
-def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
-    """Reads a text into a Program: parsed, resolved and type-checked. `compile` can go on from it."""
+def front(
+    source: SourceFile,
+    world: World | None = None,
+    settings: Settings = Settings(),
+    parsed: parser.Parsed | None = None,
+) -> Front:
+    """Reads a text into a Program: parsed, if it is not yet, resolved and type-checked. `compile` can go on
+    from it.
+    """
     with working:
-        return read(source, world, settings, Stopwatch())
+        return read(source, world, settings, Stopwatch(), parsed)
 
 
 @record()

@@ -53,10 +53,16 @@ class Settings:
 Front: TypeAlias = tuple[Program, list[Diagnostic]]
 
 
-def read(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
-    """Reads a text into a Program: parsed, resolved and type-checked."""
+def read(
+    source: SourceFile,
+    world: World | None,
+    settings: Settings,
+    watch: Stopwatch,
+    parsed: parser.Parsed | None = None,
+) -> Front:
+    """Reads a text into a Program: parsed, if it is not yet, resolved and type-checked."""
     with watch("parse"):
-        parsed = parser.parse(source, settings.text)
+        parsed = parsed or parser.parse(source, settings.text)
     with watch("library"):
         library = library_module.load()
     with watch("resolve"):

@@ -57,6 +57,7 @@ def compiled(text: str) -> pipeline.Compiled:
     return pipeline.compile(SourceFile("<text>", text), DiskWorld(ROOT / "examples" / "workshop"))
 
 
+@cache
 def pages(text: str, **draft: object) -> list[Picture]:
     found = compiled(text)
     assert found.ok

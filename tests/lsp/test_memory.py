@@ -18,7 +18,7 @@ from aidl_lang.tools.lsp.serve import make
 PROGRAM = (
     "solid plate {{\n    rim = circle(radius: 5)\n    hole bore {{ edge = circle(radius: 2) }}\n}}\n// {}\n"
 )
-EDITS = 40
+EDITS = 20
 
 
 class Nobody:

@@ -17,6 +17,7 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, normalize
+from aidl_lang.parser import Parsed
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.memory import Memory
 from aidl_lang.syntax import ast
@@ -113,9 +114,14 @@ def hasty(settings: Settings = SETTINGS) -> Settings:
 
 def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
     """Checks a program. Never raises for its contents."""
-    source = SourceFile(path.name, text)
-    program, found = pipeline.front(source, world, settings)
-    return View(path, source, world, program, found)
+    return look_at(path, SourceFile(path.name, text), world, settings)
+
+
+def look_at(
+    path: Path, source: SourceFile, world: World, settings: Settings = SETTINGS, parsed: Parsed | None = None
+) -> View:
+    """Checks a program that may have been parsed already."""
+    return View(path, source, world, *pipeline.front(source, world, settings, parsed))
 
 
 def run(
