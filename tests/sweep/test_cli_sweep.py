@@ -18,7 +18,7 @@ import ezdxf
 import pytest
 
 import aidl_lang
-from aidl_lang.tools.cli import main, sweep_progress
+from aidl_lang.tools.cli import main, sweep
 from aidl_lang.tools.sweeping import session
 from aidl_lang.tools.sweeping.session import Progress
 from tests.commands import Result
@@ -284,8 +284,8 @@ def test_progress_on_a_terminal_and_for_programs(tmp_path: Path) -> None:
 def test_a_cluster_without_workers_is_told_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sweep_progress, "_PATIENCE", 0.0)
-    with sweep_progress.progress("auto") as listen:
+    monkeypatch.setattr(sweep, "_PATIENCE", 0.0)
+    with sweep.progress("auto") as listen:
         for places in (2, 0, 0, 0, 1, 0):
             listen(Progress(10, 3, 0, 0, (), places, 0))
     assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"

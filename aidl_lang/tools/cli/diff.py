@@ -21,7 +21,8 @@ LONGEST = 20.0
 """Seconds of the processor's time for the picture of two versions."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_diff(parser: argparse.ArgumentParser) -> None:
+    """`aidl diff`: what moved, turned, grew, appeared and vanished between two versions of a program."""
     parser.add_argument("before", metavar="BEFORE", help="a program; - reads standard input")
     parser.add_argument(
         "after", nargs="?", metavar="AFTER", help="another; without it BEFORE with the params of --to"
@@ -39,10 +40,10 @@ def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--best-effort", action="store_true", help="compare how far the solver came even if it did not solve"
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_diff)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_diff(arguments: argparse.Namespace) -> int:
     outputs = [(name, _suffix(name, arguments)) for name in arguments.output]
     on_standard = sum(name == files.STANDARD for name, _ in outputs)
     if on_standard + arguments.json > 1:

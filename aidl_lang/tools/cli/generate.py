@@ -1,4 +1,4 @@
-"""`aidl generate`: from a sentence to a program that is right, by a language model."""
+"""`aidl generate` and `aidl eval`: programs by a language model, and how well models do."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import re
 import sys
 import time
 from dataclasses import replace
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,12 +24,16 @@ if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
     from aidl_lang.tools.llm.messages import Language, Provider
 
+
+# --- `aidl generate`: from a sentence to a program that is right, by a language model.
+
 _PROGRAM = ".aidl"
 _CODES = 4
 """Most error codes in the line of an attempt."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_generate(parser: argparse.ArgumentParser) -> None:
+    """`aidl generate`: from a sentence to a program that is right, by a language model."""
     parser.add_argument("request", metavar="REQUEST", help="what to draw, or with --edit what to change")
     add_outputs(
         parser,
@@ -50,10 +56,10 @@ def register(parser: argparse.ArgumentParser) -> None:
         "--transcript", metavar="FILE", help="where to write the conversation (default: beside the program)"
     )
     add_provider(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_generate)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_generate(arguments: argparse.Namespace) -> int:
     places = _places(arguments)
     task = _task(arguments)
     asked = provider(arguments)
@@ -300,3 +306,16 @@ def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
 def _beginning(text: str) -> str:
     line = re.sub(r"\s+", " ", text.strip())
     return repr(line if len(line) <= 80 else line[:79] + "…")
+
+
+# --- `aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs.
+
+_PACKAGE = "aidl_eval"
+"""A distribution of its own, which stands on this one; so it is known by its name alone."""
+
+
+def register_eval(parser: argparse.ArgumentParser) -> None:
+    """`aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs."""
+    if find_spec(_PACKAGE) is None:
+        raise UseError("E0913", "`aidl eval` needs a package that is not installed", "pip install aidl-eval")
+    import_module(f"{_PACKAGE}.command").register(parser)

@@ -21,7 +21,8 @@ _MOST_PAIRS = 20
 _NOTHING = "–"
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_measure(parser: argparse.ArgumentParser) -> None:
+    """`aidl measure`: areas, inertia, walls, gaps and masses of what a program draws."""
     add_program(parser)
     parser.add_argument(
         "paths", nargs="*", metavar="PATH", help="a structure or a geometry (default: each body)"
@@ -37,10 +38,10 @@ def register(parser: argparse.ArgumentParser) -> None:
         help="the density of a material; may be given several times",
     )
     parser.add_argument("--json", action="store_true", help="print everything as JSON, with all digits")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_measure)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_measure(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.geometry.survey import NothingThereError
 

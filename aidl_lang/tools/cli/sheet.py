@@ -15,7 +15,8 @@ from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 _DEFAULT = ".pdf"
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_sheet(parser: argparse.ArgumentParser) -> None:
+    """`aidl sheet`: a technical drawing on paper, with dimensions, a frame and a title block."""
     add_program(parser)
     add_outputs(
         parser,
@@ -36,10 +37,10 @@ def register(parser: argparse.ArgumentParser) -> None:
         "--standard", choices=("iso", "ansi"), default="iso", help="paper and projection (default: iso)"
     )
     add_pixels(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_sheet)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_sheet(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.export import ExportError, Options, file_names
     from aidl_lang.export.drafting import Draft

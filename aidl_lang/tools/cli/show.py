@@ -33,7 +33,8 @@ _SAMPLES = 4
 """Pixels drawn per shown pixel, across and down."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_show(parser: argparse.ArgumentParser) -> None:
+    """`aidl show`: a preview of the drawing in the terminal."""
     add_program(parser)
     add_params(parser)
     add_look(parser)
@@ -46,10 +47,10 @@ def register(parser: argparse.ArgumentParser) -> None:
         default="auto",
         help="how to show it (default: auto, the best that the terminal is known for)",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_show)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_show(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.export import ExportError, Job, Options, require_sheets
     from aidl_lang.export.picture import picture

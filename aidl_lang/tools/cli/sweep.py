@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,13 +29,129 @@ if TYPE_CHECKING:
     from aidl_lang.tools.sweeping.outputs import Outputs
     from aidl_lang.tools.sweeping.plan import Plan, Rows
     from aidl_lang.tools.sweeping.rows import Row
-    from aidl_lang.tools.sweeping.session import Job, Session
+    from aidl_lang.tools.sweeping.session import Job, Progress, Session
+
+
+# --- How far a sweep is: a line on a terminal, or JSON lines for programs.
+
+_OFTEN = 1.0
+"""Seconds between two lines of JSON."""
+_REDRAWN = 0.1
+"""Seconds between two drawings of the line."""
+_PATIENCE = 10.0
+"""Seconds without workers after which that is said."""
+_WIDTH = 110
+"""Columns of a terminal that does not know its own."""
+_NOW = 60
+"""Columns for what runs now."""
+
+
+@contextmanager
+def progress(kind: str) -> Iterator[Callable[[Progress], None]]:
+    """Returns what is to be told of a sweep's progress: `auto`, `off` or `json`."""
+    if kind == "json":
+        yield _JsonLines()
+    elif kind == "off" or not sys.stderr.isatty():
+        yield _Quiet()
+    else:
+        bar = _Bar()
+        try:
+            yield bar
+        finally:
+            bar.close()
+
+
+class _Quiet:
+    """Says nothing, but once that there is nobody to do the work."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+        self._was_said = False
+
+    def __call__(self, progress: Progress) -> None:
+        if progress.places:
+            self._since = None
+            return
+        self._since = self._since or time.monotonic()
+        if not self._was_said and time.monotonic() - self._since > _PATIENCE:
+            self._was_said = True
+            say("the cluster has no workers; waiting for some")
+
+
+class _Bar:
+    """A line with what is done, the rate and the time left, what fails, and what runs now."""
+
+    def __init__(self) -> None:
+        from tqdm import tqdm
+
+        self._last = 0.0
+        # a terminal may not know its size, and what is larger than none is not shown
+        width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH
+        self._bar = tqdm(
+            total=None, unit=" variants", file=sys.stderr, ncols=width, nrows=_WIDTH, leave=False
+        )
+
+    def __call__(self, progress: Progress) -> None:
+        from aidl_lang.common.render import escape
+        from aidl_lang.tools.sweeping.plan import labels
+
+        bar = self._bar
+        bar.total, bar.initial = progress.count, progress.kept
+        bar.n = progress.done
+        parts = [f"{progress.failed} failing"] if progress.failed else []
+        if progress.kept:
+            parts.append(f"{progress.kept} known")
+        if not progress.places:
+            parts.append("waiting for workers")
+        elif progress.running:
+            now = escape(labels(progress.running[0].values)).replace("\n", " ")
+            parts.append(f"now {now[:_NOW]}")
+        bar.set_postfix_str(", ".join(parts), refresh=False)
+        if time.monotonic() - self._last > _REDRAWN or progress.done == progress.count:
+            self._last = time.monotonic()
+            bar.refresh()
+
+    def close(self) -> None:
+        self._bar.close()
+
+
+class _JsonLines:
+    """A line of JSON now and then, and one at the end."""
+
+    def __init__(self) -> None:
+        self._start, self._last = time.monotonic(), 0.0
+
+    def __call__(self, progress: Progress) -> None:
+        now = time.monotonic()
+        if now - self._last < _OFTEN and progress.done < progress.count:
+            return
+        self._last = now
+        seconds = now - self._start
+        computed = progress.done - progress.kept
+        rate = computed / seconds if computed and seconds > 0 else None
+        told = {
+            "done": progress.done,
+            "count": progress.count,
+            "failed": progress.failed,
+            "kept": progress.kept,
+            "begun_again": progress.given_again,
+            "places": progress.places,
+            "seconds": round(seconds, 3),
+            "rate": rate and round(rate, 3),
+            "left": rate and round((progress.count - progress.done) / rate, 1),
+            "running": [dict(each.values) for each in progress.running],
+        }
+        say(json.dumps(told, ensure_ascii=False))
+
+
+# --- `aidl sweep`: many variants of a program, their drawings, and a table of what came of each.
 
 _MOST_TOLD = 20
 """Most failures that are listed; the table has all."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_sweep(parser: argparse.ArgumentParser) -> None:
+    """`aidl sweep`: many variants of a program, their drawings, and a table of what came of each."""
     parser.epilog = (
         "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, "
         "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, "
@@ -113,12 +233,11 @@ def register(parser: argparse.ArgumentParser) -> None:
         help="a line on a terminal (the default), nothing, or JSON lines on standard error",
     )
     running.add_argument("--json", action="store_true", help="print a summary with all failures as JSON")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_sweep)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_sweep(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.processes import prepared
-    from aidl_lang.tools.cli.sweep_progress import progress
     from aidl_lang.tools.sweeping.session import LOCAL, Session, engine, preloads
 
     if arguments.file == files.STANDARD and arguments.resume:

@@ -252,8 +252,8 @@ def site_at(view: View, spot: Spot) -> EditSite:
 
 
 def _filled(site: EditSite) -> Parsed | None:
-    """Returns the text with the placeholder, parsed, in the way that leaves the fewest mistakes; None if it is lost
-    from the program in all.
+    """Returns the text with the placeholder, parsed, in the way that leaves the fewest mistakes; None if it
+    is lost from the program in all.
     """
     text, spot = site.original.source.text, site.spot
     head, tail = text[: spot.start], text[spot.end :]
