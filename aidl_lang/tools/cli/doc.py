@@ -16,7 +16,6 @@ from aidl_lang.tools.cli import files, registering
 from aidl_lang.tools.cli.options import add_variant
 from aidl_lang.tools.cli.report import UseError, say
 from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS
-from aidl_lang.tools.reference.searching import stems
 
 if TYPE_CHECKING:
     from aidl_lang.common.render import TerminalStyle
@@ -41,6 +40,8 @@ def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
     """Returns the verbs and options that have every word of a query, each with its line; those named so
     first.
     """
+    from aidl_lang.tools.reference.searching import stems
+
     wanted = set(stems(query))
     found = []
     for name, usage, line in _all(verbs):
