@@ -10,8 +10,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
-from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
-from aidl_lang.checking.cycles import counting_params, find_cycles
+from aidl_lang.checking.conditions import (
+    check_condition,
+    check_empty,
+    check_item,
+    check_operation,
+    counting_params,
+    find_cycles,
+)
 from aidl_lang.checking.facts import Fact, of_symbol
 from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.infer import Inference

@@ -17,8 +17,8 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.export import UNITS, Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
-from aidl_lang.export.labels import labels
 from aidl_lang.export.marks import Text
+from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec

@@ -14,9 +14,8 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.tools.reference.collect import Entry
+from aidl_lang.tools.reference.collect import Entry, search
 from aidl_lang.tools.reference.pages import forms
-from aidl_lang.tools.reference.searching import search
 
 # --- The results of the tools: plain data, and the same as text for a language model in few words.
 

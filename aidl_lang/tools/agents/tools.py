@@ -22,7 +22,7 @@ from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import OFFERED
 from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.agents import drawing, knobs, results
+from aidl_lang.tools.agents import drawing, results, workspace
 from aidl_lang.tools.agents.results import (
     Checked,
     Conflicts,
@@ -222,11 +222,11 @@ class Tools:
         source, before, _ = self._compiled(program, None, files)
         if before.status == "wrong":
             raise RefusalError(*before.errors)
-        edit = knobs.edit_of(knobs.find(before.knobs, name), source, value)
+        edit = workspace.edit_of(workspace.find(before.knobs, name), source, value)
         text = _edited(source, edit)
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
-        knobs.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
+        workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
         replacement = Replacement(place(edit.span), edit.span.text, edit.replacement)
         changes = _changes(before, after)
         lead = f"line {edit.span.line}: `{edit.span.text}` became `{edit.replacement}`; {after.status}"

@@ -20,7 +20,7 @@ from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError
-from aidl_lang.tools.cli import report
+from aidl_lang.tools.cli import files
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
@@ -102,12 +102,12 @@ def _ended(argv: Sequence[str] | None) -> int:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
         sys.stdout.flush()
-    except report.UseError as reason:
-        report.show([reason.diagnostic])
+    except files.UseError as reason:
+        files.show([reason.diagnostic])
         return 2
     except TooLongError as reason:
-        report.show([reason.diagnostic])
-        return report.exit_code([reason.diagnostic])
+        files.show([reason.diagnostic])
+        return files.exit_code([reason.diagnostic])
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
@@ -115,7 +115,7 @@ def _ended(argv: Sequence[str] | None) -> int:
         return BROKEN_PIPE
     except _OutputError as reason:
         _forget(sys.stdout.fileno())
-        report.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
+        files.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
         return 2
     return code
 

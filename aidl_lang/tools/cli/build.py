@@ -13,8 +13,8 @@ from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
@@ -167,7 +167,7 @@ def _write(
     program read is not overwritten.
     """
     from aidl_lang.export import ExportError
-    from aidl_lang.export.naming import contents
+    from aidl_lang.export.cut_list import contents
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
@@ -206,7 +206,7 @@ def _keep_drawn(made: Iterable[tuple[str, bytes]]) -> None:
 
 def _is_pattern(name: str) -> bool:
     from aidl_lang.export import ExportError
-    from aidl_lang.export.naming import is_pattern
+    from aidl_lang.export.cut_list import is_pattern
 
     try:
         return is_pattern(name)

@@ -11,8 +11,8 @@ from aidl_lang.common.prose import counted, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import add_program, add_variant
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Knob

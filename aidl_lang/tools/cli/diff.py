@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import add_params, add_pixels
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.common.source import SourceFile

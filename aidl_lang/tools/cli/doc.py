@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, listed, ticked
 from aidl_lang.tools.cli import files, registering
+from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_variant
-from aidl_lang.tools.cli.report import UseError, say
 from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
     """Returns the verbs and options that have every word of a query, each with its line; those named so
     first.
     """
-    from aidl_lang.tools.reference.searching import stems
+    from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
     found = []
@@ -135,7 +135,7 @@ def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tupl
         return entry, []
     from aidl_lang.common.render import escape
     from aidl_lang.tools.cli import VERBS
-    from aidl_lang.tools.reference.searching import speaking_of
+    from aidl_lang.tools.reference.collect import speaking_of
 
     found, commands = speaking_of(words), commands_about(words, VERBS)
     if found or commands:

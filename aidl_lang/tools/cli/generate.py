@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, say, show
 from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling
-from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
@@ -245,7 +245,7 @@ def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generat
         return 1
     program = verdict.program
     if arguments.edit:
-        from aidl_lang.tools.llm.merging import merge
+        from aidl_lang.tools.llm.aidl import merge
 
         assert generation.task.program is not None
         program = merge(generation.task.program, program)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, show
 from aidl_lang.tools.cli.options import add_params, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, show
 
 if TYPE_CHECKING:
     from aidl_lang.geometry.contacts import Contact

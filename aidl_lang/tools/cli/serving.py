@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_program
-from aidl_lang.tools.cli.report import UseError, say
 
 if TYPE_CHECKING:
     from aidl_lang.tools.preview.serving import Served

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import add_outputs, add_params, add_pixels, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 _DEFAULT = ".pdf"
 

@@ -9,9 +9,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, show
 from aidl_lang.tools.cli.options import add_look, add_params, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, show
-from aidl_lang.tools.terminal.protocols import (
+from aidl_lang.tools.terminal import (
     GRAPHICS,
     PROTOCOLS,
     Extent,
@@ -24,7 +24,7 @@ from aidl_lang.tools.terminal.protocols import (
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture, Text
-    from aidl_lang.tools.terminal.characters import Label
+    from aidl_lang.tools.terminal import Label
 
 _PROMPT = 2
 """Rows left free: for the command, and for the prompt after it."""
@@ -107,7 +107,7 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
     picture = framed(picture, across / down)
     if name not in GRAPHICS:
         return _characters(picture, name, extent)
-    from aidl_lang.tools.terminal.protocols import iterm, kitty, sixel
+    from aidl_lang.tools.terminal import iterm, kitty, sixel
 
     png = _png(coarse(picture, picture.width / across), max(across, down))
     if name == "sixel":
@@ -117,7 +117,7 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
 
 def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
     from aidl_lang.export.marks import coarse, outlined, separated
-    from aidl_lang.tools.terminal.characters import PIXELS, cells, text, written
+    from aidl_lang.tools.terminal import PIXELS, cells, text, written
 
     across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
     picture, texts = separated(picture if name == "blocks" else outlined(picture))
@@ -132,7 +132,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
     """Returns a text of the picture in cells. A turned one is written level, about its middle."""
     from aidl_lang.common.colors import rgb
-    from aidl_lang.tools.terminal.characters import Label
+    from aidl_lang.tools.terminal import Label
 
     left, bottom, right, top = mark.box
     edge = {"start": left, "middle": (left + right) / 2, "end": right}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing_options,
     add_outputs,
@@ -23,7 +24,6 @@ from aidl_lang.tools.cli.options import (
     add_variant,
     count_to,
 )
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.tools.sweeping.outputs import Outputs
@@ -297,7 +297,7 @@ def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
 def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang import pipeline
     from aidl_lang.tools.cli.build import options
-    from aidl_lang.tools.cli.keywords import said
+    from aidl_lang.tools.cli.options import said
     from aidl_lang.tools.sweeping.outputs import outputs
     from aidl_lang.tools.sweeping.session import Job, opened, reproducing
     from aidl_lang.tools.sweeping.working import Making

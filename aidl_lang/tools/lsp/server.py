@@ -29,8 +29,15 @@ from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.positions import Unit
 from aidl_lang.tools.ide.workspace import Project, View, Workspace
-from aidl_lang.tools.lsp.convert import Converter, Publisher, Settings, converted
-from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
+from aidl_lang.tools.lsp.documents import (
+    Converter,
+    Document,
+    Documents,
+    Publisher,
+    Settings,
+    VersionedView,
+    converted,
+)
 from aidl_lang.tools.lsp.running import LIMITS, Answers, Runner
 from aidl_lang.version import __version__
 

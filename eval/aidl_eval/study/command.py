@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files, serving
-from aidl_lang.tools.cli.report import UseError, say, show
+from aidl_lang.tools.cli.files import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_eval.store import Store, StoreError

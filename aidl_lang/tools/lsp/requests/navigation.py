@@ -10,7 +10,20 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.checking.resolving.symbols import SymbolKind
-from aidl_lang.tools.ide.outline import Entry, folds, outline, search, selections
+from aidl_lang.tools.ide.outline import (
+    MODIFIERS,
+    TYPES,
+    Colored,
+    Entry,
+    as_bytes,
+    colors,
+    folds,
+    outline,
+    search,
+    selections,
+    semantic_tokens,
+    spellings,
+)
 from aidl_lang.tools.ide.positions import format_document, format_range
 from aidl_lang.tools.ide.references import (
     CannotError,
@@ -21,17 +34,7 @@ from aidl_lang.tools.ide.references import (
     rename,
     renameable,
 )
-from aidl_lang.tools.ide.semantic_tokens import (
-    MODIFIERS,
-    TYPES,
-    Colored,
-    as_bytes,
-    colors,
-    semantic_tokens,
-    spellings,
-)
-from aidl_lang.tools.lsp.convert import Converter
-from aidl_lang.tools.lsp.documents import Document
+from aidl_lang.tools.lsp.documents import Converter, Document
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
 # --- Navigation: definitions, references, outlines, links; and renaming.
