@@ -48,16 +48,11 @@ _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
 
 def front(
-    source: SourceFile,
-    world: World | None = None,
-    settings: Settings = Settings(),
-    parsed: parser.Parsed | None = None,
+    text: SourceFile | parser.Parsed, world: World | None = None, settings: Settings = Settings()
 ) -> Front:
-    """Reads a text into a Program: parsed, if it is not yet, resolved and type-checked. `compile` can go on
-    from it.
-    """
+    """Reads a text, parsed or not, into a Program that is checked. `compile` can go on from it."""
     with working:
-        return read(source, world, settings, Stopwatch(), parsed)
+        return read(text, world, settings, Stopwatch())
 
 
 @record()
@@ -418,15 +413,12 @@ def _finish(
 def _drawn(
     built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
-    """Returns the solved model, its evaluator and drawing, what there is to tell of the drawing, and the
-    assertions that fail.
-    """
+    """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
     with watch("asserts"):
-        is_solved = model.status == "solved"
-        found = assertion_notes(built, model, drawing, evaluator, solved_fully=is_solved)
+        found = assertion_notes(built, model, drawing, evaluator, solved_fully=model.status == "solved")
     return model, evaluator, drawing, notes, found
 
 

@@ -246,7 +246,7 @@ def site_at(view: View, spot: Spot) -> EditSite:
     best = _filled(site)
     if best is None:
         return site
-    filled = look_at(view.path, best.module.span.source, view.world, parsed=best)
+    filled = look_at(view.path, best, view.world)
     path = around(filled.module, spot.start + 1)
     return EditSite(view, spot, automaton, filled, tuple(path))
 

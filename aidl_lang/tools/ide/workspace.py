@@ -114,14 +114,13 @@ def hasty(settings: Settings = SETTINGS) -> Settings:
 
 def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
     """Checks a program. Never raises for its contents."""
-    return look_at(path, SourceFile(path.name, text), world, settings)
+    source = SourceFile(path.name, text)
+    return View(path, source, world, *pipeline.front(source, world, settings))
 
 
-def look_at(
-    path: Path, source: SourceFile, world: World, settings: Settings = SETTINGS, parsed: Parsed | None = None
-) -> View:
-    """Checks a program that may have been parsed already."""
-    return View(path, source, world, *pipeline.front(source, world, settings, parsed))
+def look_at(path: Path, parsed: Parsed, world: World) -> View:
+    """Checks a program that is parsed."""
+    return View(path, parsed.module.span.source, world, *pipeline.front(parsed, world, SETTINGS))
 
 
 def run(
