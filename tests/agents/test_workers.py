@@ -39,10 +39,10 @@ def workers() -> Iterator[Workers]:
 
 
 def test_calls_that_break_are_given_up_and_others_answered(workers: Workers) -> None:
-    workers.seconds = 6.0
+    workers.seconds = 3.0
     hang, fine = asyncio.run(_both(workers, "hang", "fine"))
     assert hang == (
-        "error E0943: the call took longer than 6 s and was given up\n"
+        "error E0943: the call took longer than 3 s and was given up\n"
         "  hint: ask for less: fewer parts, smaller arrays, no outlines worked out of many others"
     )
     assert fine == "fine"

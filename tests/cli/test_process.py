@@ -148,7 +148,7 @@ def test_an_interrupt_while_parts_are_nested_writes_nothing(folder: Path) -> Non
     command = [*COMMAND, "compile", "many.aidl", "-o", "many.svg", "--sheet", "200x150", "--nest", "50"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
         assert process.stderr is not None
-        time.sleep(5.0)
+        time.sleep(3.0)
         process.send_signal(signal.SIGINT)
         rest = process.stderr.read()
     assert "many.svg" not in rest

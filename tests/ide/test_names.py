@@ -21,7 +21,7 @@ from aidl_lang.tools.ide.references import (
     renameable,
 )
 from aidl_lang.tools.ide.workspace import Project, View, Workspace
-from tests.compiled import LIGHTER
+from tests.compiled import FEW
 
 from .conftest import opened
 
@@ -254,7 +254,7 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
             assert own[0].span in spans
 
 
-@pytest.mark.parametrize("path", LIGHTER)
+@pytest.mark.parametrize("path", FEW)
 def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
     project = Project(Workspace([path.parent]))
     view = project.view(path)
