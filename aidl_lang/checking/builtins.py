@@ -127,8 +127,6 @@ RESULTS: Mapping[str, Type] = {
 """Types of the results of built-in functions that do not depend on their arguments."""
 
 
-# --- The built-in names, on which the standard library itself stands, and their parameters.
-#
 # Everything that AIDL can say is written in AIDL in `stdlib/`; this table holds what it cannot: the
 # functions of a number, the primitives (from their registry), the marks of exactness, and measurements of
 # the finished drawing.

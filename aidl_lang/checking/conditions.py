@@ -17,10 +17,6 @@ from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
-# --- The checks for constants defined by way of themselves, and for params that count something.
-
-# --- The check for constants that are defined by way of themselves.
-
 
 def find_cycles(infer: Inference) -> None:
     """Reports every circle of params and lets once, at the use that closes it.

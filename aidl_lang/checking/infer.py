@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import reduce
 
-from aidl_lang.checking import calls, facts, members, operators, rules, units
+from aidl_lang.checking import calls, facts, members, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.resolving.symbols import Resolution, Symbol
 from aidl_lang.checking.rules import TypeMisfit, shown
@@ -319,10 +319,10 @@ _INFER: dict[type, Callable[..., Fact]] = {
     ast.Comprehension: Inference._comprehension,
     ast.ForArguments: Inference._for_arguments,
     ast.IfArguments: Inference._if_arguments,
-    ast.Unary: operators.unary,
-    ast.Binary: operators.binary,
-    ast.Comparison: operators.comparison,
-    ast.Membership: operators.membership,
+    ast.Unary: members.unary,
+    ast.Binary: members.binary,
+    ast.Comparison: members.comparison,
+    ast.Membership: members.membership,
     ast.Range: Inference._range,
     ast.Conditional: Inference._conditional,
 }

@@ -61,8 +61,6 @@ def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
     return "numbers compare with numbers and points with points: name a field, as in `.width` or `.center`"
 
 
-# --- The rules of what fits where, each once with the words of its misfit.
-#
 # The checker applies them to types that follow from the text, the builder to those that only values show.
 
 CONSTANTS = "use a `param`, a `let` of constants or a loop variable; `written(…)` is the value as written"

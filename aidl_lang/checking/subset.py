@@ -165,8 +165,6 @@ def instead(variant: Variant, code: str) -> tuple[str, ...]:
     return (hint,) if hint else ()
 
 
-# --- Variants of the language with less in them, and the check for constructs that a variant lacks.
-#
 # Only the program and its imports are checked, never the library: a shape made of constraints there is a
 # primitive here.
 

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 from aidl_lang.common.materials import PAPERS
 
-# --- Dimensions and units.
-#
 # Values are kept in millimetres, degrees and their products. A dimension counts powers of length and of
 # angle; a number written without a unit is *bare*: it takes the dimension its place asks for, unchanged in
 # value.

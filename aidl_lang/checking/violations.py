@@ -191,9 +191,6 @@ def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
     return Span(source, stop, stop), f"\n{indent}{text}"
 
 
-# --- Breaches of the rules of validity, and their fixes.
-
-
 @record(eq=False)
 class FarReference:
     """An expression that reads too far.

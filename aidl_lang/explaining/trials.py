@@ -20,8 +20,6 @@ from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.solver.suspects import equations, nearby_solution, residual, shortfall
 
-# --- Builds the program with edits and checks whether constraints that failed before hold.
-#
 # Each remedy is tried here, as it is printed, before a message offers it.
 
 SECONDS, LONGEST = 1.5, 3.0

@@ -176,8 +176,6 @@ def _short(name: str) -> str:
     return name if len(name) <= 60 else f"{name[:59]}…"
 
 
-# --- DXF for laser cutters, routers and other CAD systems: 1:1 in mm or inches, y upwards.
-#
 # Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
 # other kinds are fitted by arcs (`geometry.arcs`). Outer outlines run counter-clockwise, inner ones
 # clockwise. On request the file is one of R12, which says the same in older words; or it is exact, and an

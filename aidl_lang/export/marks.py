@@ -178,9 +178,6 @@ class Picture:
         return self.box[3] - self.box[1]
 
 
-# --- Whole pictures made anew: scaled, moved, and made coarse for few pixels.
-
-
 def scaled(picture: Picture, factor: float) -> Picture:
     """Returns the picture with all its lengths multiplied."""
     scale = Placing(factor)

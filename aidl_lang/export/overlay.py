@@ -98,8 +98,6 @@ def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArra
     return least
 
 
-# --- Layers that explain a drawing: names, points, boxes, constraints, degrees of freedom, plans.
-#
 # Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look
 # for a free place near what they name; lists stand to the right of the drawing or below it.
 

@@ -221,8 +221,6 @@ def _grown(box: Bounds, by: float) -> Bounds:
     return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
-# --- Turns a drawing into a picture: what is filled, outlined and written, in which ink.
-#
 # One group for each structure from back to front: later siblings lie over earlier ones, unless they say
 # otherwise; what explains the picture lies above them all.
 

@@ -209,9 +209,6 @@ def _upright(piece: Piece) -> Piece:
     return EllipseArc(piece.center, rx, ry, angle, piece.start, piece.end, first, piece.sweep)
 
 
-# --- STEP (AP214), written by Open CASCADE: solids of bodies that have a thickness, plane faces of the
-# others, and the strokes.
-#
 # Every body is a product of its own in an assembly named after the root.
 
 _NO_TIME = "1970-01-01T00:00:00"

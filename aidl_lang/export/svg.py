@@ -271,8 +271,6 @@ def _toned(color: str, tone: float) -> str:
     return hexadecimal(part + abs(tone) * (goal - part) for part in rgb(color))
 
 
-# --- SVG: millimetres or inches, y upwards, one group per structure, holes really cut, curves as curves.
-
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")

@@ -10,8 +10,6 @@ from typing import Any, TypeAlias
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 
-# --- The syntax tree: frozen nodes with spans.
-#
 # Nodes compare and hash by identity, so that passes can keep tables keyed by node; `same` compares two trees
 # by content, leaving places and comments aside.
 

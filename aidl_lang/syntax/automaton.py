@@ -149,9 +149,6 @@ class Automaton:
         return True
 
 
-# --- The place where the parser cannot go on, with questions about it.
-
-
 @record()
 class TokenRepair:
     """Tokens that replace those at `start:stop`, to read on with."""

@@ -93,9 +93,6 @@ def _call_start(tokens: Sequence[Token], close: int) -> int:
     return close
 
 
-# --- Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks,
-# statements.
-
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
 

@@ -106,8 +106,6 @@ class CommentedLines:
         return comment is not None and comment.span.end > start
 
 
-# --- The canonical form of a program: `aidl fmt`.
-#
 # Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
 # statements. Attributes stay on the line they were written on while it has room for them. Synonyms of the
 # syntax become one spelling; numbers stay as they were written.

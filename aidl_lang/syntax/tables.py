@@ -25,8 +25,6 @@ from aidl_lang.common.resources import derived, resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.ast import Comment
 
-# --- Lark's parser of `grammar/aidl.lark`, with what the language has in words and signs.
-#
 # Lark works its tables out when the package is built; an installation brings them along as JSON, a checkout
 # makes them anew when the grammar has changed (`resources.derived`).
 
@@ -232,8 +230,6 @@ def decoded(text: bytes) -> Tables:
     )
 
 
-# --- Text to tokens, by Lark's lexer.
-#
 # Newlines and indentation are no tokens. Characters outside any token become one of kind UNKNOWN, which the
 # parser cannot accept and so reports.
 

@@ -51,8 +51,6 @@ def _is_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
     return token.kind == "-" and tokens[position + 1].start == token.end and begins_line(text, token.start)
 
 
-# --- Warnings on programs that parse and yet may mean something else.
-
 _MOST_PLACES, _LONGEST = 100, 2000  # beyond this many lines and characters nobody wrote it by hand
 
 

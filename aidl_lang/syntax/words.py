@@ -22,8 +22,6 @@ def kind_of(word: str) -> str | None:
     return KIND_OF_WORD.get(word.lower().replace("_", ""))
 
 
-# --- Words and signs written by habit, and their counterparts here; names of tokens in messages.
-
 # Typographic quotes, which stand for straight ones.
 SINGLE_QUOTES = "‘’‚"  # noqa: RUF001
 QUOTES = "“”„«»" + SINGLE_QUOTES

@@ -8,9 +8,8 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.tools.ide.actions import Action, actions
-from aidl_lang.tools.ide.positions import applied, between
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, look, run
+from aidl_lang.tools.ide.workspace import View, applied, between, look, run
 from tests.compiled import FEW
 
 from .conftest import EXAMPLES, cursor, opened, seen

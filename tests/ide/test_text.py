@@ -21,8 +21,7 @@ from aidl_lang.tools.ide.outline import (
     selections,
     semantic_tokens,
 )
-from aidl_lang.tools.ide.positions import format_document, format_range
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import View, format_document, format_range
 from tests.amount import tries
 
 from .conftest import EXAMPLES, opened, seen

@@ -33,8 +33,6 @@ from aidl_lang.geometry.measures import measure
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
 
-# --- Compares two trees from the root down, once their structures and geometries are paired.
-
 # --- Pairs the structures and geometries of two versions: by path first, renamed ones by shape.
 
 _T = TypeVar("_T", SolvedGeometry, SolvedStructure)

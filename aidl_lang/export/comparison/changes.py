@@ -19,8 +19,6 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import point
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel
 
-# --- The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
-
 # --- Rigid motions of the plane, and finding the one between two poses.
 
 Points = NDArray[np.float64]
@@ -220,8 +218,6 @@ def _radii(g: SolvedGeometry) -> tuple[float, ...]:
             return ()
 
 
-# --- The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
-#
 # Of two values the first is from before, the second from after; None stands for nothing.
 
 Value: TypeAlias = Scalar | Vec | tuple[Scalar, ...] | None

@@ -199,8 +199,6 @@ def _black(mark: Mark) -> Mark:
     return mark
 
 
-# --- Drawing sheets: parts on paper to a standard scale, with dimensions, a frame and a title block.
-
 Scale = tuple[int, int]
 
 _AIR, _BETWEEN = 6.0, 14.0

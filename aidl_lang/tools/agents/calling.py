@@ -18,8 +18,6 @@ from aidl_lang.tools.agents.schema import Parameter, Tool, tools
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import RefusalError, refusal
 
-# --- Calls a tool by its name with arguments from JSON, whatever the protocol.
-
 _SHOWN = 60
 """Most characters of a value that a message quotes."""
 _PAIR = {"name", "value"}

@@ -228,8 +228,6 @@ def _edit(edit: Replacement) -> str:
     return f"{where}: `{edit.old}` becomes `{edit.new}`" if edit.old else f"{where}: insert `{edit.new}`"
 
 
-# --- The result of a compiled program: status, bodies, contacts, motions, and files.
-
 MOST_LISTED = 40
 """Most bodies, contacts, parameters and motions that are listed."""
 _TEXTS = ("svg", "dxf")

@@ -17,8 +17,6 @@ from aidl_lang.common.source import Span
 from aidl_lang.tools.reference.collect import Entry, search
 from aidl_lang.tools.reference.pages import forms
 
-# --- The results of the tools: plain data, and the same as text for a language model in few words.
-
 MOST_FINDINGS = 50
 Status: TypeAlias = Literal["solved", "partial", "failed", "wrong"]
 _LONGEST = 2_000

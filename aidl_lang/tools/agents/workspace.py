@@ -26,8 +26,6 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.expression_printer import string_text
 from aidl_lang.tools.discretion import Programs, Reader
 
-# --- The files that a program given as text may import, and limits on its size and time.
-
 PROGRAM = "program.aidl"
 """The name of the program in diagnostics."""
 

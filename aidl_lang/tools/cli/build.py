@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from aidl_lang.solver.solution import StageReport
 
 
-# --- Compiles a program and writes files, once for `compile`, again and again for `watch`.
-
 _DEFAULT_FORMAT = ".svg"
 _MOST_NAMES = 8
 """Files that are told by name."""
@@ -261,8 +259,6 @@ def _suffix(name: str, fallback: str | None) -> str:
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
 
-
-# --- `aidl compile`: a program in, drawings out.
 
 _MOST_MOTIONS = 6
 """Most lines about remaining motions."""

@@ -308,8 +308,6 @@ def _suggestions(codes: list[str]) -> list[str]:
     return [f"did you mean {' or '.join(codes)}?", listed] if codes else [listed]
 
 
-# --- `aidl new`: a starter program to change.
-
 STARTER = """\
 // A plate with two holes. `aidl compile {file}` draws it.
 solid {name} {{

@@ -63,8 +63,6 @@ def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
     return 1 if codes else 0
 
 
-# --- Reads programs and writes results: whole or not at all, with one clear line on any error.
-
 STANDARD = "-"
 """The file name of standard input or output."""
 reads = Reads()

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from aidl_lang.tools.llm.providers import Closable, Price
 
 
-# --- Options of the command: shared ones, and their values read from words.
-
-
 def size(text: str) -> tuple[float, float]:
     from aidl_lang.checking import units
 

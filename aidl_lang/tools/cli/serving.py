@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from aidl_lang.tools.preview.serving import Served
 
 
-# --- Local ports that verbs serve on.
-
 LOCALHOST = "127.0.0.1"
 
 

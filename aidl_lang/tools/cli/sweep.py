@@ -144,8 +144,6 @@ class _JsonLines:
         say(json.dumps(told, ensure_ascii=False))
 
 
-# --- `aidl sweep`: many variants of a program, their drawings, and a table of what came of each.
-
 _MOST_TOLD = 20
 """Most failures that are listed; the table has all."""
 

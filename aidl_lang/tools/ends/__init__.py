@@ -442,6 +442,4 @@ def _faults(tried: Tried) -> list[dict[str, Any]]:
     ]
 
 
-# --- Tries a program at the ends of its params: each is set alone, to both ends of its range.
-
 __all__ = ["Sweep", "SweepJob", "Turned", "described", "has_range", "sentence", "sweep"]

@@ -75,8 +75,6 @@ def _numbers(value: object, at: Vec) -> Iterator[float]:
             pass
 
 
-# --- Numbers of the text that the solver may change, their solved values, and writing these back.
-
 # --- Numbers of the text that the solver may change, first guesses and kept sizes, with their solved values.
 
 VISIBLE = 1e-4

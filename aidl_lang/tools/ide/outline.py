@@ -18,8 +18,6 @@ from aidl_lang.tools.ide.references import Mention, mentions
 from aidl_lang.tools.ide.site import around
 from aidl_lang.tools.ide.workspace import Project, View
 
-# --- The shape of a text: its outline, what can be folded, and growing selections.
-
 # --- The outline of a program, and the search for names in all programs of a project.
 
 MOST_FOUND = 200

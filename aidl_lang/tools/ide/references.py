@@ -17,9 +17,8 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import load_tables, tokenize
-from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.site import around, scope_at
-from aidl_lang.tools.ide.workspace import Project, View, Workspace, look
+from aidl_lang.tools.ide.workspace import Project, View, Workspace, applied, look
 
 # --- The meaning of each name in a text: the one table for hover, definitions, references and renaming.
 

@@ -72,8 +72,6 @@ def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:
             yield node
 
 
-# --- A place in a text under editing: the nodes around it, and the tokens that the grammar takes there.
-#
 # A text under editing is seldom a program. So a placeholder name is inserted, in the way that leaves the
 # fewest mistakes, and the program is checked with it: the node that it became shows what is wanted.
 

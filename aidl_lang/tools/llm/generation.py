@@ -138,9 +138,6 @@ def _box(structure: SolvedStructure) -> str:
     return f"{structure.kind} `{structure.path}`: {where}" + " (empty)" * structure.is_empty
 
 
-# --- The loop from a request to a right program: ask, check, answer, ask again.
-
-
 @record()
 class Task:
     """A request. With a `program` it is a change to that."""

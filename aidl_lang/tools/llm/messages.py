@@ -118,8 +118,6 @@ def _saved(picture: Picture, kind: str) -> Image:
     return Image(_TYPES[kind], file.getvalue())
 
 
-# --- Messages to and from a language model, for all providers.
-
 Role = Literal["system", "user", "assistant"]
 
 

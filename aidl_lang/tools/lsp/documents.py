@@ -19,10 +19,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.solver.memory import Memory
-from aidl_lang.tools.ide.positions import Positions, Unit
-from aidl_lang.tools.ide.workspace import View
-
-# --- The open texts of the editor, each with its newest views.
+from aidl_lang.tools.ide.workspace import Positions, Unit, View
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Surrogate halves of characters, which JSON can hold and no text may."""

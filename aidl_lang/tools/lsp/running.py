@@ -151,8 +151,6 @@ def gave_up(future: Future[Any]) -> bool:
     return future.cancelled() or isinstance(future.exception(), Cancelled)
 
 
-# --- Collects garbage while nobody waits.
-#
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
 # the middle of the next run, and go through the library and everything else each time; here it does so in
 # the pauses, and what stays for good is put out of its sight. What a document stands for now is among that

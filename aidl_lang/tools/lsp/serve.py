@@ -107,8 +107,6 @@ def _use(server: Server, settings: Settings) -> None:
     server.settings, server.runner.delay = settings, settings.delay
 
 
-# --- Runs the server: on the standard streams, or for one client on a socket.
-
 # --- Messages of the protocol on standard input and output, or on a socket.
 #
 # Two threads of their own read and write the pipes: neither a client that is slow to read nor one that
@@ -216,8 +214,6 @@ def claim_standard_streams() -> tuple[int, int]:
     os.dup2(2, 1)
     return incoming, outgoing
 
-
-# --- Runs the server: on the standard streams, or for one client on a socket.
 
 _RECURSION = 20_000
 _SWITCH = 0.0005

@@ -27,8 +27,7 @@ from pygls.protocol import (
 
 from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
-from aidl_lang.tools.ide.positions import Unit
-from aidl_lang.tools.ide.workspace import Project, View, Workspace
+from aidl_lang.tools.ide.workspace import Project, Unit, View, Workspace
 from aidl_lang.tools.lsp.documents import (
     Converter,
     Document,
@@ -144,8 +143,6 @@ class Protocol(LanguageServerProtocol):
     def lsp_text_document__did_close(self, params: types.DidCloseTextDocumentParams) -> None:
         self._server.closed(params.text_document.uri)
 
-
-# --- The server: keeps open documents, has them checked and run, and passes questions on.
 
 T = TypeVar("T")
 Answer = Callable[["Asked", Any], T]

@@ -51,8 +51,6 @@ def _form(overload: Overload) -> dict[str, object]:
     return data
 
 
-# --- The entries of the reference as Markdown, and the pictures of their examples.
-
 _MEANT = {"exactly": "met exactly", "at least": "what there is at least", "at most": "what there is at most"}
 
 

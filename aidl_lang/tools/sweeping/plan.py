@@ -20,8 +20,6 @@ from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, named, ticked
 from aidl_lang.common.records import record
 
-# --- The values of a param in a sweep, as they are written: `60..200/8`, `60..200 step 20`, `a,b`, `*`.
-
 Value: TypeAlias = float | str | bool
 
 MOST = 1_000_000

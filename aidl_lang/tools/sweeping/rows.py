@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     import pyarrow
 
 
-# --- The outcomes of a sweep as rows of a table.
-
 Cell: TypeAlias = float | int | str | bool | list[str] | None
 
 _DRAWN = {"width": "drawn_width", "height": "drawn_height"}
@@ -135,8 +133,6 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 def as_mapping(names: Sequence[str], cells: Sequence[Cell]) -> Mapping[str, Cell]:
     return dict(zip(names, cells, strict=True))
 
-
-# --- Tables of a sweep: CSV, JSON lines, Parquet, and what Arrow and pandas have.
 
 ARROW_EXTRA = "parquet"
 

@@ -252,8 +252,6 @@ class _Paper:
         )
 
 
-# --- The contact sheet as one picture.
-
 _SIDE = 40.0
 _SHARPEST = 6.0
 """Pixels per mm."""
@@ -323,9 +321,6 @@ def _loaded(pixels: int) -> FreeTypeFont:
     from PIL import ImageFont
 
     return ImageFont.truetype(font_file(), pixels, layout_engine=ImageFont.Layout.BASIC)
-
-
-# --- The contact sheet of a sweep: a small picture of each variant, its params and what is wrong with it.
 
 
 def contact_sheet(suffix: str, title: str, columns: Columns, rows: Sequence[Row]) -> bytes:

@@ -23,8 +23,6 @@ from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import OF_WORD
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- Completion at a place: finds the kind of place and collects its drafts; those of statements.
-
 # --- Completion of statements and of the words that continue one.
 
 _BLOCK = " {\n    $0\n}"
@@ -201,9 +199,6 @@ def truths(site: EditSite) -> Iterator[Draft]:
     for word in ("true", "false"):
         if site.takes(word) and not site.following.startswith("("):
             yield Draft(word, "keyword", 5.0, describe=partial(of_public, word))
-
-
-# --- Completion at a place: finds the kind of place and collects its drafts.
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:

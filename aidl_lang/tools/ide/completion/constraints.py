@@ -114,8 +114,6 @@ def _kind(kind: Type, *, is_unknown: bool) -> str:
             return ""
 
 
-# --- Completion of constraints: those that fit the things at hand first, with their names filled in.
-
 _FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
 _MOST_NAMES = 8
 _FEW_PAIRS = 40

@@ -33,8 +33,6 @@ from aidl_lang.tools.ide.site import PLACEHOLDER, EditSite
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- The context of a place: the call around it, and the names visible there.
-
 _ATTRIBUTES: dict[str, Type] = {
     **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
     **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
@@ -270,8 +268,6 @@ _STATEMENTS = (
     ast.Parameter,
 )
 
-
-# --- The type wanted at a place, by the nodes around it.
 
 _WHOLE = NumberType(None, whole=True)
 _NUMBER = NumberType(LENGTH)

@@ -28,8 +28,6 @@ from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import SNIPPETS, Snippet, expanded
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- Completion entries, before and after ranking.
-
 # --- One completion entry.
 
 MOST = 200
@@ -74,9 +72,6 @@ class Completion:
     def plain(self) -> str:
         """Returns the text with each placeholder replaced by its proposal."""
         return expanded(self.text) if self.is_snippet else self.text
-
-
-# --- Completion entries before ranking.
 
 
 @record()

@@ -38,8 +38,6 @@ from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, joined, o
 from aidl_lang.tools.reference.signatures import parts, things
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- Completion after a dot, and between the brackets of an index.
-
 _OWN, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
 _MOST_INDICES = 12
 _SEEN = frozenset(

@@ -28,12 +28,10 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
 from aidl_lang.tools.ide.completion.drafts import Draft, Files, importable
-from aidl_lang.tools.ide.positions import insert
 from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_entry
+from aidl_lang.tools.ide.workspace import insert
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import vocabulary
-
-# --- Completion of values and callables by their names.
 
 MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
 """Tiers: makers of geometry if that is wanted; values that fit, that may fit, that have parts which fit;

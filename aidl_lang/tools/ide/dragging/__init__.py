@@ -40,8 +40,6 @@ from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
 from aidl_lang.tools.ide.references import Refusal
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 
-# --- Drags a point of the drawing: the points that can move, the new drawing, and the edits of the text.
-
 # --- Pulls a point of a solved model towards a place with as little other motion as possible.
 
 _WEIGHT = 1e4
@@ -139,8 +137,6 @@ def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
     return np.array([u in unknowns for u in lowered.unknowns], dtype=np.bool_)
 
 
-# --- Drags a point of the drawing: the movable points, the new drawing, and the edits of the text.
-#
 # A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; its
 # own sizes; a `param`; and the place of the drawing as a whole, by first guesses again.
 

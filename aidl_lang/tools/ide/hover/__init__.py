@@ -33,8 +33,6 @@ from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- Hover: the meaning of a word, its type, and its solved value.
-
 # --- Hover over keywords, attributes, the signs of comparisons, and numbers.
 #
 # Each answer is Markdown with the place that it is about.
@@ -153,8 +151,6 @@ def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
             break
     return ""
 
-
-# --- Hover: the meaning of a word, its type, and its solved value.
 
 _VALUES = frozenset(
     (

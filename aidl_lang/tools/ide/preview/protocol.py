@@ -13,8 +13,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.tools.ide.dragging import Handle
-from aidl_lang.tools.ide.positions import Positions
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import Positions, View
 
 # --- The data of a preview. Coordinates in mm in the frame of the root, y upwards; places are spans.
 
@@ -141,8 +140,6 @@ class Preview:
     ways: tuple[Way, ...]
     degrees: int | None
 
-
-# --- A preview as the JSON that the pane and its hosts understand (`preview/pane/protocol.d.ts`).
 
 Json: TypeAlias = dict[str, Any]
 

@@ -174,8 +174,6 @@ def _reason(loss: Loss) -> str:
     return ""
 
 
-# --- The intents of the programs of a conversation, one after another, and those lost on the way.
-
 _PROBES = 12
 """Most compiles of a program to try its losses."""
 _RESTORING = 30

@@ -156,9 +156,6 @@ def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:
     return contents
 
 
-# --- Compares two programs: the fate of each item of the earlier one in the later one.
-
-
 class Fate(StrEnum):
     SAME = "same"
     CHANGED = "changed"  # another number, another maker, or another loop around it

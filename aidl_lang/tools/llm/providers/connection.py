@@ -11,8 +11,6 @@ from urllib.parse import urlsplit
 from aidl_lang.common.records import record
 from aidl_lang.tools.llm.messages import Finish, ProviderError, Reply, Usage
 
-# --- Chooses the model and its server from options and the environment.
-
 OPENAI, ANTHROPIC, EXEC = "openai", "anthropic", "exec:"
 DEFAULT_URL = {OPENAI: "https://api.openai.com/v1", ANTHROPIC: "https://api.anthropic.com"}
 
@@ -155,8 +153,6 @@ def _price(text: str) -> Price | None:
             "E0930", f"AIDL_PRICE is `{text}`", "it has dollars per million tokens in and out, as in 2.5/10"
         ) from None
 
-
-# --- A reply while it arrives.
 
 MAX_TEXT = 1_000_000
 """Most characters; a program has thousands. A looping model would go on for ever."""

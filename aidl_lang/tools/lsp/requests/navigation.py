@@ -24,7 +24,6 @@ from aidl_lang.tools.ide.outline import (
     semantic_tokens,
     spellings,
 )
-from aidl_lang.tools.ide.positions import format_document, format_range
 from aidl_lang.tools.ide.references import (
     CannotError,
     definitions,
@@ -34,6 +33,7 @@ from aidl_lang.tools.ide.references import (
     rename,
     renameable,
 )
+from aidl_lang.tools.ide.workspace import format_document, format_range
 from aidl_lang.tools.lsp.documents import Converter, Document
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
@@ -175,8 +175,6 @@ def _links(asked: Asked, params: types.DocumentLinkParams) -> list[types.Documen
         for link in links(asked.view)
     ]
 
-
-# --- The appearance of a text: colours of its words, folding, selection, its canonical form.
 
 _LEGEND = types.SemanticTokensLegend(TYPES, MODIFIERS)
 _TYPE = {name: index for index, name in enumerate(TYPES)}

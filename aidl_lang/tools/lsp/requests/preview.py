@@ -201,8 +201,6 @@ def _written(asked: Asked, made: Preview, view: View) -> Json:
     return Writer(view, asked.convert.uri_of).preview(made, asked.known.version)
 
 
-# --- The picture beside the text, for clients that show it: requests of our own, all below `aidl/`.
-
 _LONGEST_WAIT = 30.0
 """Most seconds to wait for an outcome: longer than a run may take."""
 _DIMENSIONS = "dimensions"

@@ -19,9 +19,9 @@ from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.lenses import Inlay, InlayKind, can_be_tried, end_lenses, inlays, lenses, tried
-from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
+from aidl_lang.tools.ide.workspace import Positions
 from aidl_lang.tools.lsp import params as asking
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import EntryRequest, read
@@ -305,8 +305,6 @@ def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.
 def _edit(asked: Asked, edits: Sequence[Edit]) -> types.WorkspaceEdit:
     return asked.convert.changes(asked.convert.by_file(edits), asked.can(_VERSIONED))
 
-
-# --- Help while writing: completion, signature help and hover.
 
 _KIND = {
     "keyword": types.CompletionItemKind.Keyword,
