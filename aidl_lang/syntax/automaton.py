@@ -11,7 +11,7 @@ from lark.lexer import Token as LarkToken
 from lark.parsers.lalr_analysis import Reduce, Shift
 from lark.parsers.lalr_parser_state import ParserState
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tables import END, PlacedTree, Token, load_tables
@@ -242,6 +242,15 @@ class Trouble:
         end = self.gap().end
         return Token(kind, text or kind, end, end)
 
+    def exchanged(self, *kinds: str) -> TokenRepair:
+        """Returns the repair that reads signs or words in place of the token; none leaves it out."""
+        tokens = tuple(self.token.but(kind, kind) for kind in kinds)
+        return TokenRepair(self.position, self.position + 1, tokens)
+
+    def put_in(self, *kinds: str) -> TokenRepair:
+        """Returns the repair that reads signs or words before the token."""
+        return TokenRepair(self.position, self.position, tuple(map(self.token_here, kinds)))
+
     def indentation(self, offset: int) -> int:
         return len(line := self.source.line(self.source.position(offset)[0])) - len(line.lstrip())
 
@@ -255,6 +264,27 @@ class Trouble:
         if self.token.kind in STATEMENT_WORDS | {"@"} and not in_call:
             return True
         return self.indentation(self.token.start) <= self.indentation(self.first.start)
+
+
+def wrong(
+    code: str,
+    message: str,
+    span: Span,
+    label: str = "",
+    secondary: tuple[Label, ...] = (),
+    *,
+    right: str | None = None,
+    fix: Fix | None = None,
+    hints: tuple[str, ...] = (),
+    repair: TokenRepair | None = None,
+    with_block: bool = False,
+) -> SyntaxProblem:
+    """Returns a problem; with what is `right`, the fix writes that."""
+    if right is not None:
+        fix = replaced(f"write `{right}`", span, right)
+    return SyntaxProblem(
+        Diagnostic(code, message, span, label, secondary, hints=hints, fix=fix), repair, with_block
+    )
 
 
 def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:

@@ -8,7 +8,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
-from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced
+from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
 from aidl_lang.syntax.tables import END, Token
 from aidl_lang.syntax.words import describe
 
@@ -107,7 +107,7 @@ def _unexpected(t: Trouble) -> SyntaxProblem:
         place = describe(t.token) if t.token.kind != END else "the end of the file"
         message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
     secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()
-    return SyntaxProblem(Diagnostic("E0101", message, t.span(), secondary=secondary))
+    return wrong("E0101", message, t.span(), secondary=secondary)
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
