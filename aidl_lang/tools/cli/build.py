@@ -6,15 +6,16 @@ import argparse
 import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
-from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant
+from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant, flag
 
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
@@ -137,25 +138,11 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
     """Returns the options of an export as the command line says them; timings are those of a compile."""
     from aidl_lang.export import Options
 
-    return Options(
-        show=arguments.show,
-        dimension=arguments.dimension,
-        cut=arguments.cut,
-        pixels=arguments.pixels,
-        thickness=arguments.thickness,
-        timings=compiled.timings if compiled is not None and arguments.timings else None,
-        sheet=arguments.sheet,
-        spacing=arguments.spacing,
-        nest=arguments.nest,
-        kerf=arguments.kerf,
-        tile=arguments.tile,
-        overlap=arguments.overlap,
-        theme=arguments.theme,
-        units=arguments.units,
-        dxf=arguments.dxf,
-        tolerance=arguments.tolerance,
-        profile=_profile(arguments.profile),
-    )
+    said: dict[str, Any] = {
+        each.name: getattr(arguments, each.name) for each in fields(Options) if each.name != "timings"
+    }
+    said["profile"] = _profile(arguments.profile)
+    return Options(timings=compiled.timings if compiled and arguments.timings else None, **said)
 
 
 def _write(
@@ -270,11 +257,9 @@ def register_compile(parser: argparse.ArgumentParser) -> None:
     add_drawing(parser)
     add_variant(parser)
     add_strict(parser)
-    parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
-    parser.add_argument("--timings", action="store_true", help="tell how long each stage took")
-    parser.add_argument(
-        "--trace-solve", action="store_true", help="tell which structures were solved in which stages"
-    )
+    flag(parser, "--quiet", "say nothing but errors")
+    flag(parser, "--timings", "tell how long each stage took")
+    flag(parser, "--trace-solve", "tell which structures were solved in which stages")
     parser.set_defaults(run=run_compile)
 
 

@@ -12,7 +12,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
-from aidl_lang.tools.cli.options import add_program, add_variant
+from aidl_lang.tools.cli.options import add_program, add_variant, flag
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Knob
@@ -107,14 +107,12 @@ class _Checked:
 def register_check(parser: argparse.ArgumentParser) -> None:
     """`aidl check`: find what is wrong without writing anything, and mend what can be mended."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
-    parser.add_argument(
-        "--fix", action="store_true", help="write the program with the fixes applied that are sure"
-    )
+    flag(parser, "--fix", "write the program with the fixes applied that are sure")
     how_far = parser.add_mutually_exclusive_group()
-    how_far.add_argument(
+    flag(
+        how_far,
         "--ends",
-        action="store_true",
-        help="try both ends of the range of each param as well, one at a time, and tell how far each may go",
+        "try both ends of the range of each param as well, one at a time, and tell how far each may go",
     )
     how_far.add_argument(
         "--no-solve",
@@ -122,7 +120,7 @@ def register_check(parser: argparse.ArgumentParser) -> None:
         action="store_false",
         help="find only what can be found without solving and drawing, which is quick",
     )
-    parser.add_argument("--json", action="store_true", help="print the diagnostics as JSON")
+    flag(parser, "--json", "print the diagnostics as JSON")
     add_variant(parser)
     parser.set_defaults(run=run_check)
 
@@ -222,10 +220,8 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
 def register_fmt(parser: argparse.ArgumentParser) -> None:
     """`aidl fmt`: put programs into their canonical form."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
-    parser.add_argument(
-        "--check", action="store_true", help="write nothing; exit with 1 if a file would change"
-    )
-    parser.add_argument("--diff", action="store_true", help="write nothing; print what would change")
+    flag(parser, "--check", "write nothing; exit with 1 if a file would change")
+    flag(parser, "--diff", "write nothing; print what would change")
     parser.set_defaults(run=run_fmt)
 
 
@@ -279,7 +275,7 @@ def _diff(source: SourceFile, text: str) -> str:
 def register_params(parser: argparse.ArgumentParser) -> None:
     """`aidl params`: the knobs of a program, with their ranges and values."""
     add_program(parser)
-    parser.add_argument("--json", action="store_true", help="print the list as JSON")
+    flag(parser, "--json", "print the list as JSON")
     parser.set_defaults(run=run_params)
 
 

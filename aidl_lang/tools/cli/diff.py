@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
-from aidl_lang.tools.cli.options import add_params, add_pixels
+from aidl_lang.tools.cli.options import add_params, add_pixels, flag, value
 
 if TYPE_CHECKING:
     from aidl_lang.common.source import SourceFile
@@ -30,16 +30,14 @@ def register_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", action="append", default=[], metavar="OUT", help="draw both over each other"
     )
-    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
+    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_params(parser)
     add_params(parser, "--from", "params_before", "the same for BEFORE alone")
     add_params(parser, "--to", "params_after", "the same for AFTER alone")
     add_pixels(parser)
-    parser.add_argument("--json", action="store_true", help="print the differences as JSON")
-    parser.add_argument("--exit-code", action="store_true", help="exit with 1 if there is a difference")
-    parser.add_argument(
-        "--best-effort", action="store_true", help="compare how far the solver came even if it did not solve"
-    )
+    flag(parser, "--json", "print the differences as JSON")
+    flag(parser, "--exit-code", "exit with 1 if there is a difference")
+    flag(parser, "--best-effort", "compare how far the solver came even if it did not solve")
     parser.set_defaults(run=run_diff)
 
 

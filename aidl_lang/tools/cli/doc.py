@@ -14,7 +14,7 @@ from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, listed, ticked
 from aidl_lang.tools.cli import files, registering
 from aidl_lang.tools.cli.files import UseError, say
-from aidl_lang.tools.cli.options import add_variant
+from aidl_lang.tools.cli.options import add_variant, choice, flag, value
 from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def register_doc(parser: argparse.ArgumentParser) -> None:
         help="as rectangle; other words, as finger joint, list the names that speak of them; without it, all "
         "are listed",
     )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
-    parser.add_argument("--picture", metavar="OUT.svg", help="draw the example of NAME; - is standard output")
+    flag(parser, "--json", "print as JSON")
+    value(parser, "--picture", "OUT.svg", "draw the example of NAME; - is standard output")
     parser.set_defaults(run=run_doc)
 
 
@@ -198,12 +198,13 @@ def _draw(entry: Entry, output: str) -> int:
 def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--full", action="store_true", help="with the whole reference after it")
-    kind.add_argument(
+    flag(kind, "--full", "with the whole reference after it")
+    value(
+        kind,
         "--with",
+        "TOPICS",
+        "with the reference of some topics after it, as joints,hardware",
         dest="topics",
-        metavar="TOPICS",
-        help="with the reference of some topics after it, as joints,hardware",
     )
     add_variant(kind)
     parser.set_defaults(run=run_guide)
@@ -241,14 +242,8 @@ def _topics(written: str) -> list[str]:
 
 def register_grammar(parser: argparse.ArgumentParser) -> None:
     """`aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers."""
-    parser.add_argument(
-        "--format", default="lark", metavar="FORMAT", help=f"{', '.join(FORMATS)} (default: lark)"
-    )
-    parser.add_argument(
-        "--fenced",
-        action="store_true",
-        help="free text first, then the program in a block opened by ```aidl",
-    )
+    value(parser, "--format", "FORMAT", f"{', '.join(FORMATS)} (default: lark)", str, "lark")
+    flag(parser, "--fenced", "free text first, then the program in a block opened by ```aidl")
     parser.add_argument(
         "-o",
         "--output",
@@ -363,11 +358,12 @@ _STYLES = ("openai", "anthropic", "mcp")
 
 def register_tool_schema(parser: argparse.ArgumentParser) -> None:
     """`aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model."""
-    parser.add_argument(
+    choice(
+        parser,
         "--style",
-        choices=_STYLES,
-        default=_STYLES[0],
-        help="the API that they are for (default: openai, and servers that speak like it)",
+        _STYLES,
+        "the API that they are for (default: openai, and servers that speak like it)",
+        _STYLES[0],
     )
     parser.set_defaults(run=run_tool_schema)
 

@@ -18,7 +18,7 @@ from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say, show
-from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
@@ -40,21 +40,11 @@ def register_generate(parser: argparse.ArgumentParser) -> None:
         "where to write: the program (.aidl) and drawings of it (.svg, .png, …); may be given several "
         "times (default: the program, or with --edit the change, on standard output)",
     )
-    parser.add_argument("--edit", metavar="FILE", help="change this program instead of writing a new one")
-    parser.add_argument("--image", metavar="FILE", help="a picture of what is meant (PNG, JPEG, WebP, GIF)")
-    parser.add_argument(
-        "--attempts",
-        type=count_to(100),
-        default=5,
-        metavar="N",
-        help="replies to ask for at most (default: 5)",
-    )
-    parser.add_argument(
-        "--runs", type=count_to(100), default=1, metavar="N", help="conversations to have; the best is kept"
-    )
-    parser.add_argument(
-        "--transcript", metavar="FILE", help="where to write the conversation (default: beside the program)"
-    )
+    value(parser, "--edit", "FILE", "change this program instead of writing a new one")
+    value(parser, "--image", "FILE", "a picture of what is meant (PNG, JPEG, WebP, GIF)")
+    value(parser, "--attempts", "N", "replies to ask for at most (default: 5)", count_to(100), 5)
+    value(parser, "--runs", "N", "conversations to have; the best is kept", count_to(100), 1)
+    value(parser, "--transcript", "FILE", "where to write the conversation (default: beside the program)")
     add_provider(parser)
     parser.set_defaults(run=run_generate)
 

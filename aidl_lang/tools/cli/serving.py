@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say
-from aidl_lang.tools.cli.options import add_program
+from aidl_lang.tools.cli.options import add_program, flag, value
 
 if TYPE_CHECKING:
     from aidl_lang.tools.preview.serving import Served
@@ -49,17 +49,16 @@ def address(text: str) -> str:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds where a page is served, and whether the browser is opened."""
-    parser.add_argument(
-        "--port", type=port, default=0, metavar="N", help="the port (default: one that is free)"
-    )
-    parser.add_argument(
+    value(parser, "--port", "N", "the port (default: one that is free)", port, 0)
+    value(
+        parser,
         "--host",
-        type=address,
-        default=LOCALHOST,
-        metavar="ADDRESS",
-        help=f"an address of this machine alone (default: {LOCALHOST})",
+        "ADDRESS",
+        f"an address of this machine alone (default: {LOCALHOST})",
+        address,
+        LOCALHOST,
     )
-    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
+    flag(parser, "--no-open", "do not open the browser")
 
 
 def require(what: str, *packages: str) -> None:
@@ -166,11 +165,12 @@ _CODE = "E0954"
 
 def register_lsp(parser: argparse.ArgumentParser) -> None:
     """`aidl lsp`: serve editors over the Language Server Protocol, on standard input and output."""
-    parser.add_argument(
+    value(
+        parser,
         "--tcp",
-        type=_address,
-        metavar="HOST:PORT",
-        help="wait for one client at this address instead; port 0 takes one that is free",
+        "HOST:PORT",
+        "wait for one client at this address instead; port 0 takes one that is free",
+        _address,
     )
     parser.set_defaults(run=run_lsp)
 
@@ -209,14 +209,9 @@ _TOKEN = "AIDL_MCP_TOKEN"
 
 def register_mcp(parser: argparse.ArgumentParser) -> None:
     """`aidl mcp`: serve the tools to agents over the Model Context Protocol, on standard input and output."""
-    parser.add_argument(
-        "--root", metavar="DIR", help="let programs import files below this folder (default: no files at all)"
-    )
-    parser.add_argument(
-        "--http",
-        type=port,
-        metavar="PORT",
-        help="serve over HTTP on this machine instead; 0 takes a port that is free",
+    value(parser, "--root", "DIR", "let programs import files below this folder (default: no files at all)")
+    value(
+        parser, "--http", "PORT", "serve over HTTP on this machine instead; 0 takes a port that is free", port
     )
     parser.set_defaults(run=run_mcp)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, show
-from aidl_lang.tools.cli.options import add_look, add_params, add_program
+from aidl_lang.tools.cli.options import add_look, add_params, add_program, choice, value
 from aidl_lang.tools.terminal import (
     GRAPHICS,
     PROTOCOLS,
@@ -38,14 +38,13 @@ def register_show(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_params(parser)
     add_look(parser)
-    parser.add_argument(
-        "--width", type=_columns, metavar="COLUMNS", help="columns to fill at most (default: the terminal)"
-    )
-    parser.add_argument(
+    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", _columns)
+    choice(
+        parser,
         "--protocol",
-        choices=("auto", *PROTOCOLS),
-        default="auto",
-        help="how to show it (default: auto, the best that the terminal is known for)",
+        ("auto", *PROTOCOLS),
+        "how to show it (default: auto, the best that the terminal is known for)",
+        "auto",
     )
     parser.set_defaults(run=run_show)
 

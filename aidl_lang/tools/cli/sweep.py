@@ -22,7 +22,10 @@ from aidl_lang.tools.cli.options import (
     add_program,
     add_strict,
     add_variant,
+    choice,
     count_to,
+    flag,
+    value,
 )
 
 if TYPE_CHECKING:
@@ -165,72 +168,59 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUES",
         help="vary a param",
     )
-    parser.add_argument("--table", metavar="CSV", help="a variant for each row; columns are params")
-    parser.add_argument(
-        "--random",
-        type=count_to(1_000_000),
-        metavar="N",
-        help="draw so many variants within the ranges of params",
-    )
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is drawn (default: 1)")
+    value(parser, "--table", "CSV", "a variant for each row; columns are params")
+    value(parser, "--random", "N", "draw so many variants within the ranges of params", count_to(1_000_000))
+    value(parser, "--seed", "N", "of what is drawn (default: 1)", int, 1)
     add_outputs(
         parser,
         "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
         "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
     )
-    parser.add_argument(
+    flag(
+        parser,
         "--drawing-sheet",
-        action="store_true",
-        help="make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
+        "make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
     )
     add_drawing_options(parser)
     add_variant(parser)
     add_strict(parser)
     running = parser.add_argument_group("running")
-    running.add_argument(
+    value(
+        running,
         "--on",
-        default="local",
-        metavar="ENGINE",
-        help="local (the default), or a scheduler of Dask: tcp://host:8786",
+        "ENGINE",
+        "local (the default), or a scheduler of Dask: tcp://host:8786",
+        str,
+        "local",
     )
-    running.add_argument(
-        "--jobs",
-        type=count_to(1000),
-        metavar="N",
-        help="processes of this machine (default: one for each processor)",
+    value(
+        running, "--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000)
     )
-    running.add_argument(
+    value(
+        running,
         "--time-limit",
-        type=count_to(100_000),
-        metavar="SECONDS",
-        help="for each variant (default: what a compile, its files and measures may take)",
+        "SECONDS",
+        "for each variant (default: what a compile, its files and measures may take)",
+        count_to(100_000),
     )
-    running.add_argument("--stop-on-error", action="store_true", help="stop at the first variant that fails")
-    running.add_argument(
-        "--resume", action="store_true", help="go on with the same sweep that was broken off"
-    )
-    running.add_argument(
-        "--cache", metavar="DIR", help="keep what comes of variants there, and take what is kept"
-    )
-    running.add_argument(
-        "--cache-size",
-        type=count_to(1_000_000),
-        metavar="MB",
-        help="most that the cache keeps (default: 4096)",
-    )
+    flag(running, "--stop-on-error", "stop at the first variant that fails")
+    flag(running, "--resume", "go on with the same sweep that was broken off")
+    value(running, "--cache", "DIR", "keep what comes of variants there, and take what is kept")
+    value(running, "--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
     running.add_argument(
         "--no-timings",
         dest="timings",
         action="store_false",
         help="leave the seconds out of tables, which are the same every time then",
     )
-    running.add_argument(
+    choice(
+        running,
         "--progress",
-        choices=("auto", "off", "json"),
-        default="auto",
-        help="a line on a terminal (the default), nothing, or JSON lines on standard error",
+        ("auto", "off", "json"),
+        "a line on a terminal (the default), nothing, or JSON lines on standard error",
+        "auto",
     )
-    running.add_argument("--json", action="store_true", help="print a summary with all failures as JSON")
+    flag(running, "--json", "print a summary with all failures as JSON")
     parser.set_defaults(run=run_sweep)
 
 
@@ -312,9 +302,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
         bundle,
         world,
         Making(
-            options=options(arguments),
-            best_effort=arguments.best_effort,
-            drafted=arguments.drawing_sheet,
+            options=options(arguments), best_effort=arguments.best_effort, drafted=arguments.drawing_sheet
         ),
         wanted,
         lambda variant, name: reproducing(
