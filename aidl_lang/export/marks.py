@@ -85,6 +85,11 @@ class Area:
         return self.ink is None and self.role not in ("", HALO)
 
 
+def widened(box: Bounds, by: float) -> Bounds:
+    """Returns a box with so much more on each side."""
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
+
+
 def polygon(*corners: Vec) -> Face:
     """Returns the face with these corners, counter-clockwise."""
     return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Job, themes
-from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text
+from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.engraving import boxes_meet
@@ -162,7 +162,7 @@ class Explainer:
     def first_free(self, candidates: list[Text]) -> Text:
         checkpoint()
         air = 0.2 * candidates[0].size
-        chosen = min(candidates, key=lambda c: self.taken.overlap(_grown(c.box, air)))
+        chosen = min(candidates, key=lambda c: self.taken.overlap(widened(c.box, air)))
         self.taken.add(chosen.box)
         return chosen
 
@@ -204,10 +204,6 @@ def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
     yield (middle, bottom - size), "middle"
     yield (right + gap, (top + bottom) / 2 - 0.3 * size), "start"
     yield (left - gap, (top + bottom) / 2 - 0.3 * size), "end"
-
-
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def _overlap(a: Bounds, b: Bounds) -> float:

@@ -14,7 +14,7 @@ from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import ExportError, Job, themes
-from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
@@ -110,7 +110,7 @@ def tiled(
         x, y = across.start(column), -down.start(row)
         sight = (x, y - window[1], x + window[0], y)
         groups = [
-            replace(group, marks=shown, clip=_grown(sight, BLEED))
+            replace(group, marks=shown, clip=widened(sight, BLEED))
             for group, marks in zip(picture.groups, shapes, strict=True)
             if (shown := tuple(mark for mark, shape in marks if shape.meets(sight)))
         ]
@@ -119,7 +119,7 @@ def tiled(
     made = []
     for k, (sight, groups, place) in enumerate(found, 1):
         marks = _page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")
-        made.append(Picture(_grown(sight, margin), (*groups, Group("page-marks", tuple(marks)))))
+        made.append(Picture(widened(sight, margin), (*groups, Group("page-marks", tuple(marks)))))
     return made
 
 
@@ -217,10 +217,6 @@ def _outline(box: Bounds) -> Polygon:
     return np.array([(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)])
 
 
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
-
-
 # One group for each structure from back to front: later siblings lie over earlier ones, unless they say
 # otherwise; what explains the picture lies above them all.
 
@@ -256,7 +252,7 @@ def _whole(job: Job) -> Picture:
     margin = max(
         0.0 if options.tile else MARGIN * size, 0.0 if options.for_cutter else _overhang(job.drawing)
     )
-    return Picture(_grown(overlay.box, margin), tuple(groups))
+    return Picture(widened(overlay.box, margin), tuple(groups))
 
 
 def _drawn(job: Job, size: float) -> Iterator[Group]:

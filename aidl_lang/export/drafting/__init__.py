@@ -34,7 +34,7 @@ from aidl_lang.export.drafting.tables import (
     width_of,
     written,
 )
-from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, widened
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.completing import mirror_levels
 from aidl_lang.geometry.dimensions.sketch import is_half_round
@@ -87,7 +87,7 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     box, dimensions, left = dimensioned_to_scale(view.drawing, pen, view.wanted, callouts, signs)
     centers = tuple(_center_lines(view.drawing, factor))
     outlines = Group("outline", tuple(_outlines(view.drawing, factor)), {"class": "outline"})
-    box = union_bounds([box, _grown(view.drawing.box, (_BEYOND + 1) / factor)])
+    box = union_bounds([box, widened(view.drawing.box, (_BEYOND + 1) / factor)])
     words = [view.label] if view.label else []
     words += [_FREE] if view.free else []
     bottom = _LABEL if words else 0.0
@@ -138,10 +138,6 @@ def _datum(view: View, factor: float) -> Iterator[Mark]:
             yield Text((end[0] + aside * way[0], end[1] + aside * way[1]), sign, size, BLACK, halo=False)
 
 
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
-
-
 def _outlines(drawing: Drawing, factor: float) -> Iterator[Mark]:
     wide, narrow = Ink(BLACK, WIDE / factor), Ink(BLACK, NARROW / factor)
     for body in drawing.bodies:
@@ -163,7 +159,7 @@ def _center_lines(drawing: Drawing, factor: float) -> Iterator[Curves]:
             if key not in largest or largest[key].radius < piece.radius:
                 largest[key] = piece
     for body in drawing.bodies if len(drawing.bodies) == 1 else ():
-        left, bottom, right, top = _grown(body.box, _BEYOND / factor)
+        left, bottom, right, top = widened(body.box, _BEYOND / factor)
         x, y = mirror_levels(body, slack)
         has_circle = any(
             isinstance(p, Circle) and 2 * p.radius >= 0.999 * (body.box[2] - body.box[0])
