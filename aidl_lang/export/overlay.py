@@ -16,8 +16,7 @@ from aidl_lang.export import Job, themes
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.engraving import boxes_meet
-from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.evaluate import Bounds, are_near, bounds
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.parts import COARSE
@@ -58,7 +57,7 @@ def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
     """Returns what is engraved about a body, as polylines."""
     near = (s.pieces for s in drawing.strokes)
     boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
-    return [piece_points(piece, COARSE) for piece, box in boxes if boxes_meet(box, body.box)]
+    return [piece_points(piece, COARSE) for piece, box in boxes if are_near(box, body.box)]
 
 
 def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
