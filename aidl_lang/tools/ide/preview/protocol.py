@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -164,14 +165,11 @@ class Writer:
                 "seconds": preview.seconds,
                 "svg": preview.svg,
                 "box": preview.box,
-                "elements": [self._element(element) for element in preview.elements],
-                "knobs": [self._knob(knob) for knob in preview.knobs],
-                "handles": [
-                    {"id": h.id, "path": h.path, "at": h.at, "moves": h.moves, "hint": h.hint}
-                    for h in preview.handles
-                ],
-                "problems": [self._problem(problem) for problem in preview.problems],
-                "conflicts": [self._conflict(conflict) for conflict in preview.conflicts],
+                "elements": list(map(self._fields, preview.elements)),
+                "knobs": list(map(self._fields, preview.knobs)),
+                "handles": list(map(self._fields, preview.handles)),
+                "problems": list(map(self._problem, preview.problems)),
+                "conflicts": list(map(self._conflict, preview.conflicts)),
                 "motions": [_motion(way) for way in preview.ways],
                 "degrees": preview.degrees,
             }
@@ -204,52 +202,20 @@ class Writer:
             self._uris[source] = None if path is None else self._uri_of(path)
         return self._uris[source]
 
-    def _element(self, element: Element) -> Json:
-        return {
-            "path": element.path,
-            "kind": element.kind,
-            "type": element.type,
-            **self.place(element.span),
-            "hint": element.hint,
-        }
-
-    def _knob(self, knob: Slider) -> Json:
-        return {
-            "path": knob.path,
-            "name": knob.name,
-            "kind": knob.kind,
-            "value": knob.value,
-            "unit": knob.unit,
-            "low": knob.low,
-            "high": knob.high,
-            "step": knob.step,
-            "choices": knob.choices,
-            "doc": knob.doc,
-            **self.place(knob.span),
-            "editable": knob.editable,
-        }
+    def _fields(self, made: Any) -> Json:
+        """Returns what a record says, by the names of its fields; its span as range and file."""
+        said: Json = {}
+        for each in fields(made):
+            value = getattr(made, each.name)
+            said |= self.place(value) if each.name == "span" else {each.name: value}
+        return said
 
     def _problem(self, problem: Problem) -> Json:
-        return {
-            "severity": problem.severity,
-            "code": problem.code,
-            "message": problem.message,
-            "hints": problem.hints,
-            **self.place(problem.span),
-            "elements": problem.elements,
-            "points": problem.points,
-            "fixes": len(problem.fixes),
-            "titles": [fix.title for fix in problem.fixes],
-        }
+        titles = [fix.title for fix in problem.fixes]
+        return {**self._fields(problem), "fixes": len(titles), "titles": titles}
 
     def _conflict(self, conflict: Conflict) -> Json:
-        return {
-            "headline": conflict.headline,
-            "constraints": [
-                {"text": p.text, **self.place(p.span), "elements": p.elements, "off": p.off}
-                for p in conflict.parties
-            ],
-        }
+        return {"headline": conflict.headline, "constraints": list(map(self._fields, conflict.parties))}
 
 
 def _motion(way: Way) -> Json:
