@@ -182,7 +182,7 @@ def compile(
 
     With a `memory` of the last run, structures that no change since then concerns are not solved again; with
     the result of `front` for this very program, it is not checked again. Raises Cancelled if the run is given
-    up (see `cancelling`).
+    up (see `common.running`).
     """
     watch = Stopwatch()
     with working:

@@ -142,7 +142,7 @@ def _inner(found: OutlineFile, trace: Trace) -> str:
 #
 # A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is
 # the folder of the program and all below it. Drawings of other programs, `.svg` and `.dxf`, are read as
-# files of definitions (see `drawings`). No other file is read, as diagnostics on a file quote it. Mistakes
+# files of definitions (see above). No other file is read, as diagnostics on a file quote it. Mistakes
 # inside an imported file are reported at their place there.
 
 SUFFIX = PROGRAM

@@ -248,7 +248,7 @@ def sweep(
     """Tries a working program at the ends of its params. `known` are its diagnostics as written; `progress`
     is told how many ends are done, of how many.
 
-    Raises Cancelled where nobody waits for it any more (see `cancelling`).
+    Raises Cancelled where nobody waits for it any more (see `common.running`).
     """
     start = time.monotonic()
     wanted = [(knob, end) for knob in knobs for end in ends(knob)]

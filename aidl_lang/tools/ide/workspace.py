@@ -283,7 +283,7 @@ def run(
 ) -> View:
     """Returns the view with its outcome; if that has no picture, with the picture of the `last` view.
 
-    Raises Cancelled where the run is given up (see `cancelling`).
+    Raises Cancelled where the run is given up (see `common.running`).
     """
     outcome = pipeline.compile(
         view.source,
