@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import asdict, field, replace
 from typing import Any, TypeAlias
 
 from aidl_lang import pipeline
@@ -429,17 +429,7 @@ def _end(turned: Turned) -> dict[str, Any]:
 
 
 def _faults(tried: Tried) -> list[dict[str, Any]]:
-    return [
-        {
-            "code": f.code,
-            "message": f.message,
-            "label": f.label,
-            "text": f.text,
-            "file": f.file,
-            "line": f.line,
-        }
-        for f in tried.faults
-    ]
+    return [asdict(fault) for fault in tried.faults]
 
 
 __all__ = ["Sweep", "SweepJob", "Turned", "described", "has_range", "sentence", "sweep"]
