@@ -10,7 +10,7 @@ from dataclasses import field
 from typing import Any, Literal, TypeAlias
 
 from aidl_lang.common import resources
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.diagnostics import Diagnostic, Fix
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
@@ -145,14 +145,10 @@ def _finding(d: Diagnostic) -> Finding:
         _cut(d.message),
         place(d.span) if d.span else None,
         _cut(d.label),
-        [_related(label) for label in d.secondary],
+        [Related(place(label.span), _cut(label.text)) for label in d.secondary],
         [_cut(hint) for hint in d.hints],
         repair(d.fix) if d.fix else None,
     )
-
-
-def _related(label: Label) -> Related:
-    return Related(place(label.span), _cut(label.text))
 
 
 def place(span: Span) -> Place:
@@ -161,11 +157,8 @@ def place(span: Span) -> Place:
 
 
 def repair(fix: Fix) -> Repair:
-    return Repair(_cut(fix.title), [_replacement(edit) for edit in fix.edits])
-
-
-def _replacement(edit: Edit) -> Replacement:
-    return Replacement(place(edit.span), edit.span.text, edit.replacement)
+    made = [Replacement(place(edit.span), edit.span.text, edit.replacement) for edit in fix.edits]
+    return Repair(_cut(fix.title), made)
 
 
 def _cut(text: str) -> str:

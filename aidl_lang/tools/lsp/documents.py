@@ -315,7 +315,7 @@ def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -
         message=worded(diagnostic),
         severity=_SEVERITY[diagnostic.severity],
         code=diagnostic.code,
-        code_description=types.CodeDescription(_page(diagnostic.code)),
+        code_description=types.CodeDescription(resource(f"docs/diagnostics/{diagnostic.code}.md").as_uri()),
         source=SOURCE,
         tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
         related_information=list(_related(diagnostic, convert)) or None,
@@ -333,10 +333,6 @@ def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.Diagn
     for label in (*own, *diagnostic.secondary):
         if (place := convert.location(label.span)) is not None:
             yield types.DiagnosticRelatedInformation(place, label.text or diagnostic.message)
-
-
-def _page(code: str) -> str:
-    return resource(f"docs/diagnostics/{code}.md").as_uri()
 
 
 class Publisher:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import AnyType
 from aidl_lang.checking.units import UNITS
@@ -223,7 +222,7 @@ def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
 def _headed(view: View, mention: Mention) -> str:
     """Returns the line that introduces a name: its definition, or its type."""
     symbol = mention.symbol
-    fact = _fact(view, mention.node)
+    fact = view.program.inference.facts.get(mention.node)
     kind = "" if fact is None or isinstance(fact.type, AnyType) else str(fact.type)
     match symbol.node:
         case None:
@@ -233,10 +232,6 @@ def _headed(view: View, mention: Mention) -> str:
         case node:
             note = f"  // {kind}" if kind and not isinstance(node, ast.Structure) else ""
             return fenced(head(node) + note)
-
-
-def _fact(view: View, node: ast.Node) -> Fact | None:
-    return view.program.inference.facts.get(node)
 
 
 def _doc(symbol: Symbol) -> str:
@@ -338,17 +333,13 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
     if solved is None or made is None or argument.name is None:
         return ""
-    if made.indices or not _is_made(made, argument):
+    if made.indices or not (isinstance(made.value, ast.Call) and argument in made.value.arguments):
         return ""
     name = ast.Name(made.name.text, span=made.name.span)
     field = ast.Member(name, argument.name, span=argument.name.span)
     found = solved.values(field, path[: path.index(made)])
     told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
     return joined([listed(told), failed(solved)])
-
-
-def _is_made(made: ast.Assign, argument: ast.Argument) -> bool:
-    return isinstance(made.value, ast.Call) and argument in made.value.arguments
 
 
 # --- Selections -----------------------------------------------------------------------------------
