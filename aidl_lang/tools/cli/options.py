@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
-from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -484,6 +483,8 @@ def _text(name: str, value: object) -> str:
     if isinstance(value, str | Path):
         return str(value)
     if isinstance(value, int | float):
+        from decimal import Decimal
+
         return f"{Decimal(repr(float(value) if isinstance(value, float) else int(value))):f}"
     if isinstance(value, Iterable):
         items = list(value)
