@@ -164,7 +164,7 @@ class Model:
         is more than one file to it, as of several sheets.
         """
         from aidl_lang.export import suffix_of
-        from aidl_lang.tools.cli.keywords import read
+        from aidl_lang.tools.cli.options import read
 
         wanted = suffix_of("", suffix)
         made = self._compiled.exported(wanted, options or read(asked, self._compiled).options)
@@ -184,8 +184,8 @@ class Model:
         """
         from aidl_lang.common.files import replace
         from aidl_lang.export import suffix_of
-        from aidl_lang.export.naming import contents, is_pattern
-        from aidl_lang.tools.cli.keywords import read
+        from aidl_lang.export.cut_list import contents, is_pattern
+        from aidl_lang.tools.cli.options import read
 
         asked = read(options, self._compiled)
         suffix = suffix_of(str(path), asked.format)
@@ -259,7 +259,7 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
         message = "this Path holds a program, not the name of a file"
         raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
     from aidl_lang.tools.cli import files
-    from aidl_lang.tools.cli.report import UseError
+    from aidl_lang.tools.cli.files import UseError
 
     disk = DiskWorld(text_or_path.parent)
     try:
@@ -320,7 +320,7 @@ def sweep(
     sweep`, as keywords. What is read is as for `compile`. Raises AidlError for values, outputs and engines
     that cannot be, and for a program that is wrong as written.
     """
-    from aidl_lang.tools.cli.keywords import read
+    from aidl_lang.tools.cli.options import read
     from aidl_lang.tools.sweeping.python import Sweep
 
     asked = read(options)

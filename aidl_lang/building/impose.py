@@ -40,8 +40,8 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.building.wording import Read, Wording
 from aidl_lang.checking import rules
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from build123d import Compound, Location
 
     from aidl_lang.compiled import Compiled
-    from aidl_lang.export.solids import PlacedBody
+    from aidl_lang.export.mesh import PlacedBody
     from aidl_lang.geometry.solved import SolvedStructure
 
 
@@ -33,7 +33,7 @@ def to_build123d(compiled: Compiled, thickness: float | None) -> Compound:
 
     from aidl_lang.common.colors import rgb
     from aidl_lang.common.drawing_time import within
-    from aidl_lang.export.solids import placed_bodies
+    from aidl_lang.export.mesh import placed_bodies
     from aidl_lang.export.step import Product, products
 
     def made(product: Product) -> Compound:
