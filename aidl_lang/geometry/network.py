@@ -21,17 +21,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import (
-    TAU,
-    Bounds,
-    bounds,
-    ends,
-    is_closed,
-    locate,
-    part,
-    point,
-    round_range,
-)
+from aidl_lang.geometry.evaluate import TAU, Bounds, bounds, ends, is_closed, locate, part, point, round_range
 from aidl_lang.geometry.intersect import all_intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_rows
 from aidl_lang.geometry.separation import Hulls

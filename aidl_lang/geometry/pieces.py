@@ -220,11 +220,7 @@ def fallen_piece_notes(
 
 
 def _severed(
-    walk: Bodies,
-    mass: Mass,
-    holes: Sequence[SolvedStructure],
-    others: Sequence[Solid],
-    islands: Section,
+    walk: Bodies, mass: Mass, holes: Sequence[SolvedStructure], others: Sequence[Solid], islands: Section
 ) -> Iterator[Diagnostic]:
     """Yields the warning that holes leave a solid in pieces beside one another which were one before, and of
     which nothing else holds those that are not the largest.

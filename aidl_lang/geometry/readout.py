@@ -11,14 +11,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import pieces
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import (
-    Finish,
-    Geometry,
-    Model,
-    Recipe,
-    Structure,
-    own_geometry,
-)
+from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure, own_geometry
 from aidl_lang.building.primitives import clockwise, number, translate, xy
 from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding

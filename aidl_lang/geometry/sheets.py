@@ -17,16 +17,7 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.nesting import turned_box
-from aidl_lang.geometry.parts import (
-    COARSE,
-    Motion,
-    Part,
-    Size,
-    drawn,
-    gathered,
-    parts_of,
-    upright_turn,
-)
+from aidl_lang.geometry.parts import COARSE, Motion, Part, Size, drawn, gathered, parts_of, upright_turn
 from aidl_lang.geometry.sections import widened
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.tessellate import Polygon, face_polygons
@@ -72,11 +63,7 @@ class _Place:
 
 
 def laid_out(
-    root: SolvedStructure,
-    drawing: Drawing,
-    sheet: Size,
-    spacing: float = SPACING,
-    nest: float | None = None,
+    root: SolvedStructure, drawing: Drawing, sheet: Size, spacing: float = SPACING, nest: float | None = None
 ) -> Layout:
     """Returns all bodies, each as often as it is to be made, on as few sheets as the packer finds, those of
     one stock together (sizes in mm).

@@ -280,10 +280,7 @@ class _Surveyor:
                 f"the density of `{material}` is not known, so `{path}` has no mass",
                 structure.span if structure else None,
                 "made of it",
-                hints=(
-                    *did_you_mean(near),
-                    f'say it in kg/m³: `--density "{material}=1200"`',
-                ),
+                hints=(*did_you_mean(near), f'say it in kg/m³: `--density "{material}=1200"`'),
             )
 
     def _find(self, written: str) -> tuple[str, str]:

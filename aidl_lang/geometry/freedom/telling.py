@@ -17,17 +17,7 @@ from aidl_lang.common.prose import short
 from aidl_lang.geometry.freedom.bending import Bending
 from aidl_lang.geometry.freedom.reach import POSSIBLE, Flags, Reach
 from aidl_lang.geometry.freedom.relations import Relations, pattern
-from aidl_lang.geometry.freedom.scene import (
-    NUMBER,
-    ROOT,
-    WHOLE,
-    Floats,
-    Ints,
-    Scene,
-    Thing,
-    X,
-    Y,
-)
+from aidl_lang.geometry.freedom.scene import NUMBER, ROOT, WHOLE, Floats, Ints, Scene, Thing, X, Y
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.gradients import connected
