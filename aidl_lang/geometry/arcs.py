@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, point, points, round_range
+from aidl_lang.geometry.evaluate import TAU, ends, point, points, reverse, round_range, turn_between
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.measures import length
 
@@ -111,7 +111,9 @@ class _Outline:
         pieces, count = self._whole, len(self._whole)
         exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
         runs_on = [
-            not (exact[k - 1] or exact[k]) and _bend(pieces[k - 1], pieces[k]) < _SMOOTH for k in range(count)
+            not (exact[k - 1] or exact[k])
+            and abs(turn_between(direction(pieces[k - 1], 1.0), direction(pieces[k], 0.0))) < _SMOOTH
+            for k in range(count)
         ]
         first = runs_on.index(False) if self._closed and False in runs_on else 0
         found: list[_Stretch] = []
@@ -177,12 +179,6 @@ class _Outline:
         else:
             fit = _Fit(stretch.pieces, start, end, self._tolerance)
             yield from fit.lines() if stretch.has_corners else fit.arcs()
-
-
-def _bend(before: Piece, after: Piece) -> float:
-    """Returns the angle between the directions in which a piece ends and the next begins."""
-    (ax, ay), (bx, by) = direction(before, 1.0), direction(after, 0.0)
-    return abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def _crossing(p: Vec, u: Vec, q: Vec, v: Vec) -> Vec | None:
@@ -305,7 +301,7 @@ def _pair(start: Vec, leaving: Vec, end: Vec, arriving: Vec) -> list[Piece] | No
         return None
     if isinstance(first, Line) and isinstance(second, Line):
         return [Line(start, end)]
-    return [first, _back(second)]
+    return [first, reverse(second)]
 
 
 def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
@@ -314,7 +310,7 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
     chord = math.hypot(dx, dy)
     if chord == 0:
         return None
-    sweep = 2 * math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
+    sweep = 2 * turn_between(way, (dx, dy))
     if abs(sweep) > _WIDEST:
         return None
     if abs(sweep) < 8 * _STRAIGHT:
@@ -322,12 +318,6 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
     radius = chord / (2 * math.sin(sweep / 2))  # to the left, if positive
     center = start[0] - radius * way[1], start[1] + radius * way[0]
     return Arc(center, abs(radius), start, end, sweep)
-
-
-def _back(piece: Arc | Line) -> Piece:
-    if isinstance(piece, Line):
-        return Line(piece.end, piece.start)
-    return Arc(piece.center, piece.radius, piece.end, piece.start, -piece.sweep)
 
 
 def _distances(piece: Piece, spots: Floats) -> Floats:

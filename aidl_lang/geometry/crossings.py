@@ -9,6 +9,7 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.prose import counted
@@ -95,7 +96,7 @@ def _rings(network: Network, way: SolvedGeometry, numbers: Mapping[int, int]) ->
         else:  # a curve may be drawn against the way: the next one begins where it ends
             following = network.uses[numbers[id(leaves[place + 1])]] if place + 1 < len(leaves) else uses
             is_turned = last_node(network, uses[-1]) not in _ends(network, following)
-        ring += [(use, leaf) for use in (_turned(uses) if is_turned else uses)]
+        ring += [(use, leaf) for use in (map(_back, reversed(uses)) if is_turned else uses)]
     yield from _closed(network, ring)
 
 
@@ -114,10 +115,6 @@ def _ends(network: Network, uses: Sequence[Use]) -> tuple[int, int]:
     return first_node(network, uses[0]), last_node(network, uses[-1])
 
 
-def _turned(uses: Sequence[Use]) -> list[Use]:
-    return [_back(use) for use in reversed(uses)]
-
-
 def _back(use: Use) -> Use:
     return use[0], not use[1]
 
@@ -131,28 +128,19 @@ def _crossings(network: Network, ring: list[_Pass]) -> Iterator[Crossing]:
         others = meeting[one.node]
         for other in others[others.index(one) + 1 :]:
             if _do_cross(network, one, other):
-                yield Crossing(_place(network, one.node), (one.part, other.part))
-
-
-def _place(network: Network, node: int) -> Vec:
-    """Returns the coordinates of a node, without what rounding left of a 0."""
-    x, y = (0.0 if abs(value) < network.tolerance else value for value in network.nodes[node])
-    return x, y
+                # without what rounding left of a 0
+                x, y = (0.0 if abs(c) < network.tolerance else c for c in network.nodes[one.node])
+                yield Crossing((x, y), (one.part, other.part))
 
 
 def _do_cross(network: Network, one: _Pass, other: _Pass) -> bool:
     """Tells whether two ways through a node change sides; what touches, or runs along, does not."""
-    base, *rest = (_heading(network, use) for use in (one.back, one.on, other.back, other.on))
+    ways = (derivative(network.piece(use), 0) for use in (one.back, one.on, other.back, other.on))
+    base, *rest = (math.atan2(dy, dx) for dx, dy in ways)
     on, *others = ((angle - base) % math.tau for angle in rest)
     if any(min(abs(a - b), math.tau - abs(a - b)) < _FLAT for a in others for b in (0.0, on)):
         return False
     return (others[0] < on) != (others[1] < on)
-
-
-def _heading(network: Network, use: Use) -> float:
-    """Returns the angle at which an edge leaves its first node."""
-    dx, dy = derivative(network.piece(use), 0)
-    return math.atan2(dy, dx)
 
 
 # --- What is said ---
@@ -220,9 +208,5 @@ def _sides(corners: Sequence[Vec], swap: tuple[int, int]) -> list[Line]:
 def _is_simple(sides: Sequence[Line]) -> bool:
     """Tells whether only neighbours among the sides of a polygon meet."""
     last = len(sides) - 1
-    return not any(
-        meet(sides[i], sides[j], NO_LENGTH)
-        for i in range(last)
-        for j in range(i + 2, last + 1)
-        if (i, j) != (0, last)
-    )
+    apart = (pair for pair in combinations(range(last + 1), 2) if pair[1] - pair[0] not in (1, last))
+    return not any(meet(sides[i], sides[j], NO_LENGTH) for i, j in apart)

@@ -182,6 +182,11 @@ def reverse(curve: Piece) -> Piece:
     return curve
 
 
+def turn_between(a: Vec, b: Vec) -> float:
+    """Returns the angle from one direction to another in radians, positive counter-clockwise."""
+    return math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+
+
 def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
     """Returns a curve in the coordinates of a frame: at an origin, reflected in x if it is mirrored, then
     turned by degrees.

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.network import Network, Use, with_finer_chords
+from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
@@ -250,7 +250,10 @@ def _chain_free(
     uses = [use for _, number in free for use in network.uses[number]]
     kept = _without_dangling(network, uses)
     used: set[int] = set()
-    for part in _connected(network, kept):
+    joined = Joined()
+    for use in kept:
+        joined.join(first_node(network, use), last_node(network, use))
+    for part in joined.groups(kept, lambda use: first_node(network, use)):
         polygons, bounding = _outlines(network, part)
         section = fill(polygons, "NonZero")
         if not is_nothing(section):
@@ -283,32 +286,6 @@ def _close_with_outlines(
     if names:
         result.faces.append(OwnFace(names, added))
     return used
-
-
-class Joined:
-    """Groups of things that hang together (union-find)."""
-
-    def __init__(self) -> None:
-        self._parent: dict[object, object] = {}
-
-    def root(self, thing: object) -> object:
-        while (above := self._parent.get(thing, thing)) != thing:
-            self._parent[thing] = thing = self._parent.get(above, above)
-        return thing
-
-    def join(self, one: object, other: object) -> None:
-        self._parent[self.root(one)] = self.root(other)
-
-
-def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
-    """Returns the uses by connected part, in order of first mention."""
-    joined = Joined()
-    for use in uses:
-        joined.join(first_node(network, use), last_node(network, use))
-    parts: dict[object, list[Use]] = defaultdict(list)
-    for use in uses:
-        parts[joined.root(first_node(network, use))].append(use)
-    return list(parts.values())
 
 
 def region_of(

@@ -14,7 +14,7 @@ from dataclasses import field
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse
+from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse, turn_between
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.measures import length
 
@@ -49,8 +49,7 @@ class Corner:
     @property
     def turn(self) -> float:
         """The angle from the first arm to the second, in radians, positive counter-clockwise."""
-        a, b = self.arms[0].way, self.arms[1].way
-        return math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+        return turn_between(self.arms[0].way, self.arms[1].way)
 
     @property
     def is_smooth(self) -> bool:

@@ -44,9 +44,12 @@ def hull(curves: Sequence[Piece]) -> Region:
         arrived, left = spots[k - 1][1], spots[k][0]
         p, q = point(contact.curve, arrived), point(contact.curve, left)
         if arrived != left:
-            pieces.append(_along(contact.curve, arrived, left, p, q))
+            # the hull runs round closed ones forwards
+            stop = arrived + (left - arrived) % 1.0 if is_closed(contact.curve) else left
+            pieces.append(part(contact.curve, arrived, stop, p, q))
         pieces.append(Line(q, point(contacts[(k + 1) % len(contacts)].curve, spots[k][1])))
-    kept = [p for p in pieces if math.dist(*ends(p)) > _NEAR * _size(pieces)]
+    size = max((math.dist(ends(a)[0], ends(pieces[0])[0]) for a in pieces), default=0.0)
+    kept = [p for p in pieces if math.dist(*ends(p)) > _NEAR * size]
     return Region((Face(Loop(tuple(_joined(kept)))),)) if len(kept) > 1 else Region()
 
 
@@ -66,10 +69,6 @@ def _holds(outer: Piece, inner: Arc | Circle) -> bool:
     if not isinstance(outer, Circle):
         return False
     return math.dist(outer.center, inner.center) + inner.radius <= outer.radius * (1 + _NEAR)
-
-
-def _size(pieces: Sequence[Piece]) -> float:
-    return max(math.dist(ends(a)[0], ends(pieces[0])[0]) for a in pieces)
 
 
 def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
@@ -224,13 +223,6 @@ def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if across(middle) * first > 0 else (low, middle)
     return (low + high) / 2
-
-
-def _along(curve: Piece, t0: float, t1: float, p: Vec, q: Vec) -> Piece:
-    """Returns the part of a curve from one point of touch to the next; the hull runs round closed ones
-    forwards.
-    """
-    return part(curve, t0, t0 + (t1 - t0) % 1.0 if is_closed(curve) else t1, p, q)
 
 
 def _joined(pieces: list[Piece]) -> list[Piece]:

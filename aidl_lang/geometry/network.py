@@ -10,7 +10,7 @@ of a result leads back to the curve it came from (`trace`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
 from typing import TypeVar
@@ -54,6 +54,28 @@ class Edge:
     t1: float
     start: int
     end: int
+
+
+class Joined:
+    """Groups of things that hang together (union-find)."""
+
+    def __init__(self) -> None:
+        self._parent: dict[object, object] = {}
+
+    def root(self, thing: object) -> object:
+        while (above := self._parent.get(thing, thing)) != thing:
+            self._parent[thing] = thing = self._parent.get(above, above)
+        return thing
+
+    def join(self, one: object, other: object) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+    def groups(self, things: Iterable[T], end: Callable[[T], object] = lambda thing: thing) -> list[list[T]]:
+        """Returns the things in groups, in order of first mention; `end` is what was joined of each."""
+        groups: dict[object, list[T]] = {}
+        for thing in things:
+            groups.setdefault(self.root(end(thing)), []).append(thing)
+        return list(groups.values())
 
 
 class TooCoarse(Exception):  # noqa: N818 (not an error of ours: what is under way begins again)

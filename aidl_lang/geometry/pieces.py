@@ -18,9 +18,10 @@ from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Solid
 from aidl_lang.geometry.distance import lie_within, nearest_region
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.faces import Joined, OwnFace
+from aidl_lang.geometry.faces import OwnFace
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import (
@@ -136,10 +137,8 @@ def _groups(
     for number, piece in enumerate(pieces):
         for face in piece.faces:
             joined.join(number, of.setdefault(id(face), number))
-    groups: dict[object, list[_Piece]] = {}
-    for number, piece in enumerate(pieces):
-        groups.setdefault(joined.root(number), []).append(piece)
-    return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
+    groups = [[pieces[k] for k in group] for group in joined.groups(range(len(pieces)))]
+    return sorted(groups, key=lambda group: -sum(p.section.area() for p in group))
 
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:

@@ -15,7 +15,6 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Drawing, Stroke
-from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.nesting import turned_box
 from aidl_lang.geometry.parts import COARSE, Motion, Part, Size, drawn, gathered, parts_of, upright_turn
 from aidl_lang.geometry.sections import widened
@@ -144,8 +143,9 @@ def _packed(parts: Sequence[Part], room: Cell, gap: int, nesting: _Nesting | Non
 
 def _used(sheets: Sequence[Sequence[_Place]], sheet: Size) -> tuple[int, float]:
     """Returns the number of sheets, and the area of the last one that is lost if the rest is cut off it."""
-    boxes = [_placed_box(place) for place in sheets[-1]]
-    return len(sheets), min(sheet[1] * max(b[2] for b in boxes), sheet[0] * max(b[3] for b in boxes))
+    boxes = [(turned_box(place.part.box, place.quarters), place) for place in sheets[-1]]
+    right, top = max(box[2] + at.x for box, at in boxes), max(box[3] + at.y for box, at in boxes)
+    return len(sheets), min(sheet[1] * right, sheet[0] * top)
 
 
 def _by_outlines(parts: Sequence[Part], nesting: _Nesting) -> list[list[_Place]]:
@@ -205,11 +205,6 @@ def _place(part: Part, cell: Any, gap: int) -> _Place:
     quarters = int((cell.width, cell.height) != _cell(part, gap))
     box = turned_box(part.box, quarters)
     return _Place(part, quarters, (cell.x + gap) / GRID - box[0], (cell.y + gap) / GRID - box[1])
-
-
-def _placed_box(place: _Place) -> Bounds:
-    left, bottom, right, top = turned_box(place.part.box, place.quarters)
-    return left + place.x, bottom + place.y, right + place.x, top + place.y
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:

@@ -23,6 +23,7 @@ from aidl_lang.geometry.evaluate import (
     point,
     reverse,
     second_derivative,
+    turn_between,
 )
 from aidl_lang.geometry.finishing import direction
 
@@ -44,7 +45,7 @@ _SHARPEST = math.radians(168.5)
 def beside(curve: Piece, left: float) -> Iterator[Strip]:
     """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
     if isinstance(curve, Line):
-        yield (_between(curve, _shifted(curve, left)),)
+        yield (_between(curve, Line(_parallel(curve, 0.0, left), _parallel(curve, 1.0, left))),)
     elif isinstance(curve, Circle):
         other = curve.radius - left
         yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
@@ -62,12 +63,6 @@ def _between(curve: Piece, other: Piece) -> Outline:
         for p in (curve, Line(b, d), reverse(other), Line(c, a))
         if not isinstance(p, Line) or p.start != p.end
     )
-
-
-def _shifted(line: Line, left: float) -> Line:
-    dx, dy = direction(line, 0.0)
-    (x0, y0), (x1, y1) = line.start, line.end
-    return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
 
 
 def _beside_arc(arc: Arc, left: float) -> Outline:
@@ -105,7 +100,7 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
             is_fine = _error(curve, t0, t1, left, top) <= FIT * scale
         else:
             top = Line(*(_reached(curve, t, left) for t in (t0, t1)))
-            is_fine = all(bent) and _turn(curve, t0, t1) < _BEND
+            is_fine = all(bent) and abs(turn_between(direction(curve, t0), direction(curve, t1))) < _BEND
         if is_fine or depth >= _DEEPEST:
             yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), top),)
         else:
@@ -119,11 +114,6 @@ def _reached(curve: Piece, t: float, left: float) -> Vec:
     """
     stretch = _stretch(curve, t, left)
     return _parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
-
-
-def _turn(curve: Piece, t0: float, t1: float) -> float:
-    (ax, ay), (bx, by) = direction(curve, t0), direction(curve, t1)
-    return abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
@@ -165,9 +155,7 @@ def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Str
     """Returns the strip that a corner adds on its outer side; None if that is not the side asked for.
     `arriving` and `leaving` are unit directions.
     """
-    across = arriving[0] * leaving[1] - arriving[1] * leaving[0]
-    along = arriving[0] * leaving[0] + arriving[1] * leaving[1]
-    turn = math.atan2(across, along)
+    turn = turn_between(arriving, leaving)
     if abs(turn) < 1e-9 or (turn * left >= 0 and abs(turn) < math.pi - 1e-9):
         return None
     p = at[0] - left * arriving[1], at[1] + left * arriving[0]

@@ -22,7 +22,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import clearance, within
 from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec, image
-from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.evaluate import Bounds, bounds, turn_between
 from aidl_lang.geometry.measures import area, region_bounds
 from aidl_lang.geometry.nearness import Sides, inside
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, union_bounds
@@ -73,7 +73,7 @@ class Lattice:
         """
         origin, *others = points
         beside, above, turned, *steps = [(x - origin[0], y - origin[1]) for x, y in others]
-        angle = math.atan2(_cross(beside, turned), beside[0] * turned[0] + beside[1] * turned[1])
+        angle = turn_between(beside, turned)
         lattice = cls(steps[0], steps[1] if len(steps) > 1 else None, origin, angle)
         if start == "here" or not lattice.is_possible:
             return lattice

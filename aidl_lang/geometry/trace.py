@@ -198,7 +198,7 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
     used.discard(STRAIGHT)
     result = []
     for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
-        loop = _to_loop(network, _joined(simple, lambda a, b: _continue(network, a, b)))
+        loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
         area = loop_area(loop)
         if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
             result.append((area, loop))
@@ -288,12 +288,16 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
 def _to_loop(network: Network, runs: list[Run]) -> Loop:
     if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
         return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
-    return closed_loop([_piece(network, r) for r in runs], network.tolerance)
+    pieces = [
+        Line(r.start, r.end) if r.curve is None else part(network.curves[r.curve], r.t0, r.t1, r.start, r.end)
+        for r in runs
+    ]
+    return closed_loop(pieces, network.tolerance)
 
 
 def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
     """Returns the loop of pieces that follow each other, in a canonical form."""
-    pieces = _joined(pieces, lambda a, b: _fuse(a, b, tolerance))
+    pieces = joined(pieces, lambda a, b: _fuse(a, b, tolerance))
     if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
         return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
 
@@ -303,12 +307,6 @@ def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
 
     first = min(range(len(pieces)), key=begins)
     return Loop((*pieces[first:], *pieces[:first]))
-
-
-def _piece(network: Network, run: Run) -> Piece:
-    if run.curve is None:
-        return Line(run.start, run.end)
-    return part(network.curves[run.curve], run.t0, run.t1, run.start, run.end)
 
 
 def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
@@ -333,8 +331,8 @@ def _fuse_lines(a: Line, b: Line, tolerance: float) -> Line | None:
     return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * shorter) else None
 
 
-def _joined(items: Sequence[T], join: Callable[[T, T], T | None]) -> list[T]:
-    """Neighbours joined where they can be, around the end as well."""
+def joined(items: Sequence[T], join: Callable[[T, T], T | None]) -> list[T]:
+    """Returns neighbours joined where they can be, around the end as well."""
     result: list[T] = []
     for item in items:
         both = join(result[-1], item) if result else None

@@ -19,7 +19,7 @@ from aidl_lang.common.drawings.strokes import Bow, Stroke
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, image
 from aidl_lang.geometry.described import described
-from aidl_lang.geometry.network import Network, Use
+from aidl_lang.geometry.network import Joined, Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, is_nothing, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry
 
@@ -78,8 +78,7 @@ def parts_of(
     return tuple(
         _contours(
             g,
-            _label(element, g.trace.name),
-            k,
+            f"{element.names[-1] if element.names else g.trace.name}[{k}]",
             [image(curve_of(s), at, unit, turned, sense) for s in element.strokes],
             element,
         )
@@ -87,25 +86,19 @@ def parts_of(
     )
 
 
-def _label(element: Element, otherwise: str) -> str:
-    return element.names[-1] if element.names else otherwise
-
-
-def _contours(
-    g: Geometry, label: str, number: int, curves: Sequence[Piece], element: Element
-) -> SolvedGeometry:
+def _contours(g: Geometry, name: str, curves: Sequence[Piece], element: Element) -> SolvedGeometry:
     checkpoint()
-    path = f"{g.path}.{label}[{number}]"
+    path = f"{g.path}.{name}"
 
     def edge(k: int, curve: Piece) -> SolvedGeometry:
         kind, values = described(curve)
-        name = f"edge[{k}]"
+        own = f"edge[{k}]"
         return SolvedGeometry(
-            name, f"{path}.{name}", kind, values, curve, (), g.construction, g.span, piece_of=g.path
+            own, f"{path}.{own}", kind, values, curve, (), g.construction, g.span, piece_of=g.path
         )
 
     edges = tuple(edge(k, curve) for k, curve in enumerate(curves))
-    name, kind, is_filled = f"{label}[{number}]", CONTOURS[element.is_winding], g.filled
+    kind, is_filled = CONTOURS[element.is_winding], g.filled
     looks: dict[str, tuple[Scalar, ...]] = {}
     if (engraving := element.engraving) is not None:
         kind, is_filled = ENGRAVED, is_filled or engraving.is_area
@@ -177,28 +170,18 @@ def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
     yield walk
 
 
-def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> Iterator[list[int]]:
-    """Yields the numbers of sections in groups of those that cross one another, directly or by others."""
+def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> list[list[int]]:
+    """Returns the numbers of sections in groups of those that cross one another, directly or by others."""
     owners: Mapping[int, list[int]] = defaultdict(list)
     for k, own in enumerate(nodes):
         for node in own:
             owners[node].append(k)
     pairs = {(i, j) for at in owners.values() for i in at for j in at if i < j}
-    root = list(range(len(sections)))
-
-    def top(k: int) -> int:
-        while root[k] != k:
-            root[k] = root[root[k]]
-            k = root[k]
-        return k
-
+    joined = Joined()
     for i, j in sorted(pairs):
-        if top(i) != top(j) and _cross(sections[i], sections[j]):
-            root[top(j)] = top(i)
-    groups: dict[int, list[int]] = defaultdict(list)
-    for k in range(len(sections)):
-        groups[top(k)].append(k)
-    yield from groups.values()
+        if joined.root(i) != joined.root(j) and _cross(sections[i], sections[j]):
+            joined.join(i, j)
+    return joined.groups(range(len(sections)))
 
 
 def _cross(a: Section, b: Section) -> bool:

@@ -32,7 +32,7 @@ from aidl_lang.geometry.dimensions.features import (
     meeting,
 )
 from aidl_lang.geometry.dimensions.fields import SizedGeometry, level_angle, round_dimension
-from aidl_lang.geometry.evaluate import NO_LENGTH
+from aidl_lang.geometry.evaluate import NO_LENGTH, turn_between
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -174,9 +174,8 @@ class _Statement:
         """
         lines = [line for node in (a, b) if (line := self._line(node)) is not None]
         if len(lines) == 2 and meeting(*lines) is not None:
-            (ux, uy), (vx, vy) = ((q.end[0] - q.start[0], q.end[1] - q.start[1]) for q in lines)
-            turn = abs(math.degrees(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy)))
-            return angle_of(lines[0], lines[1], turn)
+            u, v = ((q.end[0] - q.start[0], q.end[1] - q.start[1]) for q in lines)
+            return angle_of(lines[0], lines[1], abs(math.degrees(turn_between(u, v))))
         axis = next((k for node in (a, b) if (k := self._axis(node)) is not None), None)
         if axis is None:
             return self._distance("distance", a, b)

@@ -26,6 +26,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.features import meeting
 from aidl_lang.geometry.evaluate import Bounds, derivative, ends
 from aidl_lang.geometry.region import Loop
+from aidl_lang.geometry.trace import joined
 
 Unknowns = Sequence[complex]
 Row = NDArray[np.float64]
@@ -134,7 +135,7 @@ class Sketch:
         self.equations: list[Reading] = []
         self._spots: Places[Spot] = Places(slack)
         self._rounds: Places[Round] = Places(slack)
-        outlines = [_merged(loop.pieces) for loop in loops]
+        outlines = [joined(loop.pieces, _as_one) for loop in loops]
         self._find_rounds([p for pieces in outlines for p in pieces if isinstance(p, Circle | Arc)])
         for pieces in outlines:
             checkpoint()
@@ -375,18 +376,7 @@ def _is_right(a: Piece, b: Piece) -> bool:
     return abs(u[0] * v[0] + u[1] * v[1]) <= 1e-6 * math.hypot(*u) * math.hypot(*v)
 
 
-def _merged(pieces: Sequence[Piece]) -> list[Piece]:
-    """Returns the pieces of an outline, those that go on in the same line or circle as one."""
-    found: list[Piece] = []
-    for piece in pieces:
-        joined = _joined(found[-1], piece) if found else None
-        found[-1 if joined else len(found) :] = [joined or piece]
-    while len(found) > 1 and (joined := _joined(found[-1], found[0])) is not None:
-        found = [joined, *found[1:-1]]
-    return found
-
-
-def _joined(a: Piece, b: Piece) -> Piece | None:
+def _as_one(a: Piece, b: Piece) -> Piece | None:
     """Returns two pieces as one, if they are of one line or one circle."""
     if not is_smooth(a, b):
         return None
