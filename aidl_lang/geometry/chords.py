@@ -72,8 +72,8 @@ def _pairs(o: Skeleton, reach: float) -> Iterator[tuple[Ints, Ints]]:
     order, begin, count = min(_by_place(o.boxes, reach), _by_direction(o), key=lambda way: way[2].sum())
     for i, rank in _listed(begin, count):
         j = order[rank % len(order)]
-        keep = _come_near(o.boxes[i], o.boxes[j], reach)
-        i, j = i[keep], j[keep]
+        apart = np.maximum(o.boxes[i, :2] - o.boxes[j, 2:], o.boxes[j, :2] - o.boxes[i, 2:])
+        i, j = _only(i, j, np.all(apart <= reach, axis=1))
         yield _only(i, j, within(o.normal[i] + math.pi, o.normal[j], o.spread[i] + o.spread[j], 2 * ANGLE))
 
 
@@ -115,12 +115,6 @@ def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
         i = np.repeat(rows, count[rows])
         yield i, np.arange(len(i)) + np.repeat(begin[rows] - total[rows] + total[first], count[rows])
         first = last
-
-
-def _come_near(a: Floats, b: Floats, reach: float) -> NDArray[np.bool_]:
-    apart = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:])
-    near: NDArray[np.bool_] = np.all(apart <= reach, axis=1)
-    return near
 
 
 def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:

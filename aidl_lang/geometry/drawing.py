@@ -426,7 +426,6 @@ def _inked(
     *,
     is_own: bool,
 ) -> Iterator[Stroke]:
-    """Yields the strokes of a drawing."""
     alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
     for shape in shapes:
         look = styled(style, shape.geometry)

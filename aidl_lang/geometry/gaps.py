@@ -129,12 +129,7 @@ def _ends(network: Network, shapes: Iterable[Shape]) -> list[End]:
 
 def _open_ends(network: Network, shapes: Sequence[Shape]) -> list[End]:
     """Returns the ends at which no other curve of the structure has a node."""
-    meeting: dict[int, int] = defaultdict(int)
-    for shape in shapes:
-        for _, number in shape.leaves:
-            edges = [network.edges[edge] for edge, _ in network.uses[number]]
-            for node in {node for edge in edges for node in (edge.start, edge.end)}:
-                meeting[node] += 1
+    meeting = network.meeting(number for shape in shapes for number in shape.numbers)
     return [end for end in _ends(network, shapes) if meeting[network.node(end.at)] == 1]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations, islice
@@ -15,7 +15,7 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import ends
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.notes import at, finding_note
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.geometry.tracing import is_winding
 
 _AGAIN = "mend it in the program that drew it"
@@ -45,10 +45,6 @@ def _label(path: str) -> str:
     return path.rpartition(".")[2].rpartition("[")[0]
 
 
-def _called(s: SolvedStructure, drawing: SolvedGeometry) -> str:
-    return drawing.path.removeprefix(f"{s.path}.").removesuffix(".art")
-
-
 def _open(
     finding: LooseCurves,
     curves: Sequence[tuple[SolvedGeometry, int]],
@@ -56,10 +52,7 @@ def _open(
     network: Network,
 ) -> Diagnostic:
     s = finding.structure
-    meeting: Counter[int] = Counter()
-    for number in finding.numbers:
-        edges = [network.edges[edge] for edge, _ in network.uses[number]]
-        meeting.update({node for edge in edges for node in (edge.start, edge.end)})
+    meeting = network.meeting(finding.numbers)
     outlines: dict[str, list[Vec]] = defaultdict(list)
     for leaf, number in curves:
         loose = [p for p in ends(network.curves[number]) if meeting[network.node(p)] <= 1]
@@ -71,11 +64,12 @@ def _open(
         away = f"{rough(_apart(gap))} mm from there at {at(gap[1])}"
         place = f": `{_label(name)}` ends at {at(gap[0])}, and {away}"
     what = counted(len(outlines), "outline")
+    called = drawing.path.removeprefix(f"{s.path}.").removesuffix(".art")
     enclose = "encloses" if len(outlines) == 1 else "enclose"
     names = named(_label(path) for path in outlines)
     return Diagnostic(
         "W0751",
-        f"{what} of `{_called(s, drawing)}` {enclose} nothing in {s.kind} `{s.path}`{place}",
+        f"{what} of `{called}` {enclose} nothing in {s.kind} `{s.path}`{place}",
         drawing.span or s.span,
         f"{names} {'is' if len(outlines) == 1 else 'are'} open",
         hints=(f"{_AGAIN}, so that its ends meet", "in a `drawing` open lines are engraved as they are"),

@@ -92,8 +92,7 @@ class _Fault:
 
     def misfit(self) -> Misfit:
         most = 0.0 if self.is_cusp else self._most()
-        note = self._note(most)
-        return Misfit(self.spans, most, note)
+        return Misfit(self.spans, most, self._note(most))
 
     def _most(self) -> float:
         """Returns the largest size, as it is printed, with which all corners of these statements work out."""

@@ -10,6 +10,7 @@ of a result leads back to the curve it came from (`trace`).
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
@@ -272,6 +273,11 @@ class Network:
             rows.append(self.node_grid[node : node + 1])
             rows.append(self.inner((number, forward)))
         return np.concatenate(rows).astype(np.float64) * GRID
+
+    def meeting(self, numbers: Iterable[int]) -> Counter[int]:
+        """Returns how many of some curves go through each node."""
+        uses = ([self.edges[edge] for edge, _ in self.uses[number]] for number in numbers)
+        return Counter(node for own in uses for node in {n for edge in own for n in (edge.start, edge.end)})
 
     def piece(self, use: Use) -> Piece:
         """Returns the part of its curve that runs along an edge, in the direction of the use."""

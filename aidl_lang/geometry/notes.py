@@ -76,7 +76,6 @@ def _fresh(structure: SolvedStructure, name: str) -> str:
 
 @lru_cache(maxsize=4)
 def _words(text: str) -> Counter[str]:
-    """Counts the words of a text."""
     return Counter(re.findall(r"\w+", text))
 
 
@@ -110,10 +109,10 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     s = finding.structure
     names = _whole_names(s, [g for g, _ in finding.curves])
     gap = _gap(finding, network)
-    if gap is not None and math.dist(gap[0][1], gap[1][1]) <= network.tolerance:
-        return _lost(finding, names, network)
     plural = len(set(names)) > 1
     message = f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
+    if gap is not None and math.dist(gap[0][1], gap[1][1]) <= network.tolerance:
+        return _lost(finding, message, network)
     hints = [f"to draw without filling, use a `drawing`; {GUIDE}"]
     fix: Fix | None = None
     secondary: tuple[Label, ...] = ()
@@ -144,17 +143,14 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     )
 
 
-def _lost(finding: LooseCurves, names: Sequence[str], network: Network) -> Diagnostic:
+def _lost(finding: LooseCurves, message: str, network: Network) -> Diagnostic:
     """Returns the diagnostic on curves too small for the drawing to tell apart: their ends are as good as one
     point.
     """
-    s = finding.structure
-    plural = len(set(names)) > 1
     return Diagnostic(
         "W0702",
-        f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`: "
-        f"too small beside the drawing, which measures {rough(network.size)} mm",
-        finding.curves[0][0].span or s.span,
+        f"{message}: too small beside the drawing, which measures {rough(network.size)} mm",
+        finding.curves[0][0].span or finding.structure.span,
         "lost in it",
         hints=("look for a size or position that was written in another unit, or changed without bounds",),
     )
@@ -194,14 +190,11 @@ End = tuple[SolvedGeometry, Vec, str]
 
 def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
     """Returns the open end that is nearest to another one, ends of one curve only if there are no others."""
-    meeting: dict[int, int] = {}
-    for use in (network.uses[number] for number in finding.numbers):
-        for node in {n for edge, _ in use for n in (network.edges[edge].start, network.edges[edge].end)}:
-            meeting[node] = meeting.get(node, 0) + 1
+    meeting = network.meeting(finding.numbers)
     open_ends: list[End] = []
     for geometry, number in finding.curves:
         for p, name in zip(ends(network.curves[number]), ("start", "end"), strict=True):
-            if meeting.get(network.node(p), 0) <= 1:
+            if meeting[network.node(p)] <= 1:
                 open_ends.append((geometry, p, name))
     pairs = [(a, b) for i, a in enumerate(open_ends) for b in open_ends[i + 1 :]]
     return min(pairs, key=lambda ab: (ab[0][0] is ab[1][0], math.dist(ab[0][1], ab[1][1])), default=None)
@@ -266,8 +259,9 @@ def _idle_hole(finding: IdleHole) -> Diagnostic:
             "the root of the program is a hole",
             hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
         )
+    below = hole.path.removeprefix(f"{holder.path}.")
     hints = [
-        f"place it inside: `constrain inside({_below(holder, hole)}, …)` in `{holder.path}`, or move it to "
+        f"place it inside: `constrain inside({below}, …)` in `{holder.path}`, or move it to "
         "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
     ]
     if hole.box and holder.box:
@@ -280,10 +274,6 @@ def _idle_hole(finding: IdleHole) -> Diagnostic:
         (Label(holder.span, "holds the hole"),) if holder.span else (),
         tuple(hints),
     )
-
-
-def _below(holder: SolvedStructure, structure: SolvedStructure) -> str:
-    return structure.path.removeprefix(holder.path + ".")
 
 
 def _spans(structure: SolvedStructure) -> str:

@@ -170,13 +170,10 @@ class _Outliner:
                 region = hull([*curves[0], *(d for d in dots if max(map(abs, bounds(d))) <= LARGEST)])
             case "thick":
                 width, words = recipe.numbers["width"], recipe.words
-                region = (
-                    Region()
-                    if not width > 0
-                    else (thick(curves[0], width, words["caps"], words["joins"] == "sharp"))
-                )
+                sharp = words["joins"] == "sharp"
+                region = thick(curves[0], width, words["caps"], sharp) if width > 0 else Region()
             case _:
-                return self._from_regions(g, recipe, groups, curves)
+                return self._from_regions(g, recipe, groups, curves[0])
         if not region:
             self.notes.append(notes.nothing_left(g, recipe))
         return [*region.pieces]
@@ -187,17 +184,13 @@ class _Outliner:
         return self._finished(shown, self.finishes)
 
     def _from_regions(
-        self,
-        g: SolvedGeometry,
-        recipe: Recipe,
-        groups: Sequence[Sequence[SolvedGeometry]],
-        curves: Sequence[Sequence[Piece]],
+        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
         if recipe.kind == "tiled":
-            return self._tiled(g, recipe, groups, curves)
+            return self._tiled(g, recipe, groups, first)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
-            lines = [piece for one in clipped_each(curves[0], regions[1]) for piece in one.inner]
+            lines = [piece for one in clipped_each(first, regions[1]) for piece in one.inner]
             if not lines:
                 self.notes.append(notes.nothing_left(g, recipe))
             return lines
@@ -207,11 +200,7 @@ class _Outliner:
         return self._combined(g, recipe, regions)
 
     def _tiled(
-        self,
-        g: SolvedGeometry,
-        recipe: Recipe,
-        groups: Sequence[Sequence[SolvedGeometry]],
-        curves: Sequence[Sequence[Piece]],
+        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
         region = _region(groups[1])
         if not region:
@@ -222,7 +211,7 @@ class _Outliner:
         if not lattice.is_possible:
             self.notes.append(notes.no_lattice(g, recipe))
             return []
-        cell, area = [lattice.turned(c) for c in curves[0]], lattice.turned_region(_region(groups[0]))
+        cell, area = [lattice.turned(c) for c in first], lattice.turned_region(_region(groups[0]))
         whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
         try:
             if area:
@@ -337,26 +326,23 @@ class _Outliner:
         """Yields the finishes that a copy has from its source: of corners between the same curves, with sizes
         in proportion.
         """
-        sources = [(self._source(g), c) for g, c in leaves]
+        sources, curves = [(self._source(g), c) for g, c in leaves], [c for _, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
             if not any(g is not None for g, _ in sources):
                 break
             numbers = [k for k, (g, _) in enumerate(sources) if g is not None and g.curve is not None]
             theirs = [(g, g.curve) for g, _ in sources if g is not None and g.curve is not None]
-            sizes = ((length(leaves[k][1]), length(c)) for k, (_, c) in zip(numbers, theirs, strict=True))
+            sizes = ((length(curves[k]), length(c)) for k, (_, c) in zip(numbers, theirs, strict=True))
             share = next((own / other for own, other in sizes if other > 0), 1.0)
             for f in self.finishes:
                 if not f.of or any(_is_of(g.path, f.of) for g, _ in theirs):
                     for corner in _corners(f, theirs, near / share):
-                        arms = [
-                            _arm(leaves[numbers[a.number]][1], numbers[a.number], a.first)
-                            for a in corner.arms
-                        ]
-                        at = ends(arms[0].curve)[0]
-                        yield (
-                            replace(f, sizes=tuple(share * s for s in f.sizes)),
-                            Corner(at, (arms[0], arms[1])),
+                        arms = ((numbers[a.number], a.first) for a in corner.arms)
+                        one, other = (
+                            Arm(curves[k] if first else reverse(curves[k]), k, first) for k, first in arms
                         )
+                        made = replace(f, sizes=tuple(share * s for s in f.sizes))
+                        yield made, Corner(ends(one.curve)[0], (one, other))
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
@@ -364,10 +350,6 @@ class _Outliner:
         copy.
         """
         return self.index.get(g.source) if g.source is not None and g.source != g.path else None
-
-
-def _arm(curve: Piece, number: int, first: bool) -> Arm:
-    return Arm(curve if first else reverse(curve), number, first)
 
 
 def _is_of(path: str, of: Iterable[str]) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +110,8 @@ def thickness_of(body: Body, default: float | None) -> float | None:
 
 def placement_notes(root: SolvedStructure, drawing: Drawing) -> list[Diagnostic]:
     """Returns notes on attributes of the third dimension that have no effect, or not the one expected."""
-    return ordered([*_in_turned(root, np.eye(2)), *_united(root, drawing)])
+    united = united_notes(root, {body.path for body in drawing.bodies}, partial(_other, drawing))
+    return ordered([*_in_turned(root, np.eye(2)), *united])
 
 
 def _in_turned(s: SolvedStructure, turn: Matrix) -> Iterator[Diagnostic]:
@@ -129,17 +131,8 @@ def _in_turned(s: SolvedStructure, turn: Matrix) -> Iterator[Diagnostic]:
         yield from _in_turned(child, turn @ _turn(child.frame))
 
 
-def _united(root: SolvedStructure, drawing: Drawing) -> list[Diagnostic]:
-    """Returns warnings about what parts of a body cannot have by themselves in space."""
-
-    def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
-        return _other(s, body, drawing)
-
-    return united_notes(root, {body.path for body in drawing.bodies}, other)
-
-
-def _other(s: SolvedStructure, body: SolvedStructure, drawing: Drawing) -> list[str]:
-    """Attributes by which a structure differs from the body it is in."""
+def _other(drawing: Drawing, s: SolvedStructure, body: SolvedStructure) -> list[str]:
+    """Returns the attributes by which a structure differs from the body it is in: in space it cannot."""
     stated = s.attributes.keys()
     found = ["orientation"] if "orientation" in stated and s.orientation != body.orientation else []
     if _elevation(s):

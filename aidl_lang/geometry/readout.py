@@ -244,19 +244,19 @@ class _Reader:
             parts = tuple(_edge(g, f"edge[{i}]", points) for i, points in enumerate(self._pieces(g)))
         else:
             parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
-        return SolvedGeometry(
-            name=g.name or g.type,
-            path=g.path,
-            type=g.type,
-            values=self._own_values(g, curve),
-            curve=curve,
-            parts=parts,
-            construction=g.construction,
-            span=g.span,
-            recipe=recipe,
-            source=g.source.path if g.source is not None else None,
-            attributes=self._attributes(g),
-        )
+        return self._solved(g, self._own_values(g, curve), parts, curve, recipe)
+
+    def _solved(
+        self,
+        g: Geometry,
+        values: Values,
+        parts: tuple[SolvedGeometry, ...],
+        curve: Curve | None = None,
+        recipe: SolvedRecipe | None = None,
+    ) -> SolvedGeometry:
+        source = g.source.path if g.source is not None else None
+        known = g.type, values, curve, parts, g.construction, g.span, recipe, source, self._attributes(g)
+        return SolvedGeometry(g.name or g.type, g.path, *known)
 
     def _recipe(self, recipe: Recipe) -> SolvedRecipe:
         return SolvedRecipe(
@@ -267,9 +267,7 @@ class _Reader:
         )
 
     def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
-        at = None
-        if finish.at is not None:
-            at = self._at(finish.at, s)
+        at = self._at(finish.at, s) if finish.at is not None else None
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
         literal = Later(partial(_literal, self.model, finish))
@@ -281,15 +279,9 @@ class _Reader:
         """Returns a text with its characters as parts, and the curves of each as theirs."""
         height = self._number(g.fields["height"])
         start, turn, _, at = self._placing(g, height)
-        outlines = [_outline(glyph, self._bridge(g, height)) for glyph in g.glyphs]
-        glyphs = tuple(
-            replace(_glyph(g, f"glyph[{i}]", outline, at), stroked=glyph.is_stroked)
-            for i, (glyph, outline) in enumerate(zip(g.glyphs, outlines, strict=True))
-        )
-        values: Values = {"start": start, "height": height, "angle": math.degrees(turn)}
-        whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
-        source = g.source.path if g.source is not None else None
-        return replace(whole, source=source, attributes=self._attributes(g))
+        bridge = self._bridge(g, height)
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph, bridge, at) for i, glyph in enumerate(g.glyphs))
+        return self._solved(g, {"start": start, "height": height, "angle": math.degrees(turn)}, glyphs)
 
     def _placing(self, g: Geometry, unit: float) -> tuple[Vec, float, float, Callable[[Vec], Vec]]:
         """Returns the start of a text or a drawing, its turn in radians, -1 if it is turned over and else 1,
@@ -316,10 +308,7 @@ class _Reader:
         unit = self._number(g.fields["unit"])
         start, turn, sense, at = self._placing(g, unit)
         shapes = parts_of(g, at, unit, turn, sense)
-        values: Values = {"start": start, "unit": unit, "angle": math.degrees(turn)}
-        whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, shapes, g.construction, g.span)
-        source = g.source.path if g.source is not None else None
-        return replace(whole, source=source, attributes=self._attributes(g))
+        return self._solved(g, {"start": start, "unit": unit, "angle": math.degrees(turn)}, shapes)
 
     def _at(self, value: Value, owner: Structure) -> Vec:
         """Returns a point of `owner` in the frame of the root."""
@@ -385,20 +374,19 @@ class _Reader:
         )
 
 
-def _outline(glyph: Glyph, bridge: float) -> tuple[tuple[Vec, ...], ...]:
-    """Returns the outline of a character in units of its height, with bridges of that width if any."""
-    outline = glyph.curves if glyph.is_nested else united(glyph.curves)
-    return stencilled(outline, bridge) if bridge else outline
-
-
 def _glyph(
-    text: Geometry, name: str, outline: Sequence[Sequence[Vec]], at: Callable[[Vec], Vec]
+    text: Geometry, name: str, glyph: Glyph, bridge: float, at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
-    """Returns one character of a text, with its curves as parts."""
+    """Returns one character of a text, with its curves as parts. `bridge`: the width of its bridges in units
+    of its height, 0 for none.
+    """
     checkpoint()
+    outline = glyph.curves if glyph.is_nested else united(glyph.curves)
+    outline = stencilled(outline, bridge) if bridge else outline
     edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
     path, filled = f"{text.path}.{name}", text.filled
-    return SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
+    made = SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
+    return replace(made, stroked=glyph.is_stroked)
 
 
 def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:

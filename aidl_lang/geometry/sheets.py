@@ -208,6 +208,5 @@ def _place(part: Part, cell: Any, gap: int) -> _Place:
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
-    """Returns the drawing of one sheet."""
     parts = [place.part.moved(Motion(90.0 * place.quarters, place.x, place.y)) for place in places]
     return drawn(drawing, parts, (0.0, 0.0, *sheet))

@@ -128,9 +128,8 @@ def styles_of(root: SolvedStructure) -> dict[str, Style]:
 
     def visit(structure: SolvedStructure, around: Style, kind: str, turn: Turn) -> None:
         if structure.kind == "drawing" != kind:
-            around = replace(
-                around, halo=None
-            )  # a gap around bodies is none around all that is drawn on them
+            # A gap around bodies is none around all that is drawn on them.
+            around = replace(around, halo=None)
         style = _within(replace(around, turn=turn), structure.attributes)
         styles[structure.path] = style
         for child in structure.structures:

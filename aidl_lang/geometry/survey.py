@@ -170,7 +170,7 @@ def survey(
     return Survey(
         whole,
         tuple(parts),
-        tuple(sorted(pairs, key=_nearness)),
+        tuple(sorted(pairs, key=lambda pair: (pair.gap or 0.0, -(pair.area or 0.0)))),
         tuple(path for path in names if path not in held) if len(names) > 1 else (),
         len(pairs) < len(names) * (len(names) - 1) // 2,
         tuple(surveyor.notes()),
@@ -195,10 +195,6 @@ def measured(
     """Returns the part at a path, or the whole. Raises NothingThereError as `survey` does."""
     surveyor = _Surveyor(model, drawing, own_densities or {})
     return surveyor.part(path) if path else surveyor.of_bodies(model.root.path, drawing.bodies)
-
-
-def _nearness(pair: Contact) -> tuple[float, float]:
-    return pair.gap or 0.0, -(pair.area or 0.0)
 
 
 class _Surveyor:
@@ -321,17 +317,6 @@ def _measured(path: str, kind: str, region: Region) -> Part:
 
 
 def _part(path: str, kind: str, region: Region) -> Part:
-    found = measure(region)
-    faces = len(region.faces)
-    squares = inertia(region, found.centroid)
-    return Part(
-        path,
-        kind,
-        found.area,
-        found.perimeter,
-        found.centroid,
-        squares,
-        found.box,
-        faces,
-        found.loops - faces,
-    )
+    of, faces = measure(region), len(region.faces)
+    squares = inertia(region, of.centroid)
+    return Part(path, kind, of.area, of.perimeter, of.centroid, squares, of.box, faces, of.loops - faces)

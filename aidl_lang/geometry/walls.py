@@ -163,10 +163,6 @@ def _is_convex(outline: Skeleton) -> bool:
     )
 
 
-def _is_free(o: Skeleton, found: Chords, k: int) -> bool:
-    return bool(o.free[found.i[k]] or o.free[found.j[k]])
-
-
 # --- Chords that end on free curves --------------------------------------------------------------
 
 
@@ -175,7 +171,7 @@ def _settled(o: Skeleton, found: Chords, k: int) -> Chord | None:
     round.
     """
     a, b = _vec(found.a[k]), _vec(found.b[k])
-    if not _is_free(o, found, k):
+    if not (o.free[found.i[k]] or o.free[found.j[k]]):
         return Chord(float(found.length[k]), a, b)
     one = _End(o, int(found.i[k]), float(found.s[k]), a)
     other = _End(o, int(found.j[k]), float(found.t[k]), b)

@@ -34,7 +34,9 @@ class Relations:
         """
         flags = np.zeros(len(self.scene.places), dtype=np.bool_)
         flags[moving] = True
-        found = dict.fromkeys(path for path in self._neighbours(things) if self._stays(path, flags))
+        known = self.scene.known
+        beside = ((path, known[path]) for path in self._neighbours(things) if path in known)
+        found = dict.fromkeys(path for path, thing in beside if not flags[self.scene.own(thing)].any())
         own = {pattern(thing) for thing in things}
         for path in found:
             if pattern(path) not in own:
@@ -47,16 +49,8 @@ class Relations:
             for path in paths if inside else ():
                 if not any(_is_in(path, thing) or _is_in(thing, path) for thing in things):
                     yield _beside(path, inside[0])
-        if all(self._is_structure(thing) for thing in things):
+        if all((thing := self.scene.known.get(path)) is not None and thing.rank == WHOLE for path in things):
             yield from (path for path in self.beside.get(things[0], ()) if path not in things)
-
-    def _is_structure(self, path: str) -> bool:
-        thing = self.scene.known.get(path)
-        return thing is not None and thing.rank == WHOLE
-
-    def _stays(self, path: str, moving: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> bool:
-        thing = self.scene.known.get(path)
-        return thing is not None and not moving[self.scene.own(thing)].any()
 
 
 def _related(constraint: Constraint) -> tuple[str, ...]:
