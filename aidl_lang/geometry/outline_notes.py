@@ -162,10 +162,8 @@ def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
     place = f.at
     corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, place))
     if len(arms) == 2:
-        message, label = (
-            f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly",
-            "nothing to finish",
-        )
+        message = f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly"
+        label = "nothing to finish"
     elif len(arms) > 2:
         message, label = f"more than two curves end in `{f.text}` at {at(f.at)}", "which two is not clear"
     else:

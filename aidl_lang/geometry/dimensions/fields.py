@@ -203,12 +203,9 @@ def level_angle(edge: Line, turned: float) -> Iterator[Dimension]:
     low, high = sorted((edge.start, edge.end), key=lambda p: dot(p, direction(turned + 90)))
     ux, uy = direction(turned)
     reach = math.dist(low, high)
-    level = Line(low, (low[0] + 1e-9 * reach * ux, low[1] + 1e-9 * reach * uy))
-    opening = math.degrees(math.atan2(high[1] - low[1], high[0] - low[0])) - turned
-    opening = opening % 360
-    if opening > 90:
-        level = Line(low, (low[0] - 1e-9 * reach * ux, low[1] - 1e-9 * reach * uy))
-        opening = 180 - opening
+    opening = (math.degrees(math.atan2(high[1] - low[1], high[0] - low[0])) - turned) % 360
+    step, opening = (1e-9 * reach, opening) if opening <= 90 else (-1e-9 * reach, 180 - opening)
+    level = Line(low, (low[0] + step * ux, low[1] + step * uy))
     found = angle_of(level, Line(low, high), abs(opening))
     if found is not None:
         yield found
