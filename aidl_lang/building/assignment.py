@@ -13,15 +13,7 @@ from aidl_lang.building.motion import STILL, Motion, of_frame
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import instantiate
-from aidl_lang.building.values import (
-    NOTHING,
-    Instantiation,
-    ListVal,
-    Nothing,
-    Pattern,
-    StructureCopy,
-    Value,
-)
+from aidl_lang.building.values import NOTHING, Instantiation, ListVal, Nothing, Pattern, StructureCopy, Value
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 

@@ -12,14 +12,7 @@ from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.stacking import StatedOrder, state_order
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import (
-    Nothing,
-    Num,
-    TextVal,
-    Value,
-    holds,
-    members,
-)
+from aidl_lang.building.values import Nothing, Num, TextVal, Value, holds, members
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
@@ -92,12 +85,7 @@ def _misplaced(
             f"put it before `{container.name}`, or make `{thing}` a part of its own: "
             f"`{written} {kind} {thing} {{ outline = {node.value.span.one_line} }}`"
         )
-    it.report(
-        "E0520",
-        f"`@{attribute.name.text}` is said of a structure, and {why}",
-        attribute,
-        hints=[hint],
-    )
+    it.report("E0520", f"`@{attribute.name.text}` is said of a structure, and {why}", attribute, hints=[hint])
 
 
 def _read(

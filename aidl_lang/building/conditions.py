@@ -116,11 +116,7 @@ def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, no
         it.misfit(rules.no_order(relation), node)
         return NOTHING
     both = conjunction(
-        it,
-        "and",
-        compare_numbers(it, "==", a.x, b.x, node),
-        compare_numbers(it, "==", a.y, b.y, node),
-        node,
+        it, "and", compare_numbers(it, "==", a.x, b.x, node), compare_numbers(it, "==", a.y, b.y, node), node
     )
     return both if relation == "==" else negation(it, both, node)
 

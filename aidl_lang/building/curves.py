@@ -216,9 +216,7 @@ def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expressi
     angle = number(core["angle"])
     along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
     half_width = ex.apply(
-        "hypot",
-        ex.mul(number(core["rx"]), along(angle)),
-        ex.mul(number(core["ry"]), across(angle)),
+        "hypot", ex.mul(number(core["rx"]), along(angle)), ex.mul(number(core["ry"]), across(angle))
     )
     yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
 

@@ -9,12 +9,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import LetBinding, Scope, VarBinding, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import (
-    Array,
-    ListVal,
-    Nothing,
-    Value,
-)
+from aidl_lang.building.values import Array, ListVal, Nothing, Value
 from aidl_lang.syntax import ast
 
 
@@ -73,11 +68,7 @@ def index_values(
 
 
 def give_name(
-    geometry: Geometry,
-    name: str,
-    indices: tuple[int, ...],
-    container: Geometry | Structure,
-    node: ast.Assign,
+    geometry: Geometry, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
 ) -> None:
     geometry.name = indexed(name, indices)
     geometry.container = container

@@ -14,14 +14,7 @@ from aidl_lang.building.model import Geometry
 from aidl_lang.building.motion import STILL, Motion, turned
 from aidl_lang.building.primitives import DIRECTIONS, xy
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import (
-    Exactness,
-    ListVal,
-    Num,
-    PointVal,
-    Value,
-    number,
-)
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, Value, number
 from aidl_lang.checking.types import Binding, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.records import record

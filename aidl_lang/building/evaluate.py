@@ -100,10 +100,7 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 
 
 def _of_turns(
-    it: Interpreter,
-    node: ast.Comprehension | ast.ForArguments,
-    env: Env,
-    made: Callable[[Env], list[Value]],
+    it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
     """Returns a list of what is made in all turns, one after the other."""
     turns = iterate(it, node.iterable, env)

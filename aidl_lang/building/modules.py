@@ -12,9 +12,7 @@ from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import build_structure, finish, own_names
-from aidl_lang.building.values import (
-    Namespace,
-)
+from aidl_lang.building.values import Namespace
 from aidl_lang.common.drawings import WHOLE
 from aidl_lang.syntax import ast
 

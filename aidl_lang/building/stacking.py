@@ -169,9 +169,7 @@ def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> lis
 
 
 def _report_cycle(
-    it: Interpreter,
-    cycle: list[Structure],
-    stated: Mapping[Structure, Mapping[Structure, ast.Attribute]],
+    it: Interpreter, cycle: list[Structure], stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]
 ) -> None:
     rest = [*cycle[1:], cycle[0]]
     attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]

@@ -84,12 +84,7 @@ def _made(
 
 
 def _named(
-    it: Interpreter,
-    node: ast.Assign,
-    value: Value,
-    scope: Scope,
-    here: Structure,
-    indices: tuple[int, ...],
+    it: Interpreter, node: ast.Assign, value: Value, scope: Scope, here: Structure, indices: tuple[int, ...]
 ) -> Value:
     """Returns the value under its new name: a literal point becomes geometry."""
     container = scope.declaring().container or here
