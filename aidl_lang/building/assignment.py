@@ -35,9 +35,7 @@ class Assignment:
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
     def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
-        """Returns the value of the assignment, with every structure in it made, and every geometry of a
-        pattern named.
-        """
+        """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
         if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
             self._stands(value)
         return self.value(value, indices)
@@ -101,7 +99,6 @@ class Assignment:
     def _instance(
         self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
     ) -> Structure | Nothing:
-        """Instantiates a template in order to move the instance."""
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             self.it.report(
                 "E0334",

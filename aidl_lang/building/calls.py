@@ -93,9 +93,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
 
 
 def _env_of_arguments(site: CallSite, env: Env) -> Env:
-    """Returns the environment of a call's arguments, which may reach further than what is around it, or less
-    far.
-    """
+    """Returns the environment of a call's arguments, which may reach further or less far than around it."""
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         return Env(env.scope, env.here, Reach.SUBTREE)
@@ -362,9 +360,7 @@ def _bind_shape(
     geometry: Geometry,
     scope: Scope,
 ) -> None:
-    """Binds number and point arguments to one unknown each (or to what they refer to); the rest is
-    constant.
-    """
+    """Binds number and point arguments to one unknown each (or what they refer to); the rest is constant."""
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]

@@ -65,7 +65,6 @@ def _respelt(span: Span | None, written: str, meant: str) -> Fix | None:
 
 
 def _rgb(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the colour of three numbers."""
     color = color_of(it, list(a.values()), node)
     return TextVal(color) if color is not None else NOTHING
 

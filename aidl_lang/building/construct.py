@@ -33,16 +33,12 @@ Arguments = Mapping[str, Value]
 
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
-    """Returns a number as the solver sees it; 0 for a measure of what is drawn after solving, which is
-    reported.
-    """
+    """Returns a number as the solver sees it; 0 for a measure of what is drawn later, which is reported."""
     return ex.ZERO if refuses_measure(it, value, span) else value.expression
 
 
 def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
-    """Reports a number that follows from a measure of what is drawn after solving. Returns whether it
-    does.
-    """
+    """Reports a number that follows from a measure of what is drawn after solving. Returns whether it was."""
     if not math.isnan(value.value):
         return False  # a measure has no value before
     found = (n.payload for n in ex.nodes([value.expression]) if isinstance(n.payload, Measurement))
@@ -83,9 +79,7 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
 
 
 def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
-    """Returns an angle that stays exactly 0 until something asks for it: `rotatable`, `guess`, another value,
-    a constraint.
-    """
+    """Returns an angle that stays 0 until asked for: by `rotatable`, `guess`, another value, a constraint."""
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
@@ -219,9 +213,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
-    """Returns the named point arguments as positions of one geometry; a missing one is a guess at the
-    origin.
-    """
+    """Returns the named point arguments as positions of one geometry; a missing one is guessed at (0, 0)."""
     found = positions(it, [_written(a, name) for name in names], g, names, g.owner)
     return dict(zip(names, found, strict=True))
 
@@ -313,9 +305,7 @@ def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
 
 
 def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
-    """Makes the centre an unknown tied by two equations: a formula for it would be singular at half a
-    circle.
-    """
+    """Makes the centre an unknown tied by two equations: a formula would be singular at half a circle."""
     g.fields = _points(it, g, a, ("start", "end"))
     g.fields["radius"] = radius = _size(it, g, a, "radius")
     start, end = g.fields["start"], g.fields["end"]

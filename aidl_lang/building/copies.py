@@ -129,9 +129,7 @@ def _geometry_in(value: Value | None) -> Iterator[Geometry]:
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
-    """Returns the place a thing turns and grows about: its centre if it has one, a structure's origin, else
-    the middle of its box.
-    """
+    """Returns the place a thing turns and grows about: its own centre, a structure's origin, or its box's."""
     here = env.here
     match value:
         case PointVal():
@@ -249,7 +247,6 @@ def _is_seen(g: Geometry, here: Structure) -> bool:
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Evaluates `move`, `rotate` and `scale` as expressions."""
     motion = motion_for(it, a, lambda: centre_of(it, a["x"], node, env), node)
     return copied(it, a["x"], motion, node, env) if motion is not None else NOTHING
 

@@ -82,7 +82,6 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
 
 
 def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
-    """Returns the candidates of lines, cubics and single points."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     found: list[Expression] = []
     for piece in of:
@@ -138,7 +137,6 @@ def _cubic(g: Geometry, here: Structure) -> tuple[Piece]:
 
 
 def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
-    """Returns the extreme of a cubic Bézier curve by one coordinate of its control points."""
     if positive:
         return ex.apply("cubic_max", *controls)
     return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
@@ -197,9 +195,7 @@ def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression
 
 
 def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
-    """Returns the direction in which an arc begins and its sweep, both counter-clockwise, the same for all
-    four sides.
-    """
+    """Returns the direction where an arc begins and its sweep, counter-clockwise, the same for all sides."""
     if (known := arc.turns.get(here)) is None:
         core, is_clockwise = view(arc, here), clockwise(arc, here)
         first = direction(core["center"], core["end" if is_clockwise else "start"])

@@ -138,9 +138,7 @@ class _Editing:
         return turned
 
     def _by_arguments(self, motion: Motion) -> Geometry | None:
-        """Returns the result of the same call with its arguments moved; None if that does not move the
-        shape.
-        """
+        """Returns the same call's result with its arguments moved; None if that does not move the shape."""
         it = self.it
         calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
         before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)

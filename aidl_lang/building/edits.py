@@ -87,9 +87,7 @@ def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.
 
 
 def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[EditCall]:
-    """Returns the edits of a thing that is being made, in text order: those below it in the bodies
-    around it.
-    """
+    """Returns the edits of a thing being made, in text order: those below it in the bodies around it."""
     found: list[EditCall] = []
     for ahead in reversed(it.ahead):
         if ahead.scope.declaring() is not scope.declaring():
@@ -177,9 +175,7 @@ def motion_of(
     here: Structure,
     placed: Motion = STILL,
 ) -> Motion:
-    """Returns all edits together, as one motion after that of `at`; one that fails is reported and changes
-    nothing.
-    """
+    """Returns all edits as one motion after that of `at`; one that fails is reported and changes nothing."""
     motion = placed
     for edit in edits:
         place = motion.place(*centre)
@@ -231,9 +227,7 @@ def _mentions(nodes: Sequence[ast.Expression], target: ast.Node | None, name: st
 
 
 def _seeing(it: Interpreter, edit: EditCall, thing: Value) -> Scope:
-    """Returns the scope of an edit's arguments: the thing's name means it as the edits before have left
-    it.
-    """
+    """Returns the scope of an edit's arguments: the thing's name means it as earlier edits have left it."""
     path = _path(it, _target(edit.call))
     assert path is not None
     scope = Scope(edit.scope, edit.scope.container, turn=True, labels=edit.scope.labels)

@@ -302,9 +302,7 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns a measure that is negative in an overlap, for the solver to get out of it; for a reader, 0:
-    there is no room.
-    """
+    """Returns a measure, negative in an overlap for the solver to get out of it; for a reader 0: no room."""
     value = _num(it, a, "value", node, env)
     if value is None or env.reach is not Reach.READ:
         return value if value is not None else NOTHING
@@ -328,7 +326,6 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the centroid of a closed geometry, which has one by a formula."""
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):

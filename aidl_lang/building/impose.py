@@ -47,9 +47,7 @@ from aidl_lang.syntax import ast
 
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
-    """Adds `constrain EXPR` or, with a weight, `prefer EXPR` to the model; checks constant conditions on the
-    spot.
-    """
+    """Adds `constrain EXPR` or, with a weight, `prefer EXPR`; checks constant conditions on the spot."""
     if isinstance(node, ast.Call) and is_by_hand(it, node):
         record_dimension(it, node, env)
         return
@@ -117,7 +115,6 @@ _BOUNDS = {"<=": "at_most", "<": "at_most", ">=": "at_least", ">": "at_least"}
 
 
 def _turn(env: Env) -> str:
-    """Returns the turn of the loops around, for messages."""
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
@@ -159,7 +156,6 @@ def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read
 
 
 def _measurements(comparisons: Iterable[Comparison]) -> list[Measurement]:
-    """Returns what comparisons take from the drawing."""
     sides = (e for c in comparisons for e in (c.left, c.right) if e.is_open)
     return [n.payload for n in ex.nodes(sides, only_open=True) if isinstance(n.payload, Measurement)]
 
@@ -251,9 +247,7 @@ def _with_foreseen_boxes(
 def _by_formulas(
     it: Interpreter, comparisons: list[Comparison], node: ast.Expression, env: Env, weight: float | None
 ) -> list[Comparison]:
-    """Returns comparisons with the areas and perimeters that have formulas by these; what is drawn is
-    measured again.
-    """
+    """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
     sides = (with_formulas(c.left, c.right) for c in comparisons)
@@ -305,9 +299,7 @@ def _is_angle(node: ast.Node) -> bool:
 
 
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
-    """Returns a geometry in the boxes of some comparisons that is derived of geometry outside of their
-    structure.
-    """
+    """Returns a geometry in the boxes of comparisons that is derived of some outside of their structure."""
     spoken_of = {s for c in comparisons for s in c.boxes}
     return next(
         (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
@@ -325,9 +317,7 @@ def _boxes_of(g: Geometry) -> set[Structure]:
 
 
 def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
-    """Reports a constraint on a box with geometry in it that follows something outside of the holder of the
-    constraint.
-    """
+    """Reports a constraint on a box with geometry in it that follows something outside of its holder."""
     span = it.place(node) or node.span
     it.report(
         "E0402",
@@ -341,9 +331,7 @@ def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env:
 def _impose_within(
     it: Interpreter, shape: Geometry, comparisons: tuple[Comparison, ...], node: ast.Expression, env: Env
 ) -> None:
-    """Adds a constraint that a shape of the library holds for itself, named after the shape, at its author's
-    line.
-    """
+    """Adds a constraint that a library's shape holds for itself, named after it, at its author's line."""
     if shape.name is not None and shape.span is not None:
         text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
         turn = ", ".join(env.scope.labels)
@@ -370,9 +358,7 @@ def _placed_in_call(
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:
-    """Keeps an `assert` to be checked on the solved model. Those of a shape on constant arguments are checked
-    now.
-    """
+    """Keeps an `assert` to be checked once solved; those of a shape on constants are checked now."""
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
         return
@@ -412,9 +398,7 @@ def _named(it: Interpreter, node: ast.Call) -> str:
 
 
 def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
-    """Returns the condition of `constrain fixed(x)`: x stays where it was written, in the frame of the
-    holder.
-    """
+    """Returns the condition of `constrain fixed(x)`: x stays as written, in the frame of the holder."""
     arguments = [node.receiver] if node.receiver is not None else []
     arguments += [a.value for a in node.arguments]
     found: list[Value] = []

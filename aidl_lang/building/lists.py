@@ -73,9 +73,7 @@ def joined(left: Value, right: Value) -> Value | None:
 
 
 def shown(value: Value) -> str | None:
-    """Returns a number, text or truth as a reader writes it: lengths in mm and angles in degrees, without a
-    unit.
-    """
+    """Returns a number, text or truth as a reader writes it: in mm and degrees, without a unit."""
     match value:
         case Num():
             return f"{value.value:.10g}"
@@ -118,9 +116,7 @@ def _enumerate(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value
 
 
 def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns pairs of members with the same place; reports lists of different lengths, rather than cut them
-    off.
-    """
+    """Returns pairs of members with the same place; reports lists of different lengths."""
     lists = [members(value) or () for value in a.values()]
     lengths = [len(items) for items in lists]
     if len(set(lengths)) > 1:

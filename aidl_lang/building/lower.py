@@ -66,9 +66,7 @@ def lower(model: Model) -> Lowered:
 
 
 def preference(lowered: Lowered) -> list[int]:
-    """Returns the constraints in the order in which conflicts take them for granted: unwritten ones, then as
-    written.
-    """
+    """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
 
     def place(index: int) -> tuple[bool, str, int, int]:
         stated = lowered.stated[index]
@@ -228,9 +226,7 @@ class _Lowering:
                     self._name_thing(constraint.holder, unknown.owner, thing)
 
     def _name_thing(self, holder: Structure, s: Structure, thing: Hashable) -> None:
-        """Notes a thing of `s` in it, and in each structure from there up to the holder the one that it is
-        in.
-        """
+        """Notes a thing of `s` in it, and in each structure up to the holder the one that it is in."""
         for structure in chain(s):
             if structure is holder:
                 return
@@ -280,9 +276,7 @@ class _Lowering:
                     yield from (frame.x, frame.y, frame.rotation)
 
     def _observables(self, s: Structure) -> Iterator[int]:
-        """Yields the numbers of a structure that a reader of the drawing could see move, and its
-        variables.
-        """
+        """Yields the numbers of a structure that a reader could see move, and its variables."""
         node = self._node
         for at in self.seen[s]:
             if len(at) == 2:

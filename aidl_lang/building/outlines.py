@@ -132,7 +132,6 @@ def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[G
 
 
 def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:
-    """Returns a point as geometry, which an outline may be made of."""
     reach = reach_of(owners_of(p, env.here), env.here)
     return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
 
@@ -342,9 +341,7 @@ def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) 
 
 
 def _base(it: Interpreter, node: ast.Node, env: Env) -> tuple[Geometry | None, str]:
-    """Returns the geometry that a point was named as a field of, and the field, if the geometry has a
-    name.
-    """
+    """Returns the geometry with a name that a point was named as a field of, and the field."""
     key = node.name.text if isinstance(node, ast.Member) else ""
     while isinstance(node, ast.Index):
         node = node.value
@@ -359,9 +356,7 @@ def _outermost(geometry: Geometry) -> Geometry:
 
 
 def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
-    """Returns the size of a finish, `plate.top_left.fillet`, by its corner or by the outline that it is part
-    of.
-    """
+    """Returns the size of a finish, `plate.top_left.fillet`, by its corner or an outline around it."""
     key, kind = "", find(name, dict.fromkeys(FINISHES))
     if isinstance(value, PointVal):
         value, key = _base(it, node.value, env)  # type: ignore[assignment]

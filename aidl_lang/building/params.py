@@ -127,9 +127,7 @@ def _is_whole(value: Value) -> bool:
 
 
 def _unit_of_range(node: ast.Param) -> Fix | None:
-    """Returns the fix that writes `8m in 6..14` as `8m in 6m..14m`; None if that would not make the range
-    hold.
-    """
+    """Returns the fix that writes `8m in 6..14` as `8m in 6m..14m`; None if the range would not hold."""
     match node.value, node.domain:
         case ast.Number(unit=str() as unit), ast.Range(
             ast.Number(unit=None) as low, ast.Number(unit=None) as high

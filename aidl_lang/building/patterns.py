@@ -255,9 +255,7 @@ def _polar_array(call: _Call) -> Value:
 
 
 def _step(call: _Call, n: int) -> Expression:
-    """Returns the angle from one member to the next: a full turn has no last member on its first, a part of
-    one has ends.
-    """
+    """Returns the angle between members: a full turn has no last one on its first, a part of one has ends."""
     sweep = call.a.get("sweep", number(360.0, ANGLE))
     assert isinstance(sweep, Num)
     is_full = abs(abs(sweep.value) - 360.0) < 1e-9
@@ -324,7 +322,6 @@ _MOST_ALONG = 20_000
 
 
 def _way(call: _Call) -> Way | None:
-    """Returns the way along what a pattern follows."""
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]

@@ -1,6 +1,4 @@
-"""Questions about shapes that the library cannot answer in AIDL: their sizes, their corners, a way to
-refuse.
-"""
+"""Questions about shapes that AIDL cannot answer in the library: sizes, corners, a way to refuse."""
 
 from __future__ import annotations
 
@@ -21,9 +19,7 @@ _NONE = ListVal(())
 
 
 def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the lengths among the parameters of a compound shape, in their order; none for anything
-    else.
-    """
+    """Returns the lengths among a compound shape's parameters, in their order; none for anything else."""
     shape = a["of"]
     if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
         return _NONE
@@ -53,7 +49,6 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
 
 
 def _at(point: Value) -> tuple[float, float]:
-    """Returns the place where a point was written."""
     assert isinstance(point, PointVal)
     return point.x.value, point.y.value
 

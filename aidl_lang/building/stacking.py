@@ -39,9 +39,7 @@ def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
 
 
 def settle_order(it: Interpreter, parent: Structure) -> None:
-    """Gives the structures in one whose body has been run the names of those that they are behind or in
-    front of.
-    """
+    """Gives the structures in one that was run the names of those that they are behind or in front of."""
     stated: dict[Structure, dict[Structure, ast.Attribute]] = {}
     for s in parent.children:
         if s.source is not None:
@@ -148,9 +146,7 @@ def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
 
 
 def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:
-    """Returns structures each of which is behind the next, and the last behind the first; none if there are
-    no such.
-    """
+    """Returns structures each behind the next, and the last behind the first; none if there are none."""
     done: set[Structure] = set()
     for start in stated:
         way: dict[Structure, Iterator[Structure]] = {} if start in done else {start: iter(stated[start])}

@@ -276,9 +276,7 @@ class Interpreter:
         raise Stop
 
     def too_deep(self, node: ast.Node) -> NoReturn:
-        """Reports a statement whose value depends on so many others that the stack is full, and ends
-        building.
-        """
+        """Reports a value that depends on so many others that the stack is full, and ends building."""
         hint = "values that are worked out from each other one by one are made by a loop, or by `sum`"
         self.report(
             "E0806",

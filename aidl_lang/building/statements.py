@@ -189,9 +189,7 @@ def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) 
 
 
 def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
-    """Checks an assertion in a shape, which is about its arguments, where the shape is made; defers any
-    other.
-    """
+    """Checks an assertion on the arguments of a shape where that is made; defers any other."""
     if isinstance(container := scope.declaring().container, Geometry):
         record_assertion(it, node, Env(scope, here, Reach.READ), container.type)
     else:

@@ -72,9 +72,7 @@ def instantiate(
     indices: tuple[int, ...],
     framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
-    """Builds an instance of a template under the name it is assigned to; `framed` moves its frame
-    elsewhere.
-    """
+    """Builds an instance of a template under its assigned name; `framed` moves its frame elsewhere."""
     definition = template.definition
     name = indexed(node.name.text, indices)
     if not it.enter(template.node, definition):
@@ -217,7 +215,6 @@ def finish(it: Interpreter, structure: Structure) -> None:
 
 
 def _finishes(it: Interpreter, node: ast.Statement) -> bool:
-    """Tells whether a statement rounds corners or cuts them off."""
     if not isinstance(node, ast.ExpressionStatement) or not isinstance(call := node.value, ast.Call):
         return False
     return it.program.resolution.canonical.get(call.callee, call.callee.text) in FINISHES

@@ -81,9 +81,7 @@ def _refers(point: PointVal) -> bool:
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
-    """Makes a point of the instance at the place, in its frame, that the argument has at the first
-    guesses.
-    """
+    """Makes a point of the instance where, in its frame, the argument is at the first guesses."""
     if _refers(point):
         numbers = as_written(point)
         assert isinstance(numbers, PointVal)
