@@ -19,7 +19,7 @@ from aidl_lang.building.expression import Expression
 from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.tracing import trace_of
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
 from aidl_lang.checking.builtins import SIGNATURES
@@ -28,8 +28,6 @@ from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:

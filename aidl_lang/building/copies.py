@@ -28,7 +28,7 @@ from aidl_lang.building.motion import (
 )
 from aidl_lang.building.primitives import translate, view, xy
 from aidl_lang.building.scopes import Scope
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -46,8 +46,6 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 _AXES: Mapping[str, tuple[float, float]] = {
     "x": (1.0, 0.0),
@@ -129,7 +127,7 @@ def _geometry_in(value: Value | None) -> Iterator[Geometry]:
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
-    """Returns the place a thing turns and grows about: its own centre, a structure's origin, or its box's."""
+    """Returns where a thing turns and grows about: its centre, a structure's origin, or its box's middle."""
     here = env.here
     match value:
         case PointVal():
@@ -283,7 +281,7 @@ def _motion(
     return motion
 
 
-FUNCTIONS: dict[str, Callable[[Interpreter, Arguments, ast.Call, Env], Value]] = {
+FUNCTIONS: dict[str, Function] = {
     "mirror": _mirror,
     "copy": _copy,
     "move": _changed,

@@ -221,12 +221,11 @@ def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
 
 def _characters(name: str, g: Geometry, here: Structure) -> Value | None:
-    return ListVal(tuple(_single(g, i) for i in range(len(g.glyphs)))) if name == "glyph" else None
-
-
-def _single(text: Geometry, number: int) -> Geometry:
-    """Returns one character of a text, to be measured: it is drawn with the others."""
-    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
+    """Returns `glyph`: each character of a text, to be measured. It is drawn with the others."""
+    if name != "glyph":
+        return None
+    named = {f"glyph[{i}]": (glyph,) for i, glyph in enumerate(g.glyphs)}
+    return ListVal(tuple(replace(g, glyphs=one, name=n, container=g, views={}) for n, one in named.items()))
 
 
 def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:

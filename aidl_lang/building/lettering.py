@@ -6,11 +6,11 @@ is read out. Dozens of letters then cost the solver no more than one circle.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
@@ -18,8 +18,6 @@ from aidl_lang.common.font_files import FontError
 from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:

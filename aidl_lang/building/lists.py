@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -23,8 +23,6 @@ from aidl_lang.building.values import (
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
@@ -85,10 +83,6 @@ def shown(value: Value) -> str | None:
             return None
 
 
-def _record(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    return RecordVal(a)
-
-
 def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     value = a["value"]
     if isinstance(value, Num) and constant(it, value, node, "a number that becomes a text") is None:
@@ -126,15 +120,11 @@ def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return ListVal(tuple(ListVal(pair) for pair in zip(*lists, strict=True)))
 
 
-def _reversed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    return ListVal(tuple(reversed(members(a["values"]) or ())))
-
-
-FUNCTIONS: dict[str, Callable[[Interpreter, Arguments, ast.Call, Env], Value]] = {
-    "record": _record,
+FUNCTIONS: dict[str, Function] = {
+    "record": lambda it, a, node, env: RecordVal(a),
     "str": _str,
     "range": _range,
     "enumerate": _enumerate,
     "zip": _zip,
-    "reversed": _reversed,
+    "reversed": lambda it, a, node, env: ListVal(tuple(reversed(members(a["values"]) or ()))),
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     reach_of,
 )
 from aidl_lang.building.scopes import Candidate
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -39,9 +39,6 @@ from aidl_lang.common.names import find, fold
 from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
-Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 
 CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "corners": ("sharp", "round"),

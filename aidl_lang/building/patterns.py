@@ -7,7 +7,7 @@ instantiated once; the other members are copies over the same unknowns.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import product
 
 from aidl_lang.building import expression as ex
@@ -19,7 +19,7 @@ from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.primitives import defining, xy
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Instantiation,
@@ -39,7 +39,6 @@ from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
-Arguments = Mapping[str, Value]
 Index = tuple[int, ...]
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
@@ -143,7 +142,7 @@ class _Call:
         return made
 
 
-def _pattern(lay_out: Callable[[_Call], Value]) -> Callable[[Interpreter, Arguments, ast.Call, Env], Value]:
+def _pattern(lay_out: Callable[[_Call], Value]) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         thing = a["x"]
         if not isinstance(thing, Geometry | Structure | Instantiation):

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building.coerce import look
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.scopes import Scope
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 _NONE = ListVal(())
 

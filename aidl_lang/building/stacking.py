@@ -8,7 +8,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import Nothing, TextVal, Value, members
+from aidl_lang.building.values import Nothing, TextVal, each_of
 from aidl_lang.checking.builtins import BEHIND, IN_FRONT, STACKING
 from aidl_lang.common.diagnostics import Label
 from aidl_lang.common.prose import listed
@@ -63,14 +63,10 @@ def _read(
         values = [evaluate(it, a.value, Env(order.scope, parent, Reach.READ)) for a in attribute.arguments]
         if any(isinstance(value, Nothing) for value in values):
             continue
-        others = [list(_structures(value)) for value in values]
+        others = [list(each_of(value, Structure)) for value in values]
         if not others or not all(others):
-            example = f"`@{order.name}(wall)`"
-            it.report(
-                "E0517",
-                f"`@{attribute.name.text}` takes the names of structures beside it, as in {example}",
-                attribute,
-            )
+            taken = f"takes the names of structures beside it, as in `@{order.name}(wall)`"
+            it.report("E0517", f"`@{attribute.name.text}` {taken}", attribute)
             continue
         for other in (o for group in others for o in group if o is not s or len(group) == 1):
             if other.parent is not parent or other is s:
@@ -81,15 +77,6 @@ def _read(
             stated.setdefault(back, {})[front] = attribute
     for name, found in names.items():
         s.attributes[name] = tuple(map(TextVal, dict.fromkeys(found)))
-
-
-def _structures(value: Value) -> Iterator[Structure]:
-    """Yields the structures of a value or of a list; nothing if there is anything else in it."""
-    if isinstance(value, Structure):
-        yield value
-    elif (items := members(value)) is not None:
-        found = [list(_structures(item)) for item in items]
-        yield from (s for group in found for s in group if all(found))
 
 
 def _misplaced(

@@ -353,3 +353,8 @@ class Interpreter:
             self.written[node] = value.value
         elif isinstance(value, PointVal):
             self.written[node] = (value.x.value, value.y.value)
+
+
+Arguments = Mapping[str, Value]
+Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
+"""A function that is built in: (interpreter, arguments by parameter, call, environment)."""
