@@ -128,7 +128,10 @@ def bound(
         value = _as_kind(it, values[indices[0]], kind, at, env)
         if value is None:
             return None
-        if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(signature, name):
+        is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
+        if is_flag and isinstance(
+            value, Condition
+        ):  # it decides how something is made, so it has to be known
             value = truth(it, value, at)
         if signature.name in COPYING and _follows_measure(it, value, at):
             return None
@@ -136,11 +139,6 @@ def bound(
     if signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
-
-
-def _is_flag(signature: Signature, name: str) -> bool:
-    """Tells whether a condition decides how something is made, and so has to be known then."""
-    return signature.kind is None or name == "rotatable"
 
 
 def _follows_measure(it: Interpreter, value: Value, node: ast.Node) -> bool:
@@ -206,18 +204,14 @@ def invoke(
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
             condition = placing(condition, definition, binding, values, env)
-            if is_of_directions(candidate.signature) and _constrains(it, node, env):
+            is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
+            if is_of_directions(candidate.signature) and is_stated:
                 ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
             return condition
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
         case ast.Structure():
             return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
-
-
-def _constrains(it: Interpreter, node: ast.Call, env: Env) -> bool:
-    """Tells whether the author states a constraint by a call, rather than the library within one."""
-    return env.reach is Reach.SUBTREE and it.place(node) is node.span
 
 
 def _body_scope(
@@ -251,7 +245,7 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    hoist_lets(scope, block)
+    _hoist_lets(scope, block)
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -276,9 +270,8 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
             case ast.Let() | ast.Assign():
                 pass
             case _:
-                it.report(
-                    "E0312", "a constraint's body holds conditions, `let`, `for` and `if` only", statement
-                )
+                message = "a constraint's body holds conditions, `let`, `for` and `if` only"
+                it.report("E0312", message, statement)
     return all_of(found)
 
 
@@ -290,7 +283,7 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         it.report("E0343", message, node, hints=[hint])
 
 
-def hoist_lets(scope: Scope, block: ast.Block) -> None:
+def _hoist_lets(scope: Scope, block: ast.Block) -> None:
     for statement in block.statements:
         if isinstance(statement, ast.Let | ast.Assign):
             scope.values[statement.name.text] = LetBinding(statement.value, scope)
@@ -312,9 +305,14 @@ def _shape(
     scope = Scope(candidate.scope, geometry)
     geometry.scope = scope
     geometry.arguments = tuple(name for name, _, _ in candidate.signature.parameters)
-    given = _defaults_filled(it, candidate.signature, definition.parameters, arguments, scope, env)
-    if given is None:
-        return NOTHING
+    given = dict(arguments)
+    pairs = zip(definition.parameters, candidate.signature.parameters, strict=True)
+    for parameter, (name, kind, _) in pairs:
+        if name not in given:
+            scope.values.update(given)  # a default may mention the parameters before it
+            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+        if isinstance(given[name], Nothing):
+            return NOTHING
     _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
     run_block(it, definition.body.statements, scope, env.here)
     _bind_above(it, geometry, given, env)
@@ -332,24 +330,6 @@ def _bind_above(it: Interpreter, geometry: Geometry, given: Mapping[str, Value],
     for g in (geometry, *all_parts(geometry)):
         g.reach = reach
         it.following.append(g)
-
-
-def _defaults_filled(
-    it: Interpreter,
-    signature: Signature,
-    parameters: Sequence[ast.Parameter],
-    arguments: Mapping[str, Value],
-    scope: Scope,
-    env: Env,
-) -> dict[str, Value] | None:
-    given = dict(arguments)
-    for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
-        if name not in given:
-            scope.values.update(given)  # a default may mention the parameters before it
-            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
-        if isinstance(given[name], Nothing):
-            return None
-    return given
 
 
 def _bind_shape(

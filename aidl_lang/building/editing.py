@@ -126,11 +126,8 @@ class _Editing:
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
         """Turns everything in a shape that its arguments cannot turn."""
         made.known_as = None
-        if (
-            self.placed is not None
-            and self.placed.turn is not None
-            and self.placed.turn.status is Exactness.GUESS
-        ):
+        asked = self.placed.turn if self.placed is not None else None
+        if asked is not None and asked.status is Exactness.GUESS:
             turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
             motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
-from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_formulas
+from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
 from aidl_lang.building.by_hand import is_by_hand, record_dimension
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
-from aidl_lang.building.measured import FORMULAS, OTHERWISE
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -84,14 +84,14 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
 
 
 def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
-    return isinstance(node, ast.Call) and _named(it, node) == "fixed"
+    return isinstance(node, ast.Call) and it.spelled(node.callee) == "fixed"
 
 
 def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
     """Returns the items of `AddConstraint(…)`, of which `fixed(p)` is no condition by itself."""
-    if not isinstance(node, ast.Call) or node.receiver is not None or _named(it, node) != "add_constraint":
+    if not isinstance(node, ast.Call) or node.receiver is not None:
         return []
-    values = [a.value for a in node.arguments]
+    values = [a.value for a in node.arguments if it.spelled(node.callee) == "add_constraint"]
     return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
 
 
@@ -150,9 +150,8 @@ def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read
     found = compared(wording) if _library_shape(it, node, env) is None else ()
     if not found or _measurements(found):
         return
-    turn = ", ".join(env.scope.labels)
-    span = it.place(node) or node.span
-    it.add_constraint(Constraint(env.here, found, node.span.one_line, span, None, turn, wording))
+    text, span, turn = it.said(node, env)
+    it.add_constraint(Constraint(env.here, found, text, span, None, turn, wording))
 
 
 def _measurements(comparisons: Iterable[Comparison]) -> list[Measurement]:
@@ -215,17 +214,8 @@ def _impose_condition(
         _box_follows(it, follower, node, env)
     elif comparisons:
         comparisons = _placed_in_call(it, node, comparisons, env)
-        it.add_constraint(
-            Constraint(
-                env.here,
-                tuple(comparisons),
-                node.span.one_line,
-                it.place(node) or node.span,
-                weight,
-                ", ".join(env.scope.labels),
-                Wording(node, it, env, _read),
-            )
-        )
+        (text, span, turn), wording = it.said(node, env), Wording(node, it, env, _read)
+        it.add_constraint(Constraint(env.here, tuple(comparisons), text, span, weight, turn, wording))
 
 
 def _with_foreseen_boxes(
@@ -240,7 +230,9 @@ def _with_foreseen_boxes(
     foreseen; they are looked at again in the drawing, but for a wish.
     """
     if weight is None:
-        _check_when_drawn(it, comparisons, box, node, env)
+        (outline,) = box.of
+        assert isinstance(outline, Geometry)
+        _look_again(it, comparisons, None, node, env, outline)
     return [_foreseen(comparison) for comparison in comparisons]
 
 
@@ -250,15 +242,10 @@ def _by_formulas(
     """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
-    sides = (with_formulas(c.left, c.right) for c in comparisons)
+    sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):
-        wording = Wording(node, it, env, _read)
-        where, turn = it.place(node) or node.span, ", ".join(env.scope.labels)
-        both = Condition("and", tuple(comparisons))
-        it.assertions.append(
-            Assertion(env.here, both, OTHERWISE, node.span.one_line, where, turn, wording=wording)
-        )
+        _look_again(it, comparisons, OTHERWISE, node, env)
     return found
 
 
@@ -270,24 +257,18 @@ def _foreseen(comparison: Comparison) -> Comparison:
     return replace(changed, moved=moved) if moved else changed
 
 
-def _check_when_drawn(
-    it: Interpreter, comparisons: list[Comparison], box: Measurement, node: ast.Expression, env: Env
+def _look_again(
+    it: Interpreter,
+    comparisons: list[Comparison],
+    message: str | None,
+    node: ast.Expression,
+    env: Env,
+    outline: Geometry | None = None,
 ) -> None:
-    """Keeps a constraint on the box of an outline that was foreseen, to be looked at again in the drawing."""
-    (outline,) = box.of
-    assert isinstance(outline, Geometry)
-    it.assertions.append(
-        Assertion(
-            env.here,
-            Condition("and", tuple(comparisons)),
-            None,
-            node.span.one_line,
-            it.place(node) or node.span,
-            ", ".join(env.scope.labels),
-            wording=Wording(node, it, env, _read),
-            outline=outline,
-        )
-    )
+    """Keeps a constraint to be looked at in the drawing; with an `outline`, one on its box as foreseen."""
+    both, wording = Condition("and", tuple(comparisons)), Wording(node, it, env, _read)
+    said = it.said(node, env)
+    it.assertions.append(Assertion(env.here, both, message, *said, wording=wording, outline=outline))
 
 
 def _is_angle(node: ast.Node) -> bool:
@@ -375,23 +356,9 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
     if isinstance(value, bool) and it.states_constants and not shape:
         _state_constants(it, node.test, env, evaluate)
         return
-    it.assertions.append(
-        Assertion(
-            env.here,
-            value,
-            message.value if isinstance(message, TextVal) else None,
-            node.test.span.one_line,
-            it.place(node.test) or node.span,
-            ", ".join(env.scope.labels),
-            shape,
-            Wording(node.test, it, env, evaluate),
-        )
-    )
-
-
-def _named(it: Interpreter, node: ast.Call) -> str:
-    """Returns the name that is called, with aliases resolved."""
-    return it.program.resolution.canonical.get(node.callee, node.callee.text)
+    said, told = it.said(node.test, env), message.value if isinstance(message, TextVal) else None
+    wording = Wording(node.test, it, env, evaluate)
+    it.assertions.append(Assertion(env.here, value, told, *said, shape, wording))
 
 
 # --- constrain fixed(x) ----------------------------------------------------------------------------

@@ -390,19 +390,12 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
     """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
     drawings beside parts; but none that stands still, as its place was given in the frame of the root.
     """
-    children = [c for c in parent.children if parent.parent is not None or not _is_placed(c)]
+    frames = [(c, c.frame) for c in parent.children]
+    children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
     if parent.plan or any(not geometry.construction for geometry in parent.own()):
         return children
-    without = [child for child in children if child.kind in _NO_BODY]
+    without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()
-
-
-_NO_BODY = ("hole", "drawing")
-
-
-def _is_placed(structure: Structure) -> bool:
-    """Tells whether a frame is exact in the one around it."""
-    return structure.frame.x.is_constant and structure.frame.y.is_constant
 
 
 def _is_variable(unknown: Unknown) -> bool:

@@ -361,14 +361,9 @@ def convert(
     """Converts coordinates in the frame of `source` to `target`'s; equal ones to the same expressions."""
     if source is target:
         return x, y
-    if (known := source.converted.get((x, y, target))) is None:
-        known = source.converted[x, y, target] = _convert(x, y, source, target)
-    return known
-
-
-def _convert(
-    x: Expression, y: Expression, source: Structure, target: Structure
-) -> tuple[Expression, Expression]:
+    key = x, y, target
+    if (known := source.converted.get(key)) is not None:
+        return known
     meeting = common_ancestor(source, target)
     here = source
     while here is not meeting:
@@ -378,6 +373,7 @@ def _convert(
     below = chain(target)
     for structure in reversed(below[: below.index(meeting)]):
         x, y = structure.frame.inward(x, y)
+    source.converted[key] = x, y
     return x, y
 
 

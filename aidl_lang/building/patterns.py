@@ -76,17 +76,9 @@ class _Call:
     def check_followed(self, off: Sequence[Expression]) -> None:
         """Has it looked at in the drawing that these are 0, as they are at the first guesses."""
         parts = tuple(Comparison("==", e, ex.ZERO, LENGTH) for e in off)
-        self.it.assertions.append(
-            Assertion(
-                self.env.here,
-                Condition("and", parts),
-                None,
-                self.node.span.one_line,
-                self.it.place(self.node) or self.node.span,
-                ", ".join(self.env.scope.labels),
-                is_followed=True,
-            )
-        )
+        said = self.it.said(self.node, self.env)
+        followed = Assertion(self.env.here, Condition("and", parts), None, *said, is_followed=True)
+        self.it.assertions.append(followed)
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""

@@ -162,6 +162,10 @@ class Interpreter:
             return next((s.span for s in self.call_sites if s.span.source not in self.library_sources), span)
         return span
 
+    def said(self, node: ast.Node, env: Env) -> tuple[str, Span, str]:
+        """Returns the text of a statement, its place for the author, and the turn of the loops around."""
+        return node.span.one_line, self.place(node) or node.span, ", ".join(env.scope.labels)
+
     def report(
         self,
         code: str,
@@ -216,9 +220,8 @@ class Interpreter:
     def count_entity(self, node: ast.Node | Span | None, count: int = 1) -> None:
         self.entities += count
         if self.entities > self.limits.entities:
-            self._stop(
-                node, f"this program builds more than {self.limits.entities} structures and geometries"
-            )
+            most = self.limits.entities
+            self._stop(node, f"this program builds more than {most} structures and geometries")
 
     def check_time(self, node: ast.Node) -> None:
         """Ends building if it takes too long; called wherever a program may go on for long."""
@@ -278,12 +281,8 @@ class Interpreter:
     def too_deep(self, node: ast.Node) -> NoReturn:
         """Reports a value that depends on so many others that the stack is full, and ends building."""
         hint = "values that are worked out from each other one by one are made by a loop, or by `sum`"
-        self.report(
-            "E0806",
-            "what this says hangs on too many other values, one by way of the next",
-            node,
-            hints=[hint],
-        )
+        message = "what this says hangs on too many other values, one by way of the next"
+        self.report("E0806", message, node, hints=[hint])
         raise Stop
 
     # --- Unknowns ------------------------------------------------------------------------------
