@@ -100,12 +100,9 @@ class Assignment:
         self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
     ) -> Structure | Nothing:
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
-            self.it.report(
-                "E0334",
-                f"`{template.signature.name}` makes a structure of the sizes that it is given",
-                copy.node,
-                hints=["pass it other sizes, or name the structure first and scale a copy of it"],
-            )
+            message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
+            hint = "pass it other sizes, or name the structure first and scale a copy of it"
+            self.it.report("E0334", message, copy.node, hints=[hint])
             return NOTHING
         own: list[Frame] = []
 

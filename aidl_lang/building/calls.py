@@ -18,7 +18,7 @@ from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
 from aidl_lang.building.placing import placing
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Interpreter, Reach
 from aidl_lang.building.turning import ask_to_turn, is_of_directions
 from aidl_lang.building.values import (
     NOTHING,
@@ -129,9 +129,7 @@ def bound(
         if value is None:
             return None
         is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
-        if is_flag and isinstance(
-            value, Condition
-        ):  # it decides how something is made, so it has to be known
+        if is_flag and isinstance(value, Condition):  # it decides how something is made
             value = truth(it, value, at)
         if signature.name in COPYING and _follows_measure(it, value, at):
             return None
@@ -182,7 +180,7 @@ _CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
 def invoke(
     it: Interpreter,
     candidate: Candidate,
-    arguments: Mapping[str, Value],
+    arguments: Arguments,
     binding: Binding,
     values: Sequence[Value],
     node: ast.Call,
@@ -196,11 +194,11 @@ def invoke(
                 return construct(it, name, arguments, node, env)
             return FUNCTIONS[name](it, arguments, node, env)
         case ast.FunctionDefinition():
-            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            return evaluate(it, definition.value, Env(scope, env.here, env.reach))
+            inner = _inside(it, candidate, arguments, definition.parameters, env)
+            return evaluate(it, definition.value, inner)
         case ast.ConstraintDefinition():
-            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
+            inner = _inside(it, candidate, arguments, definition.parameters, env)
+            condition = run_items(it, definition.body, inner)
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
             condition = placing(condition, definition, binding, values, env)
@@ -214,20 +212,15 @@ def invoke(
             return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
 
 
-def _body_scope(
-    it: Interpreter,
-    candidate: Candidate,
-    arguments: Mapping[str, Value],
-    parameters: Sequence[ast.Parameter],
-    env: Env,
-) -> Scope:
-    scope = Scope(candidate.scope)
+def _inside(
+    it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
+) -> Env:
+    """Returns the environment of the body of a definition: its parameters, with what they get."""
+    inner = Env(Scope(candidate.scope), env.here, env.reach)
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
-        if value is None:
-            value = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
-        scope.values[name] = value
-    return scope
+        inner.scope.values[name] = default_of(it, parameter, kind, inner) if value is None else value
+    return inner
 
 
 def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) -> Value:
@@ -296,7 +289,7 @@ def _shape(
     it: Interpreter,
     candidate: Candidate,
     definition: ast.ShapeDefinition,
-    arguments: Mapping[str, Value],
+    arguments: Arguments,
     node: ast.Call,
     env: Env,
 ) -> Value:
@@ -319,7 +312,7 @@ def _shape(
     return geometry
 
 
-def _bind_above(it: Interpreter, geometry: Geometry, given: Mapping[str, Value], env: Env) -> None:
+def _bind_above(it: Interpreter, geometry: Geometry, given: Arguments, env: Env) -> None:
     """Binds a shape, with all its parts, to the structure that holds all that its arguments refer to."""
     if env.reach is not Reach.ABOVE:
         return
@@ -336,7 +329,7 @@ def _bind_shape(
     it: Interpreter,
     parameters: Sequence[ast.Parameter],
     signature: Signature,
-    given: Mapping[str, Value],
+    given: Arguments,
     geometry: Geometry,
     scope: Scope,
 ) -> None:
@@ -357,13 +350,7 @@ def _bind_shape(
 
 
 def _bind_number(
-    it: Interpreter,
-    value: Num,
-    kind: object,
-    word: str,
-    name: str,
-    given: Mapping[str, Value],
-    geometry: Geometry,
+    it: Interpreter, value: Num, kind: object, word: str, name: str, given: Arguments, geometry: Geometry
 ) -> Num:
     whole = isinstance(kind, NumberType) and kind.whole
     if whole:

@@ -89,9 +89,5 @@ def _outline(
             hints.append(f"give it a name that is not drawn: `construction outline = {written}`")
         else:
             hints.append(f"`{written}` is {kind_of(values[0])}")
-    it.report(
-        "E0517",
-        f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`",
-        attribute,
-        hints=hints,
-    )
+    message = f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`"
+    it.report("E0517", message, attribute, hints=hints)

@@ -133,14 +133,9 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
             return length(Box((edge.container,), env.here).side(side))
     if axis:
         return length(x if axis == "x" else y)
-    it.report(
-        "E0303",
-        f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",
-        node,
-        label="a slanted edge",
-        fix=_side_of_box(node),
-        hints=["name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"],
-    )
+    message = f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate"
+    hint = "name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"
+    it.report("E0303", message, node, label="a slanted edge", fix=_side_of_box(node), hints=[hint])
     return None
 
 

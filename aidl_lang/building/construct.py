@@ -57,12 +57,9 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
     """Returns a number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
     expression = solvable(it, value, holder.span)
     if dimension in (None, LENGTH) and is_size(name) and expression.is_constant and value.value < 0:
-        it.report(
-            "E0515",
-            f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative",
-            holder.span,
-            hints=[f"write {-value.value:g}; directions belong to angles and positions"],
-        )
+        message = f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative"
+        hint = f"write {-value.value:g}; directions belong to angles and positions"
+        it.report("E0515", message, holder.span, hints=[hint])
     if expression.is_constant and value.status in (Exactness.NUMBER, Exactness.GUESS):
         expression = it.unknown(
             value.value,

@@ -85,32 +85,22 @@ def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: 
             items = [_copied(it, item, copier, node, env) for item in members(value) or ()]
             return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
         case _:
-            it.report(
-                "E0331",
-                f"`{node.callee.text}` copies geometry and structures, and this is {kind_of(value)}",
-                node,
-                hints=["name the thing itself, a list of things, or a call that makes one"],
-            )
+            message = f"`{node.callee.text}` copies geometry and structures, and this is {kind_of(value)}"
+            hint = "name the thing itself, a list of things, or a call that makes one"
+            it.report("E0331", message, node, hints=[hint])
             return NOTHING
 
 
 def _of_structure(it: Interpreter, source: Structure, motion: Motion, node: ast.Call, env: Env) -> Value:
     here = env.here
     if here.is_within(source):
-        it.report(
-            "E0331",
-            f"`{source.name}` would hold a copy of itself",
-            node,
-            hints=["copy it in the structure around it"],
-        )
+        hint = "copy it in the structure around it"
+        it.report("E0331", f"`{source.name}` would hold a copy of itself", node, hints=[hint])
         return NOTHING
     if not source.is_within(here):
-        it.report(
-            "E0331",
-            f"`{source.path}` is copied in a structure that does not hold it",
-            node,
-            hints=[f"copy it in `{source.parent.path}`" if source.parent else "copy a structure of this one"],
-        )
+        message = f"`{source.path}` is copied in a structure that does not hold it"
+        hint = f"copy it in `{source.parent.path}`" if source.parent else "copy a structure of this one"
+        it.report("E0331", message, node, hints=[hint])
         return NOTHING
     return StructureCopy(source, motion, node)
 
@@ -270,12 +260,8 @@ def _motion(
         motion = turned(angle.expression, about, to)
     if isinstance(scale, Num):
         if not scale.value > 0:
-            it.report(
-                "E0331",
-                f"a scale is more than 0, and this is {scale.value:g}",
-                node,
-                hints=["`mirror(x, about: …)` turns a thing over"],
-            )
+            hint = "`mirror(x, about: …)` turns a thing over"
+            it.report("E0331", f"a scale is more than 0, and this is {scale.value:g}", node, hints=[hint])
             return None
         motion = replace(motion, scale=scale.expression)
     return motion

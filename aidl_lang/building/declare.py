@@ -27,13 +27,9 @@ def declare(
         return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
-            it.report(
-                "E0208",
-                f"`{name.text}` is declared in every turn of the loop",
-                name,
-                label="the same name again",
-                hints=[f"give it an index: `{name.text}[i] = …`"],
-            )
+            message = f"`{name.text}` is declared in every turn of the loop"
+            hint = f"give it an index: `{name.text}[i] = …`"
+            it.report("E0208", message, name, label="the same name again", hints=[hint])
             return
         target.values[name.text] = value
     else:

@@ -233,12 +233,9 @@ def _mark(status: Exactness) -> Function:
         value = as_point(it, value, node, env) or value if isinstance(value, Geometry) else value
         if isinstance(value, Num | PointVal | ListVal):
             return mark(as_written(value) if status is Exactness.GUESS else value)
-        it.report(
-            "E0310",
-            f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}",
-            node,
-            hints=["to hold a geometry where it was written: `constrain fixed(…)`"],
-        )
+        message = f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}"
+        hint = "to hold a geometry where it was written: `constrain fixed(…)`"
+        it.report("E0310", message, node, hints=[hint])
         return NOTHING
 
     return function

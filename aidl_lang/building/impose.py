@@ -73,12 +73,8 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         case Condition():
             _impose_condition(it, value, node, env, weight)
         case Geometry():
-            it.report(
-                "E0323",
-                f"this {value.type} has no name, so it is not part of the model",
-                node,
-                hints=[f"give it one: `{value.type}_1 = {node.span.text}`"],
-            )
+            message = f"this {value.type} has no name, so it is not part of the model"
+            it.report("E0323", message, node, hints=[f"give it one: `{value.type}_1 = {node.span.text}`"])
         case _:
             it.misfit(rules.no_condition(shown(node), type_of(value)), node)
 

@@ -40,12 +40,8 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
         run_block(it, statements, scope, root)
         finish(it, root)
         if not roots and not loose and not it.diagnostics:
-            it.report(
-                "W0501",
-                "this file draws nothing",
-                None,
-                hints=["a drawing needs a structure, as in `solid plate { … }`"],
-            )
+            hint = "a drawing needs a structure, as in `solid plate { … }`"
+            it.report("W0501", "this file draws nothing", None, hints=[hint])
     report_unused(it)
     for constraint in hidden_constraints(it):
         it.add_constraint(constraint)

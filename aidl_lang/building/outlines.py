@@ -328,12 +328,9 @@ def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) 
         if base is None:
             return _Target(env.here, (), "", value, text)
         return _Target(base.owner, (base,), key, convert_point(value, env.here, base.owner), text)
-    it.report(
-        "E0337",
-        f"`{text}` is {kind_of(value)}, and only corners and outlines are rounded or cut off",
-        node,
-        hints=["name a corner (`plate.top_left`), a list of corners, or the outline itself"],
-    )
+    message = f"`{text}` is {kind_of(value)}, and only corners and outlines are rounded or cut off"
+    hint = "name a corner (`plate.top_left`), a list of corners, or the outline itself"
+    it.report("E0337", message, node, hints=[hint])
     return None
 
 
@@ -361,12 +358,9 @@ def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env:
         if (found := value.finishes.get(_named(key, kind))) is not None:
             return found if may_read(it, value.owner, node, env) else as_written(found)
         if any(f.kind == kind and not f.sizes and value in f.of for f in value.owner.finishes):
-            it.report(
-                "E0526",
-                f"`{node.span.one_line}` is the largest that fits, which only the drawing knows",
-                node,
-                hints=["give it a number to refer to it: of one that is too large the most is told"],
-            )
+            message = f"`{node.span.one_line}` is the largest that fits, which only the drawing knows"
+            hint = "give it a number to refer to it: of one that is too large the most is told"
+            it.report("E0526", message, node, hints=[hint])
             return NOTHING
         value, key = value.container, ""  # type: ignore[assignment]
     return None

@@ -73,13 +73,8 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     value = _from_outside(it, path, written, choices)
     counts = node in it.program.counts and _is_whole(written)
     if counts and not _is_whole(value):
-        it.report(
-            "E0909",
-            f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something",
-            node.name,
-            label="a whole number",
-            hints=["give a whole number"],
-        )
+        message = f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something"
+        it.report("E0909", message, node.name, label="a whole number", hints=["give a whole number"])
         value = written
     if counts and low is not None and high is not None:
         low, high = math.ceil(low), math.floor(high)

@@ -138,12 +138,8 @@ def _pattern(lay_out: Callable[[_Call], Value]) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         thing = a["x"]
         if not isinstance(thing, Geometry | Structure | Instantiation):
-            it.report(
-                "E0331",
-                f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}",
-                node,
-                hints=["put several things into a template, and repeat that"],
-            )
+            message = f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}"
+            it.report("E0331", message, node, hints=["put several things into a template, and repeat that"])
             return NOTHING
         settings = Geometry(node.callee.text, env.here, it.place(node))
         return lay_out(_Call(it, a, node, env, settings))

@@ -28,12 +28,9 @@ class StatedOrder:
 def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
     """Keeps what is said of the order of a structure until all beside it are there."""
     if s.parent is None:
-        it.report(
-            "E0521",
-            f"`{s.name}` is the whole drawing: nothing is beside it",
-            stated.attribute,
-            hints=[f"`{stated.attribute.span.one_line}` stands before a structure in `{s.name}`"],
-        )
+        message = f"`{s.name}` is the whole drawing: nothing is beside it"
+        hint = f"`{stated.attribute.span.one_line}` stands before a structure in `{s.name}`"
+        it.report("E0521", message, stated.attribute, hints=[hint])
     else:
         it.orders.setdefault(s, []).append(stated)
 

@@ -314,12 +314,9 @@ class Interpreter:
         """Reports a first guess at which the solver could not begin. Returns another."""
         if math.isnan(guess):
             return guess
-        self.report(
-            "E0504",
-            f"`{name}` begins at {guess:g} here, which no drawing reaches",
-            holder.span,
-            hints=[f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"],
-        )
+        message = f"`{name}` begins at {guess:g} here, which no drawing reaches"
+        hint = f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"
+        self.report("E0504", message, holder.span, hints=[hint])
         return 0.0
 
     def became(

@@ -22,12 +22,9 @@ def passed(
 ) -> Value | PassedBinding:
     """Returns the binding of an instance's parameter."""
     if (thing := _drawn(value)) is not None:
-        it.report(
-            "E0313",
-            f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}",
-            node,
-            hints=[f"pass one of its points or sizes, or constrain `{instance.name}` from outside"],
-        )
+        message = f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}"
+        hint = f"pass one of its points or sizes, or constrain `{instance.name}` from outside"
+        it.report("E0313", message, node, hints=[hint])
     if isinstance(value, Num | PointVal):
         return PassedBinding(name, value, instance, holder, node)
     return value
