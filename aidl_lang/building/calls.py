@@ -129,7 +129,7 @@ def bound(
         if value is None:
             return None
         is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
-        if is_flag and isinstance(value, Condition):  # it decides how something is made
+        if is_flag and isinstance(value, Condition):  # decides how something is made, so it has to be known
             value = truth(it, value, at)
         if signature.name in COPYING and _follows_measure(it, value, at):
             return None

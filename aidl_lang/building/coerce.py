@@ -70,7 +70,7 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
 
 
 def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
-    """Yields the structures beside `here` whose unknowns a number, a point or a holder of such depends on."""
+    """Yields the structures other than `here` whose unknowns a number, a point or a holder of these needs."""
     match value:
         case Num(expression=e):
             yield from (u.owner for u in ex.unknowns([e]) if u.owner is not here)

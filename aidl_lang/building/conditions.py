@@ -135,7 +135,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
 def _relates(
     relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
 ) -> bool:
-    """Tells whether a relation holds within a tolerance; `strict` keeps `<` and `>` from it for equals."""
+    """Tells whether a relation holds within a tolerance; if `strict`, `<` and `>` do not hold for equals."""
     difference = a - b
     if is_angle and relation in ("==", "!="):
         difference = (difference + 180.0) % 360.0 - 180.0

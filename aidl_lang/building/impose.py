@@ -85,10 +85,10 @@ def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
 
 def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
     """Returns the items of `AddConstraint(…)`, of which `fixed(p)` is no condition by itself."""
-    if not isinstance(node, ast.Call) or node.receiver is not None:
-        return []
-    values = [a.value for a in node.arguments if it.spelled(node.callee) == "add_constraint"]
-    return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
+    if isinstance(node, ast.Call) and node.receiver is None and it.spelled(node.callee) == "add_constraint":
+        values = [a.value for a in node.arguments]
+        return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
+    return []
 
 
 def _as_relation(node: ast.Expression) -> ast.Expression:

@@ -1,4 +1,4 @@
-"""Questions about shapes that AIDL cannot answer in the library: sizes, corners, a way to refuse."""
+"""Questions about shapes that the library cannot answer in AIDL: sizes, corners, a way to refuse."""
 
 from __future__ import annotations
 
