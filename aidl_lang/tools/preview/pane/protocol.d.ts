@@ -168,6 +168,18 @@ export interface VsCodeApi {
   setState(state: unknown): void;
 }
 
+/** What of a WebSocket the pane needs to talk to its host. `readyState` is that of one. It may open again, when the host
+ * has another program. */
+export interface Line {
+  readonly readyState: number;
+  send(text: string): void;
+  addEventListener(type: "open", listener: () => void): void;
+  addEventListener(type: "message", listener: (event: { data: unknown }) => void): void;
+  addEventListener(type: "close", listener: (event: { reason: string }) => void): void;
+}
+
 declare global {
   function acquireVsCodeApi(): VsCodeApi;
+  /** Where a page has it, it is called in place of opening a WebSocket. */
+  function dialAidl(): Line;
 }
