@@ -52,8 +52,7 @@ _PURE = {
 """The packages that are taken as this environment has them."""
 _LEFT_OUT = re.compile(
     r"(^|/)(tests?|testing|f2py|distutils|_pyinstaller|include|__pycache__)/|\.(pyi|c|h|typed|pxd|a|js|html)$"
-    r"|^aidl_lang/tools/(cli|agents/server|llm|sweeping/cluster)"
-    r"|^aidl_lang/tools/preview/pane/"
+    r"|^aidl_lang/tools/preview/pane/|^reportlab/(fonts|graphics)/|^ezdxf/addons/(dxf2code|drawing|browser|odafc)"
 )
 """What nobody asks for in a browser."""
 BARE = ("lsprotocol", "pygls", "ezdxf", "fontTools")

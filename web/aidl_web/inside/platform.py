@@ -17,8 +17,6 @@ from concurrent.futures import Future
 from types import ModuleType
 from typing import Any
 
-from aidl_web.inside import manifold
-
 
 class Turns:
     """An executor that does each piece of work in a turn of the loop, in order. `busy` is told before and after:
@@ -61,6 +59,8 @@ class Turns:
 
 def complete(kernel: object, busy: Callable[[bool], object]) -> None:
     """Puts in place what is lacking. `kernel` is the one of `manifold`, `busy` is told of work."""
+    from aidl_web.inside import manifold
+
     Turns.busy = busy
     time.thread_time = time.perf_counter
     concurrent.futures.ThreadPoolExecutor = Turns  # type: ignore[misc, assignment]
