@@ -12,8 +12,12 @@ from aidl_web.site import CDN, ROOT, BuildError, built
 def main() -> int:
     parser = argparse.ArgumentParser(prog="aidl_web", description="Builds the playground into a folder.")
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--pyodide", default=CDN, metavar="PLACE", help="a folder, or an address (%(default)s)")
-    parser.add_argument("--work", type=Path, default=ROOT / "build" / "web", help="keeps what is made on the way")
+    parser.add_argument(
+        "--pyodide", default=CDN, metavar="PLACE", help="a folder, or an address (%(default)s)"
+    )
+    parser.add_argument(
+        "--work", type=Path, default=ROOT / "build" / "web", help="keeps what is made on the way"
+    )
     given = parser.parse_args()
     try:
         built(given.folder.resolve(), given.pyodide, given.work.resolve())

@@ -6,7 +6,6 @@ import gzip
 import hashlib
 import html
 import json
-import os
 import re
 import shutil
 import struct
@@ -27,7 +26,9 @@ PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
 PYODIDE = "0.27.7"
 CDN = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full/"
 MANIFOLD = "3.5.4"
-_MANIFOLD_DIGEST = "sha512-WWsme5HabwLHVcWPHT9m+s7mdmDVSEvCny+uXH1E7jEc8FbFUgM75C3Dh6NVw57Eeh3Ow7+xHCuXfxDMOemi9A=="
+_MANIFOLD_DIGEST = (
+    "sha512-WWsme5HabwLHVcWPHT9m+s7mdmDVSEvCny+uXH1E7jEc8FbFUgM75C3Dh6NVw57Eeh3Ow7+xHCuXfxDMOemi9A=="
+)
 _CORE = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 """The files of Python itself."""
 _BINARY = {"numpy": "later", "pillow": "exports"}
@@ -51,7 +52,7 @@ _PURE = {
 }
 """The packages that are taken as this environment has them."""
 _LEFT_OUT = re.compile(
-    r"(^|/)(tests?|testing|f2py|distutils|_pyinstaller|include|__pycache__)/|\.(pyi|c|h|typed|pxd|a|js|html)$"
+    r"(^|/)(tests|distutils|_pyinstaller|include|__pycache__)/|\.(pyi|c|h|typed|pxd|a|js|html)$"
     r"|^aidl_lang/tools/preview/pane/|^reportlab/(fonts|graphics)/|^ezdxf/addons/(dxf2code|drawing|browser|odafc)"
 )
 """What nobody asks for in a browser."""
@@ -243,14 +244,19 @@ _GROUPS = {"examples": "Examples", "examples/gallery": "Gallery", "examples/work
 _NONCE = "aidl"
 """Of the style sheet that the editor of the text makes for itself."""
 _POLICY = (
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self' 'nonce-{nonce}'; "
-    "connect-src 'self'; img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; "
+    "style-src 'self' 'nonce-{nonce}'; connect-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
+    "base-uri 'none'; form-action 'none'"
 )
-"""What the page may load: nothing of others. Python from elsewhere is loaded by the worker, which has no policy."""
+"""What the page may load: nothing of others. Python from elsewhere is loaded by the worker, which has no
+policy.
+"""
 
 
 def _write_page(into: Path, python: str) -> None:
-    """Writes the page, its scripts and its examples. `python` is the address of Python, relative to the page."""
+    """Writes the page, its scripts and its examples. `python` is the address of Python, relative to the
+    page.
+    """
     shutil.copytree(PANE, into / "pane", ignore=shutil.ignore_patterns("index.html", "*.d.ts"))
     for file in sorted((WEB / "page").iterdir()):
         if file.suffix in (".js", ".css") and file.name != "service.js":
@@ -270,10 +276,15 @@ def _write_page(into: Path, python: str) -> None:
 def _index() -> str:
     """Returns the page: the pane's, with what the playground has beside it."""
     text = (PANE / "index.html").read_text("utf-8")
-    pieces = dict(re.findall(r"<!-- (\w+) -->\n(.*?)(?=<!-- |\Z)", (WEB / "page" / "pieces.html").read_text("utf-8"), re.DOTALL))
+    pieces = dict(
+        re.findall(
+            r"<!-- (\w+) -->\n(.*?)(?=<!-- |\Z)", (WEB / "page" / "pieces.html").read_text("utf-8"), re.DOTALL
+        )
+    )
     for mark, piece in (
         ('    <script type="module" nonce="{{nonce}}" src="{{root}}main.js"></script>\n', pieces["head"]),
-        ('      <div id="history" class="group end" hidden>\n', pieces["programs"]),
+        ('      <h1 id="name" class="name">', pieces["programs"]),
+        ('      <div id="history" class="group end" hidden>\n', pieces["stop"]),
         ('        <div class="menu">\n          <button id="export-button"', pieces["share"]),
         ('        <div class="scale" aria-hidden="true">', pieces["starting"]),
         ('        <div id="stale" class="banner warning"', pieces["held"]),
@@ -311,6 +322,8 @@ def _write_licenses(into: Path, tree: Path, manifold: Path) -> None:
     for file in sorted(tree.glob("*.dist-info/**/*")):
         if file.is_file() and re.match(r"licen[sc]e|copying|notice", file.name, re.IGNORECASE):
             parts.append((file.relative_to(tree).parts[0].partition("-")[0], file))
-    texts = [f"{name}\n{'=' * len(name)}\n\n{file.read_text('utf-8', 'replace').strip()}\n" for name, file in parts]
+    texts = [
+        f"{name}\n{'=' * len(name)}\n\n{file.read_text('utf-8', 'replace').strip()}\n" for name, file in parts
+    ]
     python = "Python for browsers: Pyodide, Mozilla Public License 2.0, https://github.com/pyodide/pyodide\n"
     _write(into / "licenses.txt", "\n\n".join([python, *texts]))

@@ -40,22 +40,25 @@ let opened = "";
 const desk = begin(py, await load(), {
   say: (message) => heard(JSON.parse(message)),
   opened: (uri) => void (opened = uri),
+  scipy: () => py.loadPackage("scipy"),
   keep: () => {},
   busy: () => {},
   read: (name) => {
     throw new Error(`${name} was asked for`);
   },
 });
-const text = readFileSync(join(tree, "aidl_lang/_data/examples/motor_bracket.aidl"), "utf8");
-await desk.open("motor_bracket.aidl", text, py.toPy({}));
-const asked = { jsonrpc: "2.0", id: 1, method: "aidl/preview", params: { uri: opened, show: [] } };
-const shown = new Promise((resolve) => {
-  heard = (message) => {
-    if (message.id === 1) resolve(message.result?.svg);
-  };
-});
-desk.hear(JSON.stringify(asked));
-if (!(await shown)) throw new Error("the example was not drawn");
+for (const name of ["motor_bracket.aidl", "gallery/teapot.aidl", "tram.aidl"]) {
+  const text = readFileSync(join(tree, "aidl_lang/_data/examples", name), "utf8");
+  await desk.open(name, text, py.toPy({}));
+  const asked = { jsonrpc: "2.0", id: 1, method: "aidl/preview", params: { uri: opened, show: [] } };
+  const shown = new Promise((resolve) => {
+    heard = (message) => {
+      if (message.id === 1) resolve(message.result?.svg);
+    };
+  });
+  desk.hear(JSON.stringify(asked));
+  if (!(await shown)) throw new Error(`${name} was not drawn`);
+}
 const files = py.runPython(`
 import sys
 found = {m.__spec__.origin for m in list(sys.modules.values()) if getattr(m, "__spec__", None) and m.__spec__.origin}

@@ -28,6 +28,7 @@ py.FS.mount(py.FS.filesystems.NODEFS, { root: "/" }, "/host");
 begin(py, await load(), {
   say: () => {},
   opened: () => {},
+  scipy: () => py.loadPackage("scipy"),
   keep: () => {},
   busy: () => {},
   read: (name) => new Uint8Array(readFileSync(join(site, name))),

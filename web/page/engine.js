@@ -2,6 +2,7 @@
  * @typedef {object} Outside
  * @property {(message: string) => void} say a message for the pane
  * @property {(uri: string) => void} opened a program is open from now on
+ * @property {() => Promise<unknown>} scipy has it fetched
  * @property {(name: string, text: string) => void} keep the text of the program, whenever it has changed
  * @property {(isBusy: boolean) => void} busy what is asked has to wait, or does not any more
  * @property {(name: string) => Uint8Array} read a file of the site, at once

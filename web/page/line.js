@@ -3,7 +3,7 @@
  */
 
 /** Milliseconds of work after which it is told, with a button that ends it. */
-const LONG = 900;
+const LONG = 1200;
 
 /** @typedef {{ name: string, text: string, beside?: Record<string, Uint8Array>, held?: boolean }} Program */
 
@@ -13,7 +13,8 @@ const LONG = 900;
  * @property {(uri: string) => void} opened
  * @property {(program: { name: string, text: string }) => void} keep
  * @property {(isLong: boolean) => void} long whether it works for long
- * @property {(reason: string) => void} failed
+ * @property {(reason: string) => void} failed it could not begin
+ * @property {(reason: string) => void} died it has ended by itself
  * @property {(message: any) => any} asked a message of the pane, which may be changed; null if it goes no further
  * @property {(message: any) => any} told a message to the pane, the same
  */
@@ -30,7 +31,7 @@ export class WorkerLine extends EventTarget {
     this.watcher = watcher;
     this.worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     this.worker.addEventListener("message", ({ data }) => this.#heard(data));
-    this.worker.addEventListener("error", (event) => this.#broke(event.message || "Python could not be started"));
+    this.worker.addEventListener("error", (event) => this.#broke(event.message || "its script could not be loaded"));
   }
 
   /** @param {Program} program in place of the one that is open */
@@ -67,7 +68,8 @@ export class WorkerLine extends EventTarget {
       this.readyState = WebSocket.OPEN;
       watcher.opened(data.opened);
       this.dispatchEvent(new Event("open"));
-    } else if ("failed" in data) this.#broke(data.failed);
+    } else if ("failed" in data) this.watcher.failed(data.failed);
+    else if ("died" in data) this.#broke(data.died);
   }
 
   /** @param {unknown} message for the pane */
@@ -84,6 +86,7 @@ export class WorkerLine extends EventTarget {
 
   /** @param {string} reason */
   #broke(reason) {
-    this.watcher.failed(reason);
+    if (this.readyState === WebSocket.OPEN) this.watcher.died(reason);
+    else this.watcher.failed(reason);
   }
 }

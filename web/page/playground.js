@@ -37,10 +37,19 @@ async function example(file) {
   return { name, text: await answer.text() };
 }
 
+/**
+ * A program with a name of its own, if another of its name is kept: that one may have been changed.
+ * @param {Program} program
+ */
+function ownNamed(program) {
+  const known = programs().find(({ name }) => name === program.name);
+  return known && known.text !== program.text ? { ...program, name: free(program.name.replace(/\.aidl$/, "")) } : program;
+}
+
 /** The program of the address, else the one that was open last, else an example. @returns {Promise<Program>} */
 async function firstProgram() {
   const given = await addressed();
-  return given ?? programs()[0] ?? (await example(FIRST));
+  return (given && ownNamed(given)) ?? programs()[0] ?? (await example(FIRST));
 }
 
 /** @returns {Promise<Program | null>} */
@@ -101,6 +110,11 @@ const watcher = {
     show(`Python could not be started: ${reason}. Load the page again; the first visit needs a connection.`);
     starting.classList.add("failed");
   },
+  died: (reason) => {
+    console.warn(reason);
+    news.push("Python did not survive this program, and begins anew.");
+    end();
+  },
   asked: (message) => {
     if (message.method === "aidl/save") savings.add(message.id);
     if (message.method !== "aidl/export" || message.params.format !== PICTURE) return message;
@@ -156,7 +170,7 @@ async function open(other) {
 async function bring(find) {
   try {
     const found = await find();
-    if (found) await open(found);
+    if (found) await open(ownNamed(found));
   } catch (error) {
     told(error instanceof Error ? error.message : String(error));
   }
@@ -263,10 +277,15 @@ copy.addEventListener("click", async () => {
   copy.textContent = "Copied";
   setTimeout(() => (copy.textContent = "Copy"), COPIED_SECONDS * 1000);
 });
-stop.addEventListener("click", () => {
+stop.addEventListener("click", end);
+
+/** Ends the worker. The pane dials again, and is shown the program without running it. */
+function end() {
   isStopped = true;
-  line?.close("This was stopped.");
-});
+  show("Starting again");
+  line?.close("It was stopped.");
+}
+
 part("run-again", HTMLButtonElement).addEventListener("click", () => void open(program));
 addEventListener("hashchange", () => void bring(addressed));
 addEventListener("keydown", (event) => {

@@ -1,7 +1,7 @@
 /** The worker: Python, the language server in it, and the host of the pane.
  * Texts are messages of the pane, either way; all else is between the page and the worker:
  *     in   { open: { name, text, beside, held } }
- *     out  { stage }, { opened: uri }, { keep: { name, text } }, { busy }, { failed }
+ *     out  { stage }, { opened: uri }, { keep: { name, text } }, { busy }, { failed }, { died }
  */
 
 import load from "./manifold.js";
@@ -39,11 +39,18 @@ async function started() {
   const manifold = load();
   const { loadPyodide } = await import(`${python}pyodide.mjs`);
   const py = await loadPyodide({ indexURL: python, stdout: () => {}, stderr: (/** @type {string} */ line) => console.warn(line) });
+  // What Python cannot survive, as a nesting deeper than the browser's stack, ends it: the page begins anew.
+  py._api.on_fatal = (/** @type {unknown} */ error) => died(error);
   say({ stage: "Loading the language" });
   unpack(py, await pack);
   const desk = begin(py, await manifold, {
     say,
     opened: (uri) => say({ opened: uri }),
+    scipy: () => {
+      say({ stage: "Fetching scipy, which large programs take: 20 MB, once" });
+      py.loadedPackages.numpy = FIRST; // it asks for numpy, which is there
+      return py.loadPackage("scipy", { messageCallback: () => {} });
+    },
     keep: (name, text) => say({ keep: { name, text } }),
     busy: (isBusy) => say({ busy: isBusy }),
     read,
@@ -55,6 +62,14 @@ async function started() {
 async function fetchRest(py) {
   const pack = await fetched(LATER);
   if (py.runPython("from aidl_web.inside import fetching; fetching.arrived('later.pack')")) unpack(py, pack);
+}
+
+let isDead = false;
+
+/** @param {unknown} error */
+function died(error) {
+  if (!isDead) say({ died: String(/** @type {Error} */ (error)?.message ?? error) });
+  isDead = true;
 }
 
 const starting = started();
@@ -77,6 +92,6 @@ self.addEventListener("message", async ({ data }) => {
       setTimeout(() => fetchRest(py).catch((error) => console.warn(error)), PAUSE * 1000);
     }
   } catch (error) {
-    say({ failed: String(/** @type {Error} */ (error)?.message ?? error) });
+    died(error);
   }
 });

@@ -15,7 +15,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if MISSING:
         pytest.skip(MISSING)
     folder = tmp_path_factory.mktemp("site") / "playground"
-    built(folder, str(PYODIDE), tmp_path_factory.mktemp("work") if not ROOT.joinpath("build").exists() else ROOT / "build" / "web")
+    built(
+        folder,
+        str(PYODIDE),
+        tmp_path_factory.mktemp("work") if not ROOT.joinpath("build").exists() else ROOT / "build" / "web",
+    )
     return folder
 
 

@@ -1,5 +1,5 @@
-"""Compiles programs and writes what comes of them: run in Node. The first argument is the folder for the files, the
-others are programs.
+"""Compiles programs and writes what comes of them: run in Node. The first argument is the folder for the
+files, the others are programs.
 """
 
 from pathlib import Path

@@ -1,5 +1,5 @@
-"""Does with the stand-in what `test_manifold.py` does with `manifold3d`: run in Node. The first argument is a file
-with the inputs, the second the one for what comes out.
+"""Does with the stand-in what `test_manifold.py` does with `manifold3d`: run in Node. The first argument is a
+file with the inputs, the second the one for what comes out.
 """
 
 import json

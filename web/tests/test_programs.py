@@ -1,4 +1,4 @@
-"""All programs of the examples, the gallery and the workshop: what the playground draws is what is drawn here."""
+"""All programs of the examples, the gallery and the workshop: the playground draws what is drawn here."""
 
 from __future__ import annotations
 

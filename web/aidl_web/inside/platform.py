@@ -19,8 +19,8 @@ from typing import Any
 
 
 class Turns:
-    """An executor that does each piece of work in a turn of the loop, in order. `busy` is told before and after:
-    nothing is heard meanwhile.
+    """An executor that does each piece of work in a turn of the loop, in order. `busy` is told before and
+    after: nothing is heard meanwhile.
     """
 
     busy: Callable[[bool], object]

@@ -392,7 +392,7 @@ def _null_space(matrix: Floats) -> Floats:
     rows = matrix[lengths > _MOVES] / lengths[lengths > _MOVES, None]
     if not len(rows):
         return np.eye(width)
-    rows = np.linalg.qr(rows, mode="r") if len(rows) > width else rows
+    rows = np.asarray(np.linalg.qr(rows, mode="r") if len(rows) > width else rows)
     sizes, basis = np.linalg.svd(rows)[1:]
     rank = int((sizes > _RANK * max(rows.shape)).sum())
     return np.asarray(basis[rank:].T)

@@ -173,9 +173,8 @@ export interface VsCodeApi {
 export interface Line {
   readonly readyState: number;
   send(text: string): void;
-  addEventListener(type: "open", listener: () => void): void;
-  addEventListener(type: "message", listener: (event: { data: unknown }) => void): void;
-  addEventListener(type: "close", listener: (event: { reason: string }) => void): void;
+  /** A message has `data`, a close has the `reason`. */
+  addEventListener(type: "open" | "message" | "close", listener: (event: any) => void): void;
 }
 
 declare global {
