@@ -60,6 +60,10 @@ BARE = ("lsprotocol", "pygls", "ezdxf", "fontTools")
 """Packages that are compiled without their docstrings."""
 
 
+_PATIENCE = 120
+"""Seconds for a file from elsewhere."""
+
+
 class BuildError(Exception):
     """Why there is no playground."""
 
@@ -71,7 +75,7 @@ def built(into: Path, pyodide: str, work: Path) -> None:
     """
     work.mkdir(parents=True, exist_ok=True)
     is_folder = not pyodide.startswith(("http:", "https:"))
-    core = Path(pyodide).resolve() if is_folder else _fetched(pyodide, work / "pyodide")
+    core = Path(pyodide).resolve() if is_folder else _fetched(pyodide, work)
     manifold = _manifold(work)
     tree, owners = _tree(core, work)
     first = _prepared(core, manifold, tree)
@@ -83,29 +87,36 @@ def built(into: Path, pyodide: str, work: Path) -> None:
     if is_folder:
         _copy_python(core, into / "pyodide")
     _write_licenses(into, tree, manifold)
-    _write_page(into, "pyodide/" if is_folder else pyodide)
+    _write_page(into, "pyodide/" if is_folder else pyodide.removesuffix("/") + "/")
 
 
 # --- What others made
 
 
-def _fetched(address: str, folder: Path) -> Path:
-    """Returns a folder with Python for browsers from an address."""
+def needed(core: Path) -> list[str]:
+    """Returns the names of the files of Pyodide's that the playground takes, by the lock in a folder."""
+    return [*_CORE, *(_locked(core)[name]["file_name"] for name in (*_BINARY, *_LARGE))]
+
+
+def _fetched(address: str, work: Path) -> Path:
+    """Returns a folder with Python for browsers from an address. Raises BuildError."""
+    address = address.removesuffix("/") + "/"
+    folder = work / f"pyodide-{hashlib.sha256(address.encode()).hexdigest()[:16]}"
     folder.mkdir(parents=True, exist_ok=True)
-    names = list(_CORE)
-    for name in names:
+    _download(address + "pyodide-lock.json", folder / "pyodide-lock.json")
+    for name in needed(folder):
         _download(address + name, folder / name)
-    for name in (*_BINARY, *_LARGE):
-        file = _locked(folder)[name]["file_name"]
-        _download(address + file, folder / file)
     return folder
 
 
 def _download(address: str, file: Path) -> None:
     if file.exists():
         return
-    with urllib.request.urlopen(address, timeout=120) as answer:
-        data = answer.read()
+    try:
+        with urllib.request.urlopen(address, timeout=_PATIENCE) as answer:
+            data = answer.read()
+    except OSError as reason:
+        raise BuildError(f"{address} cannot be fetched ({reason}): give a folder, PYODIDE=folder") from None
     part = file.with_suffix(".part")
     part.write_bytes(data)
     part.replace(file)
@@ -113,7 +124,10 @@ def _download(address: str, file: Path) -> None:
 
 def _locked(core: Path) -> dict[str, dict[str, str]]:
     """Returns what Pyodide's lock says of its packages. Raises BuildError for another version."""
-    lock = json.loads((core / "pyodide-lock.json").read_text("utf-8"))
+    try:
+        lock = json.loads((core / "pyodide-lock.json").read_text("utf-8"))
+    except OSError as reason:
+        raise BuildError(f"{core} has no Pyodide in it: {reason}") from None
     if (found := lock["info"]["version"]) != PYODIDE:
         raise BuildError(f"{core} has Pyodide {found}; this playground is for {PYODIDE}")
     packages: dict[str, dict[str, str]] = lock["packages"]
