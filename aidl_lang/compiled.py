@@ -11,7 +11,7 @@ from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import within
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Later, OutOfTime, limited_to
+from aidl_lang.common.running import Later, OutOfTime, limited_to, working
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ class Exporting:
 
         limit = self._compiled.limit
         try:
-            with limited_to(limit):
+            with working, limited_to(limit):
                 return write(suffix)
         except OutOfTime:
             hint = "write a format that holds less: pictures without `--show`, outlines alone"

@@ -20,7 +20,8 @@ from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.curves import Bezier, Line
-from aidl_lang.geometry.letters import letter_faces, stencilled
+from aidl_lang.geometry.letters import lettering as lettering_region
+from aidl_lang.geometry.letters import stencilled
 from aidl_lang.geometry.measures import loop_area
 from tests.amount import tries
 
@@ -128,7 +129,9 @@ def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) 
     for character in CHARACTERS:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
-            faces = letter_faces(curves)
+            region = lettering_region([curves])
+            assert region is not None, character
+            faces = region.faces
             alternating = Polygon()
             for contour in contours(glyph):
                 alternating = alternating.symmetric_difference(contour)

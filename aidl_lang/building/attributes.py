@@ -27,8 +27,12 @@ from aidl_lang.common.names import find
 from aidl_lang.common.prose import ticked, with_article
 from aidl_lang.syntax import ast
 
-STROKED = ("color", "stroke", "dash", "opacity")
-"""Attributes that a geometry of a drawing may have for itself."""
+OWN_LOOKS = {
+    "drawing": ("color", "stroke", "dash", "opacity", "shade"),
+    "solid": ("color", "opacity", "shade"),
+    "assembly": ("color", "opacity", "shade"),
+}
+"""Attributes that a geometry may have for itself, by the kind of its structure."""
 
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
@@ -49,8 +53,8 @@ def read_own_attributes(
     things = list(_geometry_in(value))
     here = container if isinstance(container, Structure) else container.owner
     for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
-        is_stroke = name in STROKED and here is container and here.kind == "drawing"
-        if not things or not (name == "note" or is_stroke):
+        is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
+        if not things or not (name == "note" or is_own):
             _misplaced(it, node, name, attribute, value, container)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
             for thing in things:

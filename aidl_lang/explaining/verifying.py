@@ -12,14 +12,15 @@ from aidl_lang.explaining.trials import GAVE_WAY, Trials
 
 _TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0602", "N0604"})
 """Codes of findings whose fixes were tried already."""
+_SAID = frozenset({"W0705"})
+"""Codes of findings whose fixes are a word that says that they are meant, which changes no drawing."""
 
 
 def verified(
     found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
 ) -> list[Diagnostic]:
-    """Returns findings without the fixes after which the program still has the finding, has another error or
-    something else gives way, and without the hints that repeat these fixes. `everything` are all findings
-    about the program.
+    """Returns findings without the fixes that do not mend them, and without the hints that repeat these.
+    `everything` are all findings about the program.
     """
     return [_verified(d, everything, trials) for d in found]
 
@@ -28,8 +29,8 @@ def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Tri
     """Tells whether a program with the findings `before` no longer has `found` after a fix, and nothing
     worse.
     """
-    if trials.is_over or not trials.can_edit(fix.edits):
-        return False
+    if trials.is_over or not trials.can_edit(fix.edits) or found.code in _SAID:
+        return found.code in _SAID and trials.can_edit(fix.edits)
     after = trials.diagnostics(fix.edits)
     return not _bad(after) - _bad(before) and not any(_is_same(d, found, fix.edits) for d in after)
 
@@ -51,8 +52,7 @@ def _is_same(one: Diagnostic, before: Diagnostic, edits: Sequence[Edit]) -> bool
     if one.code != before.code or one.span is None or before.span is None:
         return one.code == before.code and one.message == before.message
     span = before.span
-    earlier = [e for e in edits if e.span.end <= span.start]
-    shift = sum(len(e.replacement) - (e.span.end - e.span.start) for e in earlier)
+    shift = sum(len(e.replacement) - (e.span.end - e.span.start) for e in edits if e.span.end <= span.start)
     if one.span.start != span.start + shift:
         return False
     is_rewritten = any(e.span.start <= span.start and span.end <= e.span.end for e in edits)

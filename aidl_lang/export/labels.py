@@ -11,8 +11,7 @@ from aidl_lang.export import Job, themes
 from aidl_lang.export.marks import CHARACTER, Text
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.engraving import boxes_meet
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.evaluate import are_near, bounds
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.parts import COARSE
 from aidl_lang.geometry.region import Region
@@ -49,7 +48,7 @@ def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
     """Returns what is engraved about a body, as polylines."""
     near = (s.pieces for s in drawing.strokes)
     boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
-    return [piece_points(piece, COARSE) for piece, box in boxes if boxes_meet(box, body.box)]
+    return [piece_points(piece, COARSE) for piece, box in boxes if are_near(box, body.box)]
 
 
 def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:

@@ -20,6 +20,7 @@ from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import stacked
 from aidl_lang.geometry.styles import DASH, GAP, Style
@@ -150,7 +151,7 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
                 yield stroke.path, mark
     kinds = {structure.path: structure.kind for structure in root.walk()}
     for stroke, own in marks:
-        is_on_part = stroke.role == "drawing" and kinds[stroke.path] != "drawing"
+        is_on_part = stroke.role == "drawing" and kinds[stroke.path] != "drawing" and not stroke.is_area
         for mark in own:
             yield f"{stroke.path}{_DRAWN}" if is_on_part else stroke.path, mark
 
@@ -165,14 +166,15 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
 
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
-    fill = body.style.color or themes.body_fill(index)
-    ink = (
-        None if body.style.is_unlined else _line(body.style, _outline_color(body.style), OUTLINE_WIDTH, size)
-    )
-    shade = body.style.shade
-    gradient = None if shade is None else gradient_of(shade, fill, body.region)
-    for face in body.region.faces:
-        yield Area(face, fill, ink, opacity=_opacity(body.style), gradient=gradient)
+    return _filled(body.region, body.style, body.style.color or themes.body_fill(index), size)
+
+
+def _filled(region: Region, style: Style, fill: str, size: float) -> Iterator[Area]:
+    """Yields the faces of a region with their outlines."""
+    ink = None if style.is_unlined else _line(style, _outline_color(style), OUTLINE_WIDTH, size)
+    gradient = None if style.shade is None else gradient_of(style.shade, fill, region)
+    for face in region.faces:
+        yield Area(face, fill, ink, opacity=_opacity(style), gradient=gradient)
 
 
 def _outline_color(style: Style) -> str:
@@ -193,6 +195,9 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     color = style.color or themes.OUTLINE
     if stroke.over is not None:
         color = themes.contrasting(stroke.over) if stroke.faces else themes.etched(stroke.over)
+    if stroke.is_area:
+        yield from _filled(Region(stroke.faces), style, color, size)
+        return
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)
         return

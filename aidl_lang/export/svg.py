@@ -282,12 +282,11 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
     """Returns the picture as an SVG document in its true size, or so many pixels wide and high. Its
     coordinates are in `units`.
     """
-    svg = svgwrite()
     if units != "mm":
         picture = scaled(picture, 1 / UNITS[units])
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
-    document = svg.Drawing(
+    document = svgwrite().Drawing(
         size=pixels or (f"{width}{units}", f"{height}{units}"),
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
@@ -295,14 +294,14 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
     boxes = dict.fromkeys(group.clip for group in picture.groups if group.clip is not None)
     clips = {box: f"clip-{k}" for k, box in enumerate(boxes, 1)}
     for clip, name in clips.items():
-        path = svg.masking.ClipPath(id=name, debug=False)
-        path.add(_rectangle(clip, svg))
+        path = document.clipPath(id=name)
+        path.add(_rectangle(clip, document))
         document.defs.add(path)
     shades = _shades(picture)
     for gradient, name in shades.items():
-        document.defs.add(_gradient(gradient, name, svg))
+        document.defs.add(_gradient(gradient, name, document))
     for group in picture.groups:
-        element = _group(svg, group, shades)
+        element = _group(document, group, shades)
         if group.clip is not None:
             element["clip-path"] = f"url(#{clips[group.clip]})"
         document.add(element)
@@ -322,11 +321,11 @@ def _shades(picture: Picture) -> dict[Gradient, str]:
 def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
     (x0, y0), (x1, y1) = gradient.start, gradient.end
     start, end = (fixed(x0), fixed(-y0)), (fixed(x1), fixed(-y1))
-    looks = {"id": name, "gradientUnits": "userSpaceOnUse", "debug": False}
+    looks = {"id": name, "gradientUnits": "userSpaceOnUse"}
     made = (
-        svg.gradients.LinearGradient(start, end, **looks)
+        svg.linearGradient(start, end, **looks)
         if gradient.radius is None
-        else svg.gradients.RadialGradient(start, fixed(gradient.radius), **looks)
+        else svg.radialGradient(start, fixed(gradient.radius), **looks)
     )
     if gradient.height != 1:
         made["gradientTransform"] = (
@@ -339,7 +338,7 @@ def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
 
 def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
     attributes = {key: _clean(value) for key, value in group.attributes.items()}
-    element = svg.container.Group(id=_clean(group.name), debug=False)
+    element = svg.g(id=_clean(group.name))
     element.attribs.update(attributes)
     for mark in group.marks:
         checkpoint()
@@ -365,13 +364,13 @@ def _(mark: Area, svg: Any) -> Any:
     if mark.opacity != 1:
         looks["fill_opacity"] = fixed(mark.opacity)
     looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
-    return svg.path.Path(d=face_path(mark.face), **looks, **_role(mark.role), debug=False)
+    return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
 
 
 @_element.register
 def _(mark: Curves, svg: Any) -> Any:
     looks = {"fill": "none"} | _looks(mark.ink)
-    return svg.path.Path(d=open_path(mark.pieces), **looks, **_role(mark.role), debug=False)
+    return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
 
 
 def _role(role: str) -> dict[str, str]:
@@ -401,14 +400,14 @@ def _(mark: Text, svg: Any) -> Any:
     at = (fixed(mark.at[0]), fixed(-mark.at[1]))
     if mark.angle:
         looks["transform"] = f"rotate({fixed(-mark.angle)} {at[0]} {at[1]})"
-    text = svg.text.Text(_clean(mark.text), insert=at, **looks, debug=False)
+    text = svg.text(_clean(mark.text), insert=at, **looks)
     if not mark.halo:
         return text
     # The halo is a text of its own below: not every renderer knows `paint-order`.
     looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke_width": fixed(0.22 * mark.size)}
-    halo = svg.text.Text(_clean(mark.text), insert=at, stroke_linejoin="round", **looks, debug=False)
+    halo = svg.text(_clean(mark.text), insert=at, stroke_linejoin="round", **looks)
     halo["aria-hidden"] = "true"
-    both = svg.container.Group(debug=False)
+    both = svg.g()
     both.add(halo)
     both.add(text)
     return both
@@ -416,13 +415,12 @@ def _(mark: Text, svg: Any) -> Any:
 
 @_element.register
 def _(mark: Dot, svg: Any) -> Any:
-    return svg.shapes.Circle(
+    return svg.circle(
         center=(fixed(mark.at[0]), fixed(-mark.at[1])),
         r=fixed(mark.radius),
         fill=mark.color,
         stroke="#ffffff",
         stroke_width=fixed(0.3 * mark.radius),
-        debug=False,
     )
 
 
@@ -435,4 +433,4 @@ def _(mark: Frame, svg: Any) -> Any:
 def _rectangle(box: Bounds, svg: Any, **looks: str) -> Any:
     left, bottom, right, top = box
     insert, size = (fixed(left), fixed(-top)), (fixed(right - left), fixed(top - bottom))
-    return svg.shapes.Rect(insert=insert, size=size, **looks, debug=False)
+    return svg.rect(insert=insert, size=size, **looks)

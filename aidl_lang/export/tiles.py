@@ -19,7 +19,7 @@ from aidl_lang.export import ExportError, themes
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.sections import in_polygon
+from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
 
 MARGIN = 10.0
@@ -179,7 +179,7 @@ class _Shape:
         if any(_reaches(line, low - self._air, high + self._air) for line in self._lines):
             return True
         middle = (low + high)[None] / 2  # no outline in sight: all of the window is inside, or nothing is
-        return sum(int(in_polygon(polygon, middle)[0]) for polygon in self._filled) % 2 == 1
+        return sum(int(inside([polygon], middle)[0]) for polygon in self._filled) % 2 == 1
 
 
 def _reaches(line: Polygon, low: Polygon, high: Polygon) -> bool:

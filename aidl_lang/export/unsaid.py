@@ -8,25 +8,28 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import fixed, listed, named, ticked
 from aidl_lang.export import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
-from aidl_lang.geometry.styles import is_unlined
+from aidl_lang.geometry.styles import is_filled, is_unlined
 
 _NAMED = 6
 _UNLINED = "stroke(none)"
+_AREA = "color(…)"
+"""That of an area of a solid or a drawing, by itself."""
 _WITHOUT: Mapping[str, str] = {
     "stroke": "cutter .step .stl .3mf",
     "dash": "cutter .step .stl .3mf",
     "opacity": "cutter .stl .dxf",
     "shade": "cutter .step .stl .3mf .dxf",
     _UNLINED: ".dxf",
+    _AREA: ".step .stl .3mf",
     "edges": "cutter .step .stl .3mf .dxf",
     "halo": "cutter .step .stl .3mf .dxf",
 }
 """By attribute, or one as written, the files that have no place for it; all others are drawn so."""
 _WHY: Mapping[str, str] = {
     "cutter": "a cutter follows whole lines of one width, and fills nothing",
-    ".step": "STEP holds shapes with their colours, and its lines have no width",
+    ".step": "STEP holds shapes with their colours, and its lines no width and no areas",
     ".stl": "STL holds bare shapes",
-    ".3mf": "3MF holds solids with their colours, and draws no lines",
+    ".3mf": "3MF holds solids with their colours, and draws nothing on them",
     ".dxf": "DXF holds outlines, and nothing is filled",
 }
 
@@ -118,6 +121,8 @@ def _layers(names: Sequence[str]) -> str:
 
 
 def _states(holder: SolvedStructure | SolvedGeometry, name: str) -> bool:
+    if name == _AREA:
+        return isinstance(holder, SolvedGeometry) and "color" in holder.attributes and is_filled(holder)
     return is_unlined(holder.attributes) if name == _UNLINED else name in holder.attributes
 
 

@@ -20,9 +20,5 @@ def region_alone(root: SolvedStructure, path: str) -> Region:
 
 
 def all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
-    """Yields every piece of geometry under a structure, with the parts of each."""
-    for structure in root.walk():
-        stack = list(structure.drawn)
-        while stack:
-            yield (top := stack.pop())
-            stack.extend(top.parts)
+    """Yields every piece of geometry under a structure, as it is drawn, with the parts of each."""
+    return (g for structure in root.walk() for drawn in structure.drawn for g in drawn.walk())

@@ -11,7 +11,7 @@ draws itself is one more, and its holes cut them all. Where this leaves a choice
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from aidl_lang.common.records import record
@@ -247,9 +247,10 @@ class Bodies:
         """Returns the one mass of a solid; none if its holes take away all of it."""
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
-        after = difference(before, union([c.section for c in cuts]))
+        taken = union([c.section for c in cuts])
+        after = difference(before, taken)
         after = union([after, *(m.section for m in islands)]) if islands else after
-        kept = self._voids(solid, before, cuts)
+        kept = self._voids(solid, before, cuts, taken)
         if islands:
             kept = self._still_open(solid, kept, after, islands)
         for m in children:
@@ -268,17 +269,20 @@ class Bodies:
         """Returns the masses of an assembly, each cut by its holes, and the islands."""
         masses = ([] if own is None else [Mass(structure, own)]) + children
         if cuts:
-            self._voids(structure, union([m.section for m in masses]), cuts)
             taken = union([c.section for c in cuts])
+            self._voids(structure, union([m.section for m in masses]), cuts, taken)
             masses = [replace(m, section=difference(m.section, taken)) for m in masses]
             masses += [island for c in cuts for island in c.islands]
         return [m for m in masses if not m.section.is_empty()]
 
-    def _voids(self, holder: SolvedStructure, material: Section, cuts: Iterable[Cut]) -> list[Void]:
-        """Returns the material that each hole removes; reports holes that remove nothing."""
+    def _voids(
+        self, holder: SolvedStructure, material: Section, cuts: Sequence[Cut], taken: Section
+    ) -> list[Void]:
+        """Returns the material that each hole removes, of all that is taken; reports holes that remove
+        nothing.
+        """
         voids = []
-        cuts = list(cuts)
-        near = _around(material, [hole.section for cut in cuts for hole in cut.holes])
+        near = _around(material, [hole.section for cut in cuts for hole in cut.holes], taken)
         for cut in cuts:
             for hole in cut.holes:
                 removed = intersection(next(near), hole.section)
@@ -308,7 +312,7 @@ class Bodies:
         return kept
 
 
-def _around(material: Section, holes: Sequence[Section]) -> Iterator[Section]:
+def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iterator[Section]:
     """Yields for each hole the material near it, with which it has the same in common as with all of it.
 
     All holes together have in common with the material what they have one by one, in small components.
@@ -316,7 +320,7 @@ def _around(material: Section, holes: Sequence[Section]) -> Iterator[Section]:
     if len(holes) < _FEW_HOLES or material.num_vert() < _FEW_VERTICES:
         yield from (material for _ in holes)
         return
-    parts = intersection(material, union(holes)).decompose()
+    parts = intersection(material, taken).decompose()
     beside: list[list[Section]] = [[] for _ in holes]
     for i, j in near_pairs([s.bounds() for s in (*parts, *holes)], 0.0):
         if i < len(parts) <= j:

@@ -11,26 +11,27 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, part, point
+from aidl_lang.geometry.evaluate import Bounds, bounds, ends, is_closed, locate, part, point
 from aidl_lang.geometry.intersect import Crossing, all_intersections
 from aidl_lang.geometry.nearness import inside, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.separation import Hulls
-from aidl_lang.geometry.tables import Table
+from aidl_lang.geometry.tables import Floats, Table
 from aidl_lang.geometry.tessellate import region_polygons
 
 
 @record(slots=True)
 class Clipped:
-    """The parts of a curve that lie inside; `is_whole` if no part of it lies outside."""
+    """The parts of a curve that lie inside, and the others; `is_whole` if none of these is off the border."""
 
     inner: tuple[Piece, ...]
+    outer: tuple[Piece, ...]
     is_whole: bool
 
 
 @record(slots=True)
-class _Stretch:
+class Stretch:
     """The part of a curve from one cut to the next; its parameters may run past 1 on a closed curve."""
 
     t0: float
@@ -39,22 +40,20 @@ class _Stretch:
     end: Vec
     on_border: bool
 
-
-def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
-    """Returns the parts of curves that lie inside, without what runs along the border."""
-    return [piece for one in clipped_each(curves, region) for piece in one.inner]
+    @property
+    def middle(self) -> float:
+        return (self.t0 + self.t1) / 2
 
 
 def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool = False) -> list[Clipped]:
     """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:
-        return [Clipped((), is_whole=False) for _ in curves]
+        return [Clipped((), (curve,), is_whole=False) for curve in curves]
     boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
     size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
     tolerance = RELATIVE_TOLERANCE * size
-    borders = _borders(curves, region, tolerance)
-    stretches = [_stretches(c, *own, tolerance) for c, own in zip(curves, borders, strict=True)]
-    spots = [point(c, _middle(s)) for c, of in zip(curves, stretches, strict=True) for s in of]
+    stretches = stretches_beside(curves, region.pieces, boxes, tolerance)
+    spots = [point(c, s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
     polygons = region_polygons(region, CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
     return [
@@ -63,12 +62,14 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     ]
 
 
-def _borders(
-    curves: Sequence[Piece], region: Region, tolerance: float
-) -> list[tuple[list[Piece], list[Crossing]]]:
-    """Returns for each curve the pieces of the border that it may meet, and where it does."""
-    every, count = [*curves, *region.pieces], len(curves)
-    near = near_rows([bounds(c) for c in every], tolerance)
+def stretches_beside(
+    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats | Sequence[Bounds], tolerance: float
+) -> list[list[Stretch]]:
+    """Returns for each curve its parts between the places where it meets some borders; `boxes` are those of
+    the curves, then of the borders.
+    """
+    every, count = [*curves, *borders], len(curves)
+    near = near_rows(boxes, tolerance)
     near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
     table = Table(every)
     pairs = Hulls(table, tolerance).meeting(near)
@@ -76,12 +77,12 @@ def _borders(
     for (i, j), crossings in zip(pairs.tolist(), all_intersections(table, pairs, tolerance), strict=True):
         found[i][0].append(every[j])
         found[i][1].extend(crossings)
-    return found
+    return [_stretches(c, *own, tolerance) for c, own in zip(curves, found, strict=True)]
 
 
 def _stretches(
     curve: Piece, borders: Sequence[Piece], crossings: Sequence[Crossing], tolerance: float
-) -> list[_Stretch]:
+) -> list[Stretch]:
     """Returns a curve in parts between the places where it meets the border."""
     checkpoint()
     cuts = [(t, p) for t, _, p in crossings]
@@ -107,30 +108,29 @@ def _stretches(
 
 def _stretch(
     curve: Piece, t0: float, start: Vec, t1: float, end: Vec, borders: Sequence[Piece], tolerance: float
-) -> _Stretch:
+) -> Stretch:
     middle = point(curve, (t0 + t1) / 2)
     on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
-    return _Stretch(t0, t1, start, end, on_border)
-
-
-def _middle(stretch: _Stretch) -> float:
-    return (stretch.t0 + stretch.t1) / 2
+    return Stretch(t0, t1, start, end, on_border)
 
 
 def _clipped(
-    curve: Piece, stretches: Sequence[_Stretch], within: Sequence[bool], with_border: bool
+    curve: Piece, stretches: Sequence[Stretch], within: Sequence[bool], with_border: bool
 ) -> Clipped:
-    inner: list[_Stretch] = []
+    sides: tuple[list[Stretch], list[Stretch]] = ([], [])
     for stretch, is_within in zip(stretches, within, strict=True):
-        if not (with_border if stretch.on_border else is_within):
-            continue
-        if inner and inner[-1].t1 == stretch.t0:
-            before = inner.pop()
-            stretch = _Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
-        inner.append(stretch)
-    if is_closed(curve) and len(inner) > 1 and inner[-1].t1 == inner[0].t0 + 1:
-        last, first = inner.pop(), inner[0]
-        inner[0] = _Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
+        same = sides[0 if (with_border if stretch.on_border else is_within) else 1]
+        if same and same[-1].t1 == stretch.t0:
+            before = same.pop()
+            stretch = Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
+        same.append(stretch)
+    for same in sides if is_closed(curve) else ():
+        if len(same) > 1 and same[-1].t1 == same[0].t0 + 1:
+            last, first = same.pop(), same[0]
+            same[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
     is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
-    pieces = (curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in inner)
-    return Clipped(tuple(pieces), is_whole)
+    inner, outer = (
+        tuple(curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in same)
+        for same in sides
+    )
+    return Clipped(inner, outer, is_whole)

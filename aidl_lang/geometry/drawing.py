@@ -5,9 +5,12 @@ this.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from typing import TypeAlias
+
+import numpy as np
 
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
@@ -18,7 +21,7 @@ from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_cl
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.crossings import crossing_notes
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
+from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, all_bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.imported_notes import finding_notes
@@ -30,20 +33,24 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
+from aidl_lang.geometry.letters import lettering
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
+from aidl_lang.geometry.network import GRID, Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
 from aidl_lang.geometry.overhanging import overhanging_notes
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.seams import inner_seams, visible_seams
+from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.stacking import idle_orders, stacked
-from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
+from aidl_lang.geometry.styles import Style, idle_areas, idle_looks, is_filled, styled, styles_of
+from aidl_lang.geometry.tessellate import region_polygons
 from aidl_lang.geometry.trace import Traced, trace, trace_all
 from aidl_lang.geometry.tracing import ENGRAVED
 
 SLIT = "slit"
+_Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
 
 
 @record()
@@ -77,7 +84,8 @@ class Stroke:
     `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
     `over`: the colour of what it lies on, where it
     has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
-    which is filled where it can be; `pieces` are their outlines.
+    or an area with a look of its own (`is_area`), which is filled where it can be; `pieces` are their
+    outlines.
     """
 
     path: str
@@ -87,6 +95,21 @@ class Stroke:
     role: str = "drawing"
     over: str | None = None
     faces: tuple[Face, ...] = ()
+    is_area: bool = False
+
+
+@record()
+class _Area:
+    """An area with a look of its own: as a section on the grid of the network, and as a region; and what of
+    its geometry bounds nothing.
+    """
+
+    section: Section
+    region: Region
+    loose: tuple[Piece, ...] = ()
+
+
+_Areas: TypeAlias = Mapping[str, _Area]
 
 
 @record()
@@ -143,9 +166,10 @@ class Findings:
 def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     """Returns the drawing of a model, and diagnostics on its curves and parts."""
     root, unusable = model.root, list[Diagnostic]()
-    curves, boxes, shapes, engraved = _collect(root, unusable)
+    (curves, boxes), ink, shapes, engraved = _collect(root, unusable)
     clips, around = clip_shapes(root, len(curves))
-    network = Network([*curves, *around], [*boxes, *map(bounds, around)])
+    boxes += map(bounds, around)
+    network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
     network, walk, masses, traced, gaps = _closed(root, network, shapes, clips, blind)
@@ -159,6 +183,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
+        if m.inner
         for path, pieces in visible_seams(network, m, traced)
     )
     asked = {path: faces for path, faces in walk.faces.items() if styles[path].has_seams}
@@ -169,17 +194,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     )
     order = {structure.path: place for place, structure in enumerate(stacked(root))}
     lying = [
-        StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
+        StackedBody(b.path, order[b.path], b.style.color, m.section, b.region, b.box, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
-    drawings = [s.path for s in root.walk() if s.kind == "drawing"]
-    on_parts = [shape for path in drawings for shape in shapes[path]] + [
-        s for e in engraved.values() for s in e
-    ]
-    inked = [number for shape in on_parts for number in shape.numbers]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
-    unseen: list[Diagnostic] = []
-    strokes = tuple(_strokes(root, shapes, engraved, walk, styles, regions, ground, unseen))
+    material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
+    areas = dict(_areas(root, shapes, network, material, ink[0]))
+    lying += _lying_areas(stacked(root), styles, areas)
+    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
+    strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
@@ -192,11 +214,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop) and styles[f.structure.path].has_seams):
+            is_seen = isinstance(f, InnerLoop) and (
+                styles[f.structure.path].has_seams or any(map(is_filled, f.face.geometries))
+            )
+            if not is_seen:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += loose_piece_notes(root, walk, masses, solids, touching.near())
-        notes += unseen
+        notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground, order)
         notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
@@ -204,13 +229,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             from aidl_lang.geometry.thin import thin_wall_notes
 
             notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
-        notes += idle_looks(root, paths, styles)
+        loose = {g.path for f in walk.findings if isinstance(f, LooseCurves) for g, _ in f.curves}
+        notes += [*idle_looks(root, paths, styles), *idle_areas(root, areas, loose)]
         notes += idle_orders(root, paths)
         return ordered(by_statement([*notes, *empty]))
 
     plans = tuple(_plans(root))
     boxes = [b.box for b in bodies]
-    boxes += [bounds(piece) for s in strokes for piece in s.pieces]
+    boxes += all_bounds(piece for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
     return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
@@ -228,7 +254,7 @@ def _closed(
     found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
-        joined = Network(without_gaps(network.curves, gaps))
+        joined = Network(without_gaps(network.curves, gaps), box=network.box)
         then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
@@ -258,12 +284,13 @@ def _arranged(
 
 def _collect(
     root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]], dict[str, list[Shape]]]:
-    """Returns all curves that can be drawn, numbered, their boxes, and by structure the shapes they belong
-    to, and the outlines that a file says are engraved.
+) -> tuple[_Curves, _Curves, dict[str, list[Shape]], dict[str, list[Shape]]]:
+    """Returns all curves that can be drawn, numbered, with their boxes: those that bound material, and those
+    of strokes, which nothing is cut by. And by structure the shapes they belong to, and the outlines that a
+    file says are engraved.
     """
-    curves: list[Piece] = []
-    boxes: list[Bounds] = []
+    solid: _Curves = ([], [])
+    ink: _Curves = ([], [])
     shapes: dict[str, list[Shape]] = {}
     engraved: dict[str, list[Shape]] = {}
     for structure in root.walk():
@@ -275,14 +302,16 @@ def _collect(
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            for leaf in _leaves(geometry):
-                usable = _usable(leaf.curve) if leaf.curve else None
-                if usable is None:
+            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
+            around = iter(all_bounds(curve for _, curve in found if curve is not None))
+            for leaf, curve in found:
+                if curve is None or not _has_extent(box := next(around)):
                     vanished.append(leaf)
                     continue
+                curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
                 leaves.append((leaf, len(curves)))
-                curves.append(usable[0])
-                boxes.append(usable[1])
+                curves.append(curve)
+                boxes.append(box)
             numbers = {id(leaf): (leaf, number) for leaf, number in leaves}
             engraved.setdefault(structure.path, []).extend(
                 Shape(part, tuple(numbers[id(leaf)] for leaf in part.parts if id(leaf) in numbers))
@@ -295,7 +324,7 @@ def _collect(
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
-    return curves, boxes, shapes, engraved
+    return solid, ink, shapes, engraved
 
 
 def _has_strokes(geometry: SolvedGeometry) -> bool:
@@ -303,20 +332,8 @@ def _has_strokes(geometry: SolvedGeometry) -> bool:
     return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
 
 
-def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
-    """Yields the primitives with curves, construction geometry aside."""
-    if geometry.construction:
-        return
-    if geometry.curve is not None:
-        yield geometry
-    for part in geometry.parts:
-        yield from _leaves(part)
-
-
-def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
-    """Returns the curve with positive radii, and its box; None if it has no extent or no finite
-    coordinates.
-    """
+def _usable(curve: Piece) -> Piece | None:
+    """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
     if not is_finite(curve):
         return None
     if isinstance(curve, Circle):
@@ -327,12 +344,14 @@ def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
         curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
     if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
         return None
-    if isinstance(curve, Circle | Arc) and not curve.radius > 0:
-        return None
-    box = bounds(curve)
+    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
+
+
+def _has_extent(box: Bounds) -> bool:
+    """Tells whether a curve can be drawn that has this box."""
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
-        return None
-    return (curve, box) if math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH else None
+        return False
+    return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
@@ -367,10 +386,10 @@ def _strokes(
     shapes: dict[str, list[Shape]],
     engraved: dict[str, list[Shape]],
     walk: Bodies,
+    areas: _Areas,
     styles: dict[str, Style],
     regions: dict[str, Region],
     ground: Ground,
-    notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
     """Yields the curves of drawings, and those of other structures that bound nothing."""
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
@@ -378,11 +397,15 @@ def _strokes(
     for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
+            yield from _inked(structure, shapes[path], style, ground, place, areas, is_own=path in own)
         for shape in engraved.get(path, ()):
             look = styled(replace(style, color=None), shape.geometry)
-            for pieces, faces in _told_apart([shape], ground.network, is_area=look.is_area):
+            for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
                 yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
+        if structure.kind != "drawing":
+            for geometry in structure.drawn:
+                if geometry.path in areas:
+                    yield from _colored(structure, geometry, style, areas[geometry.path])
         if style.is_blind and path in regions:
             yield Stroke(path, path, regions[path].pieces, style, over=style.color)
         for leaf, number in loose.get(path, ()):
@@ -398,65 +421,140 @@ def _inked(
     shapes: list[Shape],
     style: Style,
     ground: Ground,
-    place: int,
+    place: float,
+    areas: _Areas,
     *,
     is_own: bool,
-    notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """Yields the strokes of a drawing; reports those in the colour of what they lie on, and those under a
-    body unless others of the same array are seen.
-    """
-    lost: dict[str, list[str]] = {}
-    covered: dict[str, list[str]] = {}
-    seen: set[str] = set()
+    """Yields the strokes of a drawing."""
     alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
-        numbers = shape.numbers
-        hidden = ground.hides(look.color, numbers, place)
-        if (by := ground.covering(numbers, place)) is not None:
-            covered.setdefault(by, []).append(shape.geometry.name)
-        else:
-            seen.add(shape.geometry.name.partition("[")[0])
-        if by is None and shape.geometry.type == LETTERING:
-            share, over_it = ground.covered_part(numbers, place)
-            if share >= COVERED:
-                notes.append(lettering_note(drawing, shape.geometry, share, over_it))
-        if is_asked and look.color and hidden and all(hidden):
-            lost.setdefault(look.color, []).append(shape.geometry.name)
-        over = look.color if any(hidden) and not is_asked else None
+        is_hidden = not is_asked and ground.hides(look.color, shape.numbers, place, wholly=False)
+        over = look.color if is_hidden else None
         # What is engraved as areas is one area, the rest a stroke for each shape.
         alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
     for (look, over, _), together in alike.items():
-        for pieces, faces in _told_apart(together, ground.network, is_area=look.is_area):
-            yield Stroke(drawing.path, together[0].geometry.path, pieces, look, over=over, faces=faces)
-    notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
-    for by, names in covered.items():
-        if whole := [name for name in names if name.partition("[")[0] not in seen]:
-            notes.append(covered_note(drawing, whole, by))
+        geometry = together[0].geometry
+        if geometry.path in areas and not look.is_area:
+            yield from _colored(drawing, geometry, style, areas[geometry.path])
+            continue
+        for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
+            yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
+
+
+def _unseen(
+    root: SolvedStructure, shapes: dict[str, list[Shape]], styles: dict[str, Style], ground: Ground
+) -> Iterator[Diagnostic]:
+    """Yields warnings on strokes in the colour of what they lie on, and on those under a body unless others
+    of the same array are seen.
+    """
+    own = _colored_drawings(root)
+    drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
+    for at, drawing in drawings:
+        lost: dict[str, list[str]] = {}
+        covered: dict[str, list[str]] = {}
+        seen: set[str] = set()
+        places = _places(drawing, at)
+        for shape in shapes[drawing.path]:
+            look, numbers = styled(styles[drawing.path], shape.geometry), shape.numbers
+            place = places[shape.geometry.path]
+            if (by := ground.covering(numbers, place)) is not None:
+                covered.setdefault(by, []).append(shape.geometry.name)
+            else:
+                seen.add(shape.geometry.name.partition("[")[0])
+            if by is None and shape.geometry.type == LETTERING:
+                share, over_it = ground.covered_part(numbers, place)
+                if share >= COVERED:
+                    yield lettering_note(drawing, shape.geometry, share, over_it)
+            is_asked = drawing.path in own or "color" in shape.geometry.attributes
+            if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
+                lost.setdefault(look.color, []).append(shape.geometry.name)
+        yield from (unseen_note(drawing, names, color) for color, names in lost.items())
+        for by, names in covered.items():
+            if whole := [name for name in names if name.partition("[")[0] not in seen]:
+                yield covered_note(drawing, whole, by)
+
+
+def _areas(
+    root: SolvedStructure,
+    shapes: dict[str, list[Shape]],
+    network: Network,
+    material: dict[str, Section],
+    ink: Sequence[Piece],
+) -> Iterator[tuple[str, _Area]]:
+    """Yields the areas with looks of their own, with the path of the geometry: what it encloses, in a body of
+    its material.
+    """
+    for structure in root.walk():
+        of = material.get(structure.path, fill([], "NonZero"))
+        for shape in shapes[structure.path] if structure.kind != "hole" else ():
+            if not is_filled(shape.geometry):
+                continue
+            loose: tuple[Piece, ...] = ()
+            if structure.kind == "drawing":
+                found = list(_told_apart([shape], ink, is_area=True))
+                region = Region(next((faces for _, faces in found if faces), ()))
+                loose = next((lines for lines, faces in found if not faces), ())
+                polygons = map(np.array, region_polygons(region, network.tolerance))
+                section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
+            else:
+                section = intersection(union_of(own_faces(network, [shape]).faces), of)
+                region = trace(network, section).region
+            if region:
+                yield shape.geometry.path, _Area(section, region, loose)
+
+
+def _lying_areas(
+    order: Iterable[SolvedStructure], styles: dict[str, Style], areas: _Areas
+) -> Iterator[StackedBody]:
+    """Yields the areas as what others lie on."""
+    for at, structure in enumerate(order):
+        places = _places(structure, at)
+        for g in structure.drawn:
+            if (area := areas.get(g.path)) is not None:
+                look, box = styled(styles[structure.path], g), region_bounds(area.region)
+                section, region = area.section, area.region
+                yield StackedBody(g.path, places[g.path], look.color, section, region, box, look.is_clear)
+
+
+def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
+    """Returns the places of the geometry of a structure in the order of drawing: above the structure itself,
+    below the next one.
+    """
+    count = len(structure.drawn) + 1
+    return {g.path: at + k / count for k, g in enumerate(structure.drawn, 1)}
+
+
+def _colored(
+    structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
+) -> Iterator[Stroke]:
+    look, region = styled(style, geometry), area.region
+    yield Stroke(structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True)
+    if area.loose:
+        yield Stroke(structure.path, geometry.path, area.loose, look)
 
 
 def _told_apart(
-    shapes: Sequence[Shape], network: Network, *, is_area: bool
+    shapes: Sequence[Shape], curves: Sequence[Piece], *, is_area: bool
 ) -> Iterator[tuple[tuple[Piece, ...], tuple[Face, ...]]]:
     """Yields the lines of shapes, and with its faces the outlines of what is filled of them: letters, what
     closed shapes of a file enclose together, as in a solid, and all that is to be an area.
     """
-    drawn = [(leaf, network.curves[number]) for shape in shapes for leaf, number in shape.leaves]
-    parts = (part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled)
-    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)}
-    inked = [
-        Shape(shape.geometry, tuple((leaf, k) for leaf, k in shape.leaves if id(leaf) in filled))
-        for shape in shapes
-    ]
-    found, before = own_faces(network, [shape for shape in inked if shape.leaves]), len(network.blurred)
-    region, loose = trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
-    if len(network.blurred) > before:  # small ones have crossing chords in a large drawing
-        known = ((s.geometry, [(leaf, network.curves[k]) for leaf, k in s.leaves]) for s in inked)
+    drawn = {id(leaf): curves[number] for shape in shapes for leaf, number in shape.leaves}
+    parts = [part for shape in shapes for part in shape.geometry.walk() if is_area or part.filled]
+    filled = {id(leaf) for part in parts for leaf in (part, *part.parts)} & drawn.keys()
+    letters = [part.walk() for part in parts if part.type == "glyph"]
+    written = [[drawn[id(leaf)] for leaf in letter if id(leaf) in filled] for letter in letters]
+    region = lettering(written) if sum(map(len, written)) == len(filled) > 0 else None
+    if region is None:
+        known = (
+            (s.geometry, [(leaf, curves[k]) for leaf, k in s.leaves if id(leaf) in filled]) for s in shapes
+        )
         region, loose = region_of((g, leaves) for g, leaves in known if leaves)
-    filled -= {id(leaf) for leaf in loose}
-    if lines := tuple(curve for leaf, curve in drawn if id(leaf) not in filled):
+        filled -= {id(leaf) for leaf in loose}
+    if lines := tuple(curve for leaf, curve in drawn.items() if leaf not in filled):
         yield lines, ()
     if region:
         yield region.pieces, region.faces
@@ -475,4 +573,4 @@ def _colored_drawings(root: SolvedStructure) -> set[str]:
 def _plans(root: SolvedStructure) -> Iterator[PlanBox]:
     for structure in root.walk():
         if structure.is_empty and (box := structure.box) is not None:
-            yield PlanBox(structure.path, structure.name, (box.left, box.bottom, box.right, box.top))
+            yield PlanBox(structure.path, structure.name, box.bounds)

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from aidl_lang.geometry.boolean import common, section_of, without
+from aidl_lang.geometry.boolean import common, without
+from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import SLIT, Body, Stroke
-from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds
+from aidl_lang.geometry.evaluate import NO_LENGTH, are_near, bounds
 from aidl_lang.geometry.measures import length
-from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.overhanging import Holders
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import inside_mask
 
 
 def engraved(
@@ -60,7 +58,7 @@ def _cut_off(stroke: Stroke, region: Region) -> tuple[Stroke | None, Stroke | No
 def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
     """Returns the bodies under a stroke, first the one that has most of it."""
     box = union_bounds([bounds(piece) for piece in stroke.pieces])
-    near = [body for body in reversed(bodies) if boxes_meet(box, body.box)]
+    near = [body for body in reversed(bodies) if are_near(box, body.box)]
     if len(near) < 2:
         return near
     cover = {body.path: _length(divided(stroke.pieces, body.region)[0]) for body in near}
@@ -71,25 +69,8 @@ def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...],
     """Returns the parts of curves in a region or on its edge, and those outside; uncut curves stay as they
     were.
     """
-    outline = [p for loop in region.loops for p in loop.pieces]
-    network = Network([*outline, *curves])
-    own, others = network.uses[: len(outline)], network.uses[len(outline) :]
-    edges = sorted({edge for uses in others for edge, _ in uses})
-    mask = inside_mask(section_of(network, region, 0), network.midpoints(edges))
-    within = {edge for uses in own for edge, _ in uses} | {edges[k] for k in np.flatnonzero(mask)}
-    inside: list[Piece] = []
-    outside: list[Piece] = []
-    for curve, uses in zip(curves, others, strict=True):
-        if len({edge in within for edge, _ in uses}) == 1:
-            (inside if uses[0][0] in within else outside).append(curve)
-            continue
-        for use in uses:
-            (inside if use[0] in within else outside).append(network.piece(use))
-    return tuple(inside), tuple(outside)
-
-
-def boxes_meet(a: Bounds, b: Bounds) -> bool:
-    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+    found = clipped_each(curves, region, with_border=True)
+    return tuple(p for one in found for p in one.inner), tuple(p for one in found for p in one.outer)
 
 
 def _length(pieces: Sequence[Piece]) -> float:

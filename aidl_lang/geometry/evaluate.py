@@ -7,6 +7,8 @@ its rightmost point), through the eccentric anomaly of an ellipse, and the usual
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from operator import attrgetter
 
@@ -28,6 +30,8 @@ from aidl_lang.geometry.curves import (
 
 TAU = 2 * math.pi
 _SAMPLES = 32
+_MANY = 16
+"""Curves from which on it takes less to work them out at once."""
 Bounds = tuple[float, float, float, float]
 
 LARGEST = 1e12
@@ -40,11 +44,12 @@ NO_LENGTH = 1e-7
 _VALUES = {kind: attrgetter(*names) for kind, names in FIELDS.items()}
 
 
-def is_finite(curve: Piece) -> bool:
-    """Tells whether every number of the curve is finite."""
-    return all(
-        math.isfinite(n) for v in _VALUES[type(curve)](curve) for n in (v if isinstance(v, tuple) else (v,))
-    )
+def is_finite(curve: Piece, most: float = sys.float_info.max) -> bool:
+    """Tells whether every number of the curve is finite, and no larger than that."""
+    for value in _VALUES[type(curve)](curve):
+        if not (max(map(abs, value)) <= most if isinstance(value, tuple) else abs(value) <= most):
+            return False
+    return True
 
 
 def is_closed(curve: Piece) -> bool:
@@ -240,6 +245,31 @@ def bounds(curve: Piece) -> Bounds:
     spots = [*ends(curve), *(point(curve, t) for t in ts)]
     xs, ys = [p[0] for p in spots], [p[1] for p in spots]
     return min(xs), min(ys), max(xs), max(ys)
+
+
+def are_near(a: Bounds, b: Bounds) -> bool:
+    """Tells whether two boxes touch or overlap."""
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
+def all_bounds(curves: Iterable[Piece]) -> list[Bounds]:
+    """Returns the bounding box of each of some curves; those of many cubics are worked out at once."""
+    every = list(curves)
+    cubics = [k for k, curve in enumerate(every) if isinstance(curve, Bezier)]
+    if len(cubics) < _MANY:
+        return [bounds(curve) for curve in every]
+    p = np.array([_VALUES[Bezier](every[k]) for k in cubics]).transpose(1, 0, 2)
+    a, b, c = p[3] - 3 * p[2] + 3 * p[1] - p[0], 2 * (p[2] - 2 * p[1] + p[0]), p[1] - p[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        q = -(b + np.copysign(np.sqrt(b * b - 4 * a * c), b)) / 2
+        is_flat = np.abs(a) <= 1e-14 * (np.abs(b) + np.abs(c))
+        t = np.stack((np.where(is_flat, -c / b, q / a), c / q))
+    t = np.where((t > 0) & (t < 1), t, 0.0)
+    s = 1 - t
+    extremes = s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3]
+    spots = np.concatenate((extremes, p[:1], p[3:]))
+    boxes = iter(np.concatenate((spots.min(axis=0), spots.max(axis=0)), axis=1).tolist())
+    return [tuple(next(boxes)) if isinstance(curve, Bezier) else bounds(curve) for curve in every]
 
 
 def extreme_parameters(curve: Piece) -> list[float]:

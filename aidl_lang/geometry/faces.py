@@ -22,6 +22,7 @@ from aidl_lang.geometry.network import Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.solved import SolvedGeometry
+from aidl_lang.geometry.tessellate import polygon_area
 from aidl_lang.geometry.trace import trace
 from aidl_lang.geometry.tracing import CONTOURS, Crossing, enclosed
 
@@ -219,7 +220,7 @@ def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.fl
             use = turn[use]
         polygons.append(network.polyline(cycle))
     bounding = {edge for edge in edges if cycle_of[edge, True] != cycle_of[edge, False]}
-    return [p[::-1] for p in polygons if _signed_area(p) < 0], bounding
+    return [p[::-1] for p in polygons if polygon_area(p) < 0], bounding
 
 
 def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
@@ -243,11 +244,6 @@ def _direction(network: Network, use: Use) -> float:
     target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
     dx, dy = target - network.node_grid[first_node(network, use)]
     return math.atan2(dy, dx)
-
-
-def _signed_area(polygon: NDArray[np.float64]) -> float:
-    x, y = polygon[:, 0] - polygon[0, 0], polygon[:, 1] - polygon[0, 1]
-    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
 
 
 def _chain_free(

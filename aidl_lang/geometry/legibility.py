@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,9 +12,12 @@ from aidl_lang.common.colors import look_alike
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.clipping import stretches_beside
+from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.evaluate import Bounds, are_near, part, point
 from aidl_lang.geometry.measures import length
-from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.network import GRID, Network, union_bounds
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -38,64 +41,68 @@ class StackedBody:
     """
 
     path: str
-    place: int
+    place: float
     color: str | None
     section: Section
+    region: Region
     box: Bounds
     is_clear: bool = False
 
 
 @record()
 class Ground:
-    """The bodies that strokes lie on, or under, from back to front. `inked` are the curves of all strokes."""
+    """The bodies that strokes lie on, or under, from back to front. `curves` are those of all strokes, which
+    go by their numbers; `boxes` are theirs.
+    """
 
     network: Network
     bodies: Sequence[StackedBody]
-    inked: Sequence[int]
+    curves: Sequence[Piece]
+    boxes: Sequence[Bounds]
 
-    def hides(self, color: str | None, curves: Sequence[int], place: int) -> list[bool]:
-        """Returns for each edge of some curves drawn at a place whether the body below has nearly their
-        colour.
+    def hides(self, color: str | None, curves: Sequence[int], place: float, *, wholly: bool) -> bool:
+        """Tells whether the body below some curves drawn at a place has nearly their colour: all along them,
+        or else somewhere.
         """
-        if color is None or not any(look_alike(known, color) for known in self._colors):
-            return []
-        count = bisect_left(self._places, place)
-        below = [[k for k in self._within[edge] if k < count] for edge in self._edges(curves)]
-        return [bool(under) and self._is_alike(under[-1], color) for under in below]
+        below = self._around(curves, range(bisect_left(self._places, place)))
+        seen = ((k, self.bodies[k].color) for k in below)
+        alike = {k for k, own in seen if own is not None and color is not None and look_alike(own, color)}
+        if not alike:
+            return False
+        asked = all if wholly else any
+        found = asked(bool(on) and on[-1] in alike for on in self._holders(self._middles(curves), below))
+        if found is wholly:  # by the middles alone it may still be otherwise
+            return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
+        return found
 
-    def _is_alike(self, body: int, color: str) -> bool:
-        own = self.bodies[body].color
-        return own is not None and look_alike(own, color)
-
-    def covering(self, curves: Sequence[int], place: int) -> str | None:
+    def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
-        first = bisect_right(self._places, place)
-        if not curves or first == len(self.bodies):
-            return None
-        box = union_bounds([self.network.boxes[curve] for curve in curves])
-        over = {k for k in range(first, len(self.bodies)) if not self.bodies[k].is_clear}
-        for edge in self._edges(curves):
-            over.intersection_update(self._within[edge])
-        return next(
-            (b.path for b in map(self.bodies.__getitem__, sorted(over)) if _lies_within(box, b.box)), None
-        )
+        box = union_bounds([self.boxes[curve] for curve in curves])
+        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
+        over = [k for k in over if all(self._holders(self._middles(curves), [k]))]
+        within = [on for _, on in self._parts(curves, over)]
+        return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
 
-    def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
+    def covered_part(self, curves: Sequence[int], place: float) -> tuple[float, list[str]]:
         """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
         bodies.
         """
-        first, edges = bisect_right(self._places, place), self._edges(curves)
-        above = [
-            [k for k in self._within[edge] if k >= first and not self.bodies[k].is_clear] for edge in edges
-        ]
-        if not any(above):
-            return 0.0, []
-        lengths = [length(self.network.piece((edge, True))) for edge in edges]
-        by = sorted({k for over, long in zip(above, lengths, strict=True) for k in over if long > 0})
-        covered = sum(long for over, long in zip(above, lengths, strict=True) if over)
-        return covered / (sum(lengths) or 1.0), [self.bodies[k].path for k in by]
+        parts = [(length(piece), over) for piece, over in self._parts(curves, self._above(curves, place))]
+        by = sorted({k for long, over in parts for k in over if long > 0})
+        covered = sum(long for long, over in parts if over)
+        return covered / (sum(long for long, _ in parts) or 1.0), [self.bodies[k].path for k in by]
 
-    def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
+    def _above(self, curves: Sequence[int], place: float) -> list[int]:
+        """Returns the bodies that are drawn over a place and may hide some curves."""
+        later = range(bisect_right(self._places, place), len(self.bodies))
+        return self._around(curves, [k for k in later if not self.bodies[k].is_clear])
+
+    def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
+        """Returns those of some bodies whose boxes meet that of some curves."""
+        box = union_bounds([self.boxes[curve] for curve in curves])
+        return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
+
+    def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
         faces is an inlay and shows them.
         """
@@ -106,31 +113,36 @@ class Ground:
         hidden = intersection(union([b.section for b in above]), faces) if by else None
         return (hidden.area() / faces.area() if hidden is not None else 0.0), by
 
-    def _edges(self, curves: Sequence[int]) -> list[int]:
-        return [edge for curve in curves for edge, _ in self.network.uses[curve]]
-
     @cached_property
-    def _places(self) -> list[int]:
+    def _places(self) -> list[float]:
         return [body.place for body in self.bodies]
 
-    @cached_property
-    def _colors(self) -> set[str]:
-        return {body.color for body in self.bodies if body.color is not None}
+    def _parts(self, curves: Sequence[int], bodies: Sequence[int]) -> list[tuple[Piece, list[int]]]:
+        """Returns the parts of some curves between the outlines of some bodies, each with those of these that
+        it lies in; none without bodies.
+        """
+        if not bodies:
+            return []
+        own, boxes = [self.curves[k] for k in curves], [self.boxes[k] for k in curves]
+        outlines = [self.bodies[k].region for k in bodies]
+        around = union_bounds(boxes)
+        near = [(p, b) for r in outlines for p, b in zip(r.pieces, r.boxes.tolist(), strict=True)]
+        near = [(p, b) for p, b in near if are_near(around, b)]
+        boxes += [b for _, b in near]
+        cut = stretches_beside(own, [p for p, _ in near], boxes, self.network.tolerance)
+        parts = [(curve, stretch) for curve, of in zip(own, cut, strict=True) for stretch in of]
+        holders = self._holders([point(curve, stretch.middle) for curve, stretch in parts], bodies)
+        pieces = (part(c, s.t0, s.t1, s.start, s.end) for c, s in parts)
+        return list(zip(pieces, holders, strict=True))
 
-    @cached_property
-    def _within(self) -> dict[int, list[int]]:
-        """The numbers of the bodies that the middle of each edge of a stroke lies in."""
-        edges = sorted(set(self._edges(self.inked)))
-        found: dict[int, list[int]] = {edge: [] for edge in edges}
-        spots = self.network.midpoints(edges)
-        order = np.argsort(spots[:, 0], kind="stable")
-        along = spots[order, 0]
-        for number, body in enumerate(self.bodies):
-            left, _, right, _ = body.section.bounds()
-            beside = order[np.searchsorted(along, left) : np.searchsorted(along, right, side="right")]
-            for k in beside[inside_mask(body.section, spots[beside])].tolist():
-                found[edges[k]].append(number)
-        return found
+    def _middles(self, curves: Sequence[int]) -> list[Vec]:
+        return [point(self.curves[k], 0.5) for k in curves]
+
+    def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
+        """Returns for each spot those of some bodies that it lies in."""
+        on_grid = self.network.to_grid(np.array(spots)) * np.float64(GRID)
+        within = np.array([inside_mask(self.bodies[k].section, on_grid) for k in bodies])
+        return [[k for k, is_in in zip(bodies, of, strict=True) if is_in] for of in within.T.tolist()]
 
 
 def _lies_within(inner: Bounds, outer: Bounds) -> bool:
@@ -141,7 +153,9 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
     """Returns the diagnostic on curves of a drawing that a later body covers."""
     around, _, name = by.rpartition(".")
     hint = f"write the drawing below `{name}`, or inside it"
-    if around == drawing.path.rpartition(".")[0]:
+    if around == drawing.path:
+        hint = f"write {'it' if len(names) == 1 else 'them'} below `{name}`"
+    elif around == drawing.path.rpartition(".")[0]:
         hint += f", or say `@in_front({name})` before it"
     return Diagnostic(
         "W0709",

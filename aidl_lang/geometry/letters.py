@@ -4,43 +4,45 @@ united; letters of stencils, with bridges to what they enclose.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
-
-import numpy as np
 
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import common, without
 from aidl_lang.geometry.curves import Bezier, Line, Piece
-from aidl_lang.geometry.evaluate import ends, points, reverse
+from aidl_lang.geometry.evaluate import all_bounds, ends, reverse
 from aidl_lang.geometry.measures import loop_area, region_bounds
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.nearness import near_rows
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import fill
-from aidl_lang.geometry.trace import trace
-
-_STEPS = np.linspace(0, 1, 9)
+from aidl_lang.geometry.trace import closed_loop, faces_of, first_point, trace
 
 
-def letter_faces(outline: Sequence[Piece]) -> tuple[Face, ...]:
-    """Returns the faces of one character, whose contours follow one another and alternate where they are
-    nested; none if one of them is open.
+def lettering(letters: Sequence[Sequence[Piece]]) -> Region | None:
+    """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
+    other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
     """
-    checkpoint()
-    contours = list(_contours(outline))
-    if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
-        return ()
-    around = _nesting(contours)
-    holes: dict[int, list[Loop]] = {k: [] for k, outer in enumerate(around) if len(outer) % 2 == 0}
-    for k, outer in enumerate(around):
-        if k not in holes:
-            # Of the contours around a hole that are no holes, the innermost has the most around itself.
-            holder = max((other for other in outer if other in holes), key=lambda other: len(around[other]))
-            holes[holder].append(_turning(contours[k], -1.0))
-    return tuple(Face(_turning(contours[k], 1.0), tuple(inner)) for k, inner in holes.items())
+    boxes = [union_bounds(all_bounds(letter)) for letter in letters]
+    left, bottom, right, top = union_bounds(boxes)
+    tolerance = RELATIVE_TOLERANCE * max(right - left, top - bottom)
+    if len(near_rows(boxes, tolerance)):
+        return None
+    faces: list[Face] = []
+    for letter in letters:
+        checkpoint()
+        contours = list(_contours(letter))
+        if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
+            return None
+        areas = [loop_area(Loop(contour)) for contour in contours]
+        sense = math.copysign(1.0, max(areas, key=abs))
+        turned = [c if sense > 0 else tuple(reverse(piece) for piece in reversed(c)) for c in contours]
+        loops = (closed_loop(contour, tolerance) for contour in turned)
+        faces += faces_of([(sense * area, loop) for area, loop in zip(areas, loops, strict=True)])
+    return Region(tuple(sorted(faces, key=lambda face: first_point(face.outer))))
 
 
 @lru_cache(maxsize=512)
@@ -54,8 +56,7 @@ def united(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
         uses = [[use for number in contour for use in network.uses[number]] for contour in contours]
         return trace(network, fill([network.polyline(u) for u in uses if u], "NonZero")).region
 
-    region = with_finer_chords(network, traced)
-    return tuple(_points(piece) for piece in region.pieces)
+    return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
 
 
 _ROUNDS = 4
@@ -67,7 +68,7 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
     """Returns the outline of a character through which bridges lead to all that it encloses: upright ones of
     that width, above and below the middle of each counter, through the strokes next to it.
     """
-    region = Region(letter_faces([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]))
+    region = lettering([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or Region()
     for wider in range(_ROUNDS):
         counters = [hole for face in region.faces for hole in face.holes]
         if not counters:
@@ -116,24 +117,3 @@ def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
         if is_closed or k + 1 == len(outline) or ends(outline[k + 1])[0] != ends(piece)[1]:
             yield tuple(outline[first : k + 1])
             first = k + 1
-
-
-def _nesting(contours: Sequence[Sequence[Piece]]) -> list[list[int]]:
-    """Returns for each contour the numbers of those that it lies in."""
-    if len(contours) == 1:
-        return [[]]
-    polygons = [np.concatenate([points(piece, _STEPS)[:-1] for piece in contour]) for contour in contours]
-    spots = np.array([polygon[0] for polygon in polygons])
-    within = [inside([polygon], spots) for polygon in polygons]
-    return [
-        [other for other in range(len(contours)) if other != k and within[other][k]]
-        for k in range(len(contours))
-    ]
-
-
-def _turning(contour: tuple[Piece, ...], sense: float) -> Loop:
-    """Returns a contour as a loop, counter-clockwise if `sense` is positive."""
-    loop = Loop(contour)
-    if loop_area(loop) * sense < 0:
-        return Loop(tuple(reverse(piece) for piece in reversed(contour)))
-    return loop

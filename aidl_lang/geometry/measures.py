@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.evaluate import Bounds, all_bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Loop, Region
 
@@ -49,7 +49,7 @@ def measure(region: Region) -> Measures:
 
 
 def region_bounds(region: Region) -> Bounds:
-    return union_bounds([bounds(piece) for face in region.faces for piece in face.outer.pieces])
+    return union_bounds(all_bounds(piece for face in region.faces for piece in face.outer.pieces))
 
 
 def area(region: Region) -> float:
@@ -62,7 +62,12 @@ def perimeter(region: Region) -> float:
 
 def loop_area(loop: Loop) -> float:
     """Returns the area of a loop, positive counter-clockwise."""
-    return loop_moments(loop)[0]
+    start = ends(loop.pieces[0])[0]
+    area = sum(
+        _bezier_area(piece, start) if isinstance(piece, Bezier) else _moments(piece, start)[0]
+        for piece in loop.pieces
+    )
+    return -area if loop.reversed else area
 
 
 def loop_moments(loop: Loop) -> Moments:
@@ -131,6 +136,15 @@ def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
         cross = weight * (x * dy - y * dx)
         a, mx, my = a + cross / 2, mx + cross * x / 3, my + cross * y / 3
     return a, mx, my
+
+
+def _bezier_area(piece: Bezier, origin: Vec) -> float:
+    """Returns the integral of (p x p')/2 by the control points, of which each pair has a share of its own."""
+    ox, oy = origin
+    ax, ay, bx, by = piece.p0[0] - ox, piece.p0[1] - oy, piece.p1[0] - ox, piece.p1[1] - oy
+    cx, cy, dx, dy = piece.p2[0] - ox, piece.p2[1] - oy, piece.p3[0] - ox, piece.p3[1] - oy
+    beside = 6 * (ax * by - ay * bx + cx * dy - cy * dx)
+    return (beside + 3 * (ax * cy - ay * cx + bx * cy - by * cx + bx * dy - by * dx) + ax * dy - ay * dx) / 20
 
 
 def length(piece: Piece) -> float:

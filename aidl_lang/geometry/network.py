@@ -99,12 +99,15 @@ class Network:
 
     A result may have vertices that no curve owns: chords crossed where their curves do not. `blurred` has the
     numbers of these curves; work done by `with_finer_chords` is then begun again with these curves cut finer.
+    `box` is that of the whole drawing, of which these may be a part.
     """
 
-    def __init__(self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None) -> None:
+    def __init__(
+        self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None, box: Bounds | None = None
+    ) -> None:
         self.curves = list(curves)
         self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
-        self.box = union_bounds(self.boxes)
+        self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
         self.size = max(right - left, top - bottom) or 1.0
         self.tolerance = RELATIVE_TOLERANCE * self.size
@@ -178,7 +181,9 @@ class Network:
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
-            whole = is_closed(curve) or (not isinstance(curve, Line) and _extent(curve) > 4 * self.tolerance)
+            left, bottom, right, top = self.boxes[number]
+            is_large = max(right - left, top - bottom) > 4 * self.tolerance
+            whole = is_closed(curve) or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
 
@@ -350,11 +355,6 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
     sweep = abs(round_range(curve)[1]) * share
     step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(radius, chord))))
     return max(2, min(2000, math.ceil(sweep / step)))
-
-
-def _extent(curve: Piece) -> float:
-    left, bottom, right, top = bounds(curve)
-    return max(right - left, top - bottom)
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:

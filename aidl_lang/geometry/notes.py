@@ -58,8 +58,8 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
         tuple(Label(g.span, "already covers it") for g in finding.around[:2] if g.span),
         (
             f"to cut it out, put it into a hole: `{hole}`",
-            "to draw it on top, put it into a `drawing`, in another colour into a `solid` beside this one; "
-            f"{GUIDE}",
+            f'to draw it on top, give it a look of its own, as `@color("gold")` before it, or put it into a '
+            f"`drawing`; {GUIDE}",
         ),
         _wrap_fix(s, face.geometries) if one else None,
     )
@@ -406,7 +406,8 @@ def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str])
         "if that is meant, say so: `@detached` before its definition",
     )
     span, fix = structure.span, None
-    if span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text):
+    is_plain = span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text)
+    if span and is_plain and "detached" not in structure.attributes:
         fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
     label = "stands by itself" if is_one else "each stands by itself"
     return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
@@ -10,7 +11,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped, clipped_each
+from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
 from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
@@ -23,6 +24,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.styles import is_filled
 from aidl_lang.geometry.tiling import (
     MOST,
     Lattice,
@@ -52,16 +54,18 @@ def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
     out.
     """
-    if g.construction:
-        return
-    if g.curve is not None and is_finite(g.curve) and max(map(abs, bounds(g.curve))) <= LARGEST:
-        yield g, g.curve
-    for part in g.parts:
-        yield from _leaves(part)
+    for leaf in g.leaves():
+        if (curve := leaf.curve) and is_finite(curve, LARGEST):
+            yield leaf, curve
 
 
 def _shown(g: SolvedGeometry) -> SolvedGeometry:
-    return replace(g, construction=False)
+    return replace(g, construction=False) if g.construction else g
+
+
+def _with_parts(g: SolvedGeometry, parts: tuple[SolvedGeometry, ...]) -> SolvedGeometry:
+    """Returns a geometry with these parts; itself if it has them."""
+    return g if all(map(operator.is_, parts, g.parts)) else replace(g, parts=parts)
 
 
 @record(frozen=False)
@@ -95,11 +99,12 @@ class _Outliner:
                 self._finished([_shown(self._drawn(g))], s.finishes, s)
         if s.kind == "drawing" and inside is not None:
             finished = clipped_ink(finished, inside)
+        derived = (curve for g in geometry for curve in g.curves())
         return replace(
             s,
             geometry=geometry,
             structures=children,
-            box=_box(s, geometry, children),
+            box=Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
             finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
             inside=inside if s.clip else None,
@@ -130,7 +135,7 @@ class _Outliner:
     def _completed(self, g: SolvedGeometry) -> SolvedGeometry:
         """Returns a geometry with the curves of derived outlines as parts, its own or those of its parts."""
         if g.recipe is None or g.curve is not None or any(True for _ in _leaves(_shown(g))):
-            return replace(g, parts=tuple(map(self._completed, g.parts)))
+            return _with_parts(g, tuple(map(self._completed, g.parts)))
         exact = self._exact(g, g.recipe)
         self.derived.add(g.path)
         return replace(exact, parts=(*map(self._completed, g.parts), *exact.parts))
@@ -140,7 +145,7 @@ class _Outliner:
         if that differs (the source has fillets, or less is left than the formula says).
         """
         if g.recipe is None or g.path in self.derived or not any(True for _ in _leaves(_shown(g))):
-            return replace(g, parts=tuple(map(self._drawn, g.parts)))
+            return _with_parts(g, tuple(map(self._drawn, g.parts)))
         exact = self._exact(g, g.recipe)
         regions = [_region([_shown(one)]) for one in (g, exact)]
         areas = [area(r) for r in regions]
@@ -192,7 +197,7 @@ class _Outliner:
             return self._tiled(g, recipe, groups, curves)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
-            lines = clipped(curves[0], regions[1])
+            lines = [piece for one in clipped_each(curves[0], regions[1]) for piece in one.inner]
             if not lines:
                 self.notes.append(notes.nothing_left(g, recipe))
             return lines
@@ -271,6 +276,8 @@ class _Outliner:
         """Returns the geometry with all finishes that are about its corners. `told`: the structure whose
         program hears of those that do not fit; elsewhere they are passed over.
         """
+        if not self.finishes:
+            return list(geometry)
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
         near = NEAR * _extent([c for _, c in leaves])
         works: list[Work] = []
@@ -417,7 +424,7 @@ def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result)
 
 def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[SolvedGeometry]:
     """Returns the geometry of a drawing as far as it lies in a region or along its border: parts of curves,
-    and the outlines of what is left of filled letters.
+    and the outlines of what is left of filled letters and areas.
     """
     leaves = [leaf for g in geometry for leaf in _leaves(g)]
     found = clipped_each([c for _, c in leaves], region, with_border=True)
@@ -427,8 +434,8 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
         return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
 
     def inner(g: SolvedGeometry) -> SolvedGeometry:
-        if g.filled and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
-            return replace(g, parts=parts(g, common(_region([g]), region).pieces))
+        if (g.filled or is_filled(g)) and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
+            return replace(g, curve=None, parts=parts(g, common(_region([g]), region).pieces))
         curve, one = kept.get(id(g), (None, None))
         if one is None or one.inner == (curve,):
             return replace(g, parts=tuple(map(inner, g.parts)))
@@ -461,20 +468,3 @@ def _deepest(region: Region, too_deep: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if offset(region, -middle) else (low, middle)
     return low
-
-
-def _box(
-    s: SolvedStructure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
-) -> Box | None:
-    """Returns the box with the curves derived since it was read out."""
-    boxes = [s.box] if s.box is not None else []
-    boxes += [Box(*bounds(c)) for g in geometry for c in g.curves()]
-    boxes += [c.box for c in children if c.box is not None and c.kind != "hole"]
-    if not boxes:
-        return None
-    return Box(
-        min(b.left for b in boxes),
-        min(b.bottom for b in boxes),
-        max(b.right for b in boxes),
-        max(b.top for b in boxes),
-    )

@@ -13,8 +13,8 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
-from aidl_lang.geometry.engraving import boxes_meet, engraved
-from aidl_lang.geometry.evaluate import Bounds, bounds, inward
+from aidl_lang.geometry.engraving import engraved
+from aidl_lang.geometry.evaluate import Bounds, are_near, bounds, inward
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.overhanging import owner
@@ -131,7 +131,7 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
         strokes = tuple(on.get(body.path, ()))
         box = union_bounds([body.box, *(bounds(piece) for s in strokes for piece in s.pieces)])
         regions = below[body.path]
-        regions |= {p: r for p, r in shared.items() if boxes_meet(region_bounds(r), body.box)}
+        regions |= {p: r for p, r in shared.items() if are_near(region_bounds(r), body.box)}
         yield Part(body, strokes, tuple(seams[body.path]), regions, box)
 
 

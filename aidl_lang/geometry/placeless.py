@@ -4,14 +4,12 @@ measured and written.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import field, replace
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
-from aidl_lang.geometry.evaluate import LARGEST, bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.evaluate import LARGEST, is_finite
 from aidl_lang.geometry.notes import unusable_note
 from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
@@ -30,7 +28,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
     frame, box = structure.frame, structure.box
     return (
         _is_within((frame.x, frame.y, frame.rotation))
-        and (box is None or _is_within((box.left, box.bottom, box.right, box.top)))
+        and (box is None or _is_within(box.bounds))
         and all(map(_has_place, structure.geometry))
     )
 
@@ -69,8 +67,9 @@ class _Cleaner:
         if not _is_within((frame.x, frame.y, frame.rotation)):
             frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
         if box is None or not s.is_empty:
-            box = _box_around(geometry, children)
-        elif not _is_within((box.left, box.bottom, box.right, box.top)):
+            curves = (curve for g in geometry for curve in g.curves() if is_finite(curve))
+            box = Box.around(curves, children)
+        elif not _is_within(box.bounds):
             box = None
         return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
 
@@ -104,12 +103,3 @@ def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
         parts=tuple(map(_stripped, geometry.parts)),
         recipe=geometry.recipe if geometry.recipe is not None and _is_possible(geometry) else None,
     )
-
-
-def _box_around(geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]) -> Box | None:
-    boxes = [bounds(curve) for g in geometry for curve in g.curves()]
-    boxes += [
-        (b.left, b.bottom, b.right, b.top) for c in children if (b := c.box) is not None and c.kind != "hole"
-    ]
-    boxes = [box for box in boxes if all(map(math.isfinite, box))]
-    return Box(*union_bounds(boxes)) if boxes else None

@@ -31,7 +31,7 @@ from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.described import described
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.letters import stencilled, united
 from aidl_lang.geometry.solved import (
     Box,
@@ -224,24 +224,13 @@ class _Reader:
     def _box(
         self, s: Structure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
     ) -> Box | None:
-        boxes: list[tuple[float, float, float, float]] = []
+        corners: list[Bounds] = []
         if s.plan:
             left, bottom, width, height = s.plan
             for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
                 x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
-                boxes.append((x, y, x, y))
-        boxes += [bounds(curve) for g in geometry for curve in g.curves()]
-        boxes += [
-            (c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box and c.kind != "hole"
-        ]
-        if not boxes:
-            return None
-        return Box(
-            min(b[0] for b in boxes),
-            min(b[1] for b in boxes),
-            max(b[2] for b in boxes),
-            max(b[3] for b in boxes),
-        )
+                corners.append((x, y, x, y))
+        return Box.around((curve for g in geometry for curve in g.curves()), children, corners)
 
     # --- Geometry ------------------------------------------------------------------------------
 

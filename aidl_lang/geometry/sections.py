@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
+from aidl_lang.geometry.tessellate import polygon_area
 
 Polygon = NDArray[np.float64]
 NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
@@ -131,13 +132,8 @@ def covers(cover: Section, section: Section) -> bool:
 
 def holes_of(section: Section) -> list[Section]:
     """Returns the areas that the inner outlines of a section enclose."""
-    whole = fill([p for p in section.to_polygons() if _turns_left(p)], "NonZero")
+    whole = fill([p for p in section.to_polygons() if polygon_area(p) > 0], "NonZero")
     return difference(whole, section).decompose()
-
-
-def _turns_left(polygon: Polygon) -> bool:
-    x, y = (polygon - polygon[0]).T
-    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) > 0.0
 
 
 def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
@@ -149,8 +145,3 @@ def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
         if len(near):
             within[near] = inside(section.to_polygons(), spots[near])
     return within
-
-
-def in_polygon(polygon: Polygon, spots: Polygon) -> NDArray[np.bool_]:
-    """Returns the mask of points inside a polygon (even-odd)."""
-    return inside([polygon], spots)

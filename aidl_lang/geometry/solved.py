@@ -5,7 +5,7 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
@@ -13,6 +13,8 @@ from typing import TypeAlias
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
+from aidl_lang.geometry.evaluate import Bounds, all_bounds
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
 
@@ -34,6 +36,19 @@ class Box:
     @property
     def height(self) -> float:
         return self.top - self.bottom
+
+    @property
+    def bounds(self) -> Bounds:
+        return self.left, self.bottom, self.right, self.top
+
+    @staticmethod
+    def around(
+        curves: Iterable[Piece], structures: Iterable[SolvedStructure], more: Iterable[Bounds] = ()
+    ) -> Box | None:
+        """Returns the box of some curves, of what is material of some structures, and of some more."""
+        boxes = [*more, *all_bounds(curves)]
+        boxes += [s.box.bounds for s in structures if s.box is not None and s.kind != "hole"]
+        return Box(*union_bounds(boxes)) if boxes else None
 
 
 @record()
@@ -113,14 +128,18 @@ class SolvedGeometry:
         for part in self.parts:
             yield from part.walk()
 
-    def curves(self) -> Iterator[Piece]:
-        """Yields the drawn curves in order of writing; none of construction geometry."""
+    def leaves(self) -> Iterator[SolvedGeometry]:
+        """Yields the primitives with drawn curves in order of writing; none of construction geometry."""
         if self.construction:
             return
         if self.curve is not None:
-            yield self.curve
+            yield self
         for part in self.parts:
-            yield from part.curves()
+            yield from part.leaves()
+
+    def curves(self) -> Iterator[Piece]:
+        """Yields these curves."""
+        return (leaf.curve for leaf in self.leaves() if leaf.curve is not None)
 
 
 @record()

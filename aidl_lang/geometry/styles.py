@@ -9,6 +9,7 @@ from typing import TypeAlias
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import fold
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, Scalar, SolvedGeometry, SolvedStructure
@@ -61,6 +62,7 @@ class Style:
     shade    how the fill of a body changes over it
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
+    turn     the directions of the structure
     depth    of a hole that ends in its solid, mm, and the angle of a cone, degrees; none if it goes through
     quantity  how many pieces are made of each part, those around it multiplied
     """
@@ -77,6 +79,7 @@ class Style:
     halo: float | None = None
     depth: tuple[float, ...] = ()
     quantity: int = 1
+    turn: Turn = Turn()
 
     @property
     def is_clear(self) -> bool:
@@ -128,9 +131,7 @@ def styles_of(root: SolvedStructure) -> dict[str, Style]:
             around = replace(
                 around, halo=None
             )  # a gap around bodies is none around all that is drawn on them
-        style = _within(around, structure.attributes)
-        if "shade" in structure.attributes:
-            style = replace(style, shade=_shade(structure.attributes["shade"], turn))
+        style = _within(replace(around, turn=turn), structure.attributes)
         styles[structure.path] = style
         for child in structure.structures:
             visit(child, style, structure.kind, turn.within(child.frame))
@@ -142,6 +143,12 @@ def styles_of(root: SolvedStructure) -> dict[str, Style]:
 def styled(style: Style, geometry: SolvedGeometry) -> Style:
     """Returns the style of a geometry in a structure of a style: that one, but for attributes of its own."""
     return _within(style, geometry.attributes)
+
+
+def is_filled(geometry: SolvedGeometry) -> bool:
+    """Tells whether a geometry is an area with a look of its own: a line has a width or dashes."""
+    stated = geometry.attributes
+    return ("color" in stated or "shade" in stated) and not ("stroke" in stated or "dash" in stated)
 
 
 def is_unlined(stated: Attributes) -> bool:
@@ -158,11 +165,12 @@ def _within(around: Style, stated: Attributes) -> Style:
         0.0 if is_unlined(stated) else _number(stated.get("stroke"), around.stroke),
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
-        around.shade,
+        _shade(stated["shade"], around.turn) if "shade" in stated else around.shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
         tuple(float(v) for v in stated.get("depth", ()) if isinstance(v, int | float)),
         around.quantity * int(_number(stated.get("quantity"), 1.0) or 1),
+        around.turn,
     )
 
 
@@ -203,6 +211,25 @@ def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
         return () if stated[0] else None
     lengths = tuple(float(v) for v in stated if isinstance(v, int | float))
     return lengths * 2 if len(lengths) == 1 else lengths
+
+
+def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[str]) -> list[Diagnostic]:
+    """Returns warnings about looks of geometry that encloses nothing of the body that it is in; of what is
+    `loose` it is told elsewhere that it is open.
+    """
+    return [
+        Diagnostic(
+            "W0727",
+            f"{' and '.join(ticked(g.attributes.keys() & {'color', 'shade'}, '@'))} of `{g.path}` "
+            f"counts for nothing: it encloses no part of `{s.path}`",
+            g.span,
+            hints=("put it where there is material, or into a `drawing`",),
+        )
+        for s in root.walk()
+        for g in s.drawn
+        if s.kind not in ("drawing", "hole") and is_filled(g) and g.path not in areas
+        if not any(part.path in loose for part in g.walk())
+    ]
 
 
 def idle_looks(

@@ -26,6 +26,7 @@ from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section
+from aidl_lang.geometry.tessellate import Polygon, polygon_area
 
 T = TypeVar("T")
 STRAIGHT = -3
@@ -73,7 +74,7 @@ def trace(network: Network, section: Section) -> Traced:
 
 def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
     """Traces many regions at once, which spares most of the table look-ups."""
-    faces = [[c.to_polygons() for c in _components(section)] for section in sections]
+    faces = [_components(section) for section in sections]
     sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
     number = 0
     result = []
@@ -83,20 +84,22 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
         for face in section:
             checkpoint()
             numbers = range(number, number + len(face))
-            traced += _faces([loop for k in numbers for loop in _loops(network, sides, k, used)])
+            traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
             number += len(face)
-        traced.sort(key=lambda face: _first_point(face.outer))
+        traced.sort(key=lambda face: first_point(face.outer))
         result.append(Traced(Region(tuple(traced)), frozenset(used)))
     return result
 
 
-def _components(section: Section) -> list[Section]:
-    """Returns the connected faces, one outer polygon each."""
-    count = section.num_contour()
-    return [section] if count == 1 else section.decompose() if count else []
+def _components(section: Section) -> list[list[Polygon]]:
+    """Returns the polygons of the connected faces, of which each has one outer one."""
+    polygons = section.to_polygons()
+    if len(polygons) < 2 or sum(polygon_area(polygon) > 0 for polygon in polygons) == 1:
+        return [polygons] if polygons else []
+    return [part.to_polygons() for part in section.decompose()]
 
 
-def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
+def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
     """Returns faces: outer loops with the holes that lie in them, one loop or several that touch in a
     point.
     """
@@ -105,7 +108,7 @@ def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
     holes: list[list[Loop]] = [[] for _ in outers]
     for hole, holder in zip(inner, _holders(outers, inner), strict=True):
         holes[holder].append(hole)
-    return [Face(o, tuple(sorted(h, key=_first_point))) for o, h in zip(outers, holes, strict=True)]
+    return [Face(o, tuple(sorted(h, key=first_point))) for o, h in zip(outers, holes, strict=True)]
 
 
 def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
@@ -125,7 +128,8 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     return [int(k) for k in holder]
 
 
-def _first_point(loop: Loop) -> Vec:
+def first_point(loop: Loop) -> Vec:
+    """Returns where a loop begins, by which loops and faces are in order."""
     return ends(loop.pieces[0])[0]
 
 
@@ -284,16 +288,21 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
 def _to_loop(network: Network, runs: list[Run]) -> Loop:
     if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
         return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
-    pieces = _joined([_piece(network, r) for r in runs], lambda a, b: _fuse(a, b, network.tolerance))
+    return closed_loop([_piece(network, r) for r in runs], network.tolerance)
+
+
+def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
+    """Returns the loop of pieces that follow each other, in a canonical form."""
+    pieces = _joined(pieces, lambda a, b: _fuse(a, b, tolerance))
     if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
         return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
 
     # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
     def begins(number: int) -> tuple[int, ...]:
-        return tuple(round(c / (2 * network.tolerance)) for c in ends(pieces[number])[0])
+        return tuple(round(c / (2 * tolerance)) for c in ends(pieces[number])[0])
 
     first = min(range(len(pieces)), key=begins)
-    return Loop(tuple(pieces[first:] + pieces[:first]))
+    return Loop((*pieces[first:], *pieces[:first]))
 
 
 def _piece(network: Network, run: Run) -> Piece:
@@ -324,7 +333,7 @@ def _fuse_lines(a: Line, b: Line, tolerance: float) -> Line | None:
     return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * shorter) else None
 
 
-def _joined(items: list[T], join: Callable[[T, T], T | None]) -> list[T]:
+def _joined(items: Sequence[T], join: Callable[[T, T], T | None]) -> list[T]:
     """Neighbours joined where they can be, around the end as well."""
     result: list[T] = []
     for item in items:

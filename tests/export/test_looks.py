@@ -291,13 +291,13 @@ TOLD: list[tuple[str, dict[str, object], str]] = [
         ".step",
         {},
         "`@stroke` and `@dash` count for nothing in this file: "
-        "STEP holds shapes with their colours, and its lines have no width",
+        "STEP holds shapes with their colours, and its lines no width and no areas",
     ),
     (
         ".3mf",
         {},
         "`@stroke` and `@dash` count for nothing in this file: "
-        "3MF holds solids with their colours, and draws no lines",
+        "3MF holds solids with their colours, and draws nothing on them",
     ),
 ]
 

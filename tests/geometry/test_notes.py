@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Line
@@ -165,6 +166,34 @@ def test_the_fix_marks_the_part():
     b, c = (structure("solid", name, circle("c", 9, y, 1)) for name, y in (("b", 0), ("c", 1)))
     text, _ = apply_fixes(source, notes(structure("assembly", "m", a, b, c)))
     assert "@detached solid a {" in text
+
+
+PIN = "solid pin(r: length) { c = circle(radius: r) }\n"
+
+
+@pytest.mark.parametrize(
+    "lonely",
+    [
+        "solid b { c = circle(center: (50, 0), radius: 1) }",
+        '@color("red") solid b { c = circle(center: (50, 0), radius: 1) }',
+        "@detached(false) solid b { c = circle(center: (50, 0), radius: 1) }",
+        "for i in 1..3 { solid b[i] { c = circle(center: (50 * i, 0), radius: 1) } }",
+        "b = pin(r: 2) at (50, 0)",
+        "assembly b { solid c { d = circle(center: (50, 0), radius: 1) } }",
+    ],
+)
+def test_the_fix_of_a_detached_part_needs_no_trial(lonely):
+    text = (
+        PIN
+        + "solid a { c = circle(radius: 1) }\nsolid e { c = circle(center: (2, 0), radius: 1) }\n"
+        + lonely
+    )
+    source = SourceFile("x.aidl", text)
+    found = pipeline.compile(source).diagnostics
+    assert {d.code for d in found} == {"W0705"}
+    mended, _ = apply_fixes(source, [d for d in found if d.code == "W0705"])
+    after = pipeline.compile(SourceFile("x.aidl", mended)).diagnostics
+    assert [d.code for d in after] == ["W0705" for d in found if d.fix is None]
 
 
 @pytest.mark.parametrize(

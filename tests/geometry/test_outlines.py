@@ -12,7 +12,7 @@ import shapely
 from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.clipping import clipped
+from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
@@ -322,9 +322,10 @@ def test_hull_of_a_circle_around_all() -> None:
 
 def test_clipped_lines_end_on_the_border() -> None:
     disc = Region((Face(Loop((Circle((0, 0), 5),))),))
-    (inner,) = clipped([Line((-9, 3), (9, 3))], disc)
+    (one,) = clipped_each([Line((-9, 3), (9, 3))], disc)
+    (inner,) = one.inner
     assert [abs(p[0]) for p in ends(inner)] == pytest.approx([4, 4])
-    assert clipped([Line((6, -9), (6, 9))], disc) == []
+    assert clipped_each([Line((6, -9), (6, 9))], disc)[0].inner == ()
 
 
 # --- Frames --------------------------------------------------------------------------------------------
