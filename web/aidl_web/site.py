@@ -307,6 +307,7 @@ def _index() -> str:
         if text.count(mark) != 1:
             raise BuildError(f"the pane's page has no place for {mark.strip()!r}")
         text = text.replace(mark, piece if "main.js" in mark else piece + mark)
+    text = text.replace('class="name">AIDL<', 'class="name">Playground<')
     values = {"csp": _POLICY.format(nonce=_NONCE), "root": "pane/", "nonce": _NONCE, "socket": "", "uri": ""}
     return _filled(text, {name: html.escape(value) for name, value in values.items()})
 

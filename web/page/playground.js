@@ -123,6 +123,7 @@ const watcher = {
   },
   told: (message) => {
     if (message.method === "aidl/previewChanged" || message.result?.svg !== undefined) show("");
+    if (message.method === "aidl/text" && message.params.version === 1) setTimeout(toTop);
     if (savings.delete(message.id) && message.result?.applied) save();
     if (!pictures.delete(message.id) || !message.result) return message;
     pixels(message.result).then(
@@ -132,6 +133,11 @@ const watcher = {
     return null;
   },
 };
+
+/** Another program is read from its beginning. */
+function toTop() {
+  document.querySelector(".cm-scroller")?.scrollTo(0, 0);
+}
 
 /** @param {string} words how far a start has come; empty when it is over */
 function show(words) {
