@@ -3,13 +3,16 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+SITE   := build/site-venv
+# The target that builds the playground, if there is one.
+PLAYGROUND = $(shell grep -o '^site-playground:' $(firstword $(MAKEFILE_LIST)))
 READY  := $(VENV)/.ready
 
 # Tests start hundreds of processes: each would compile all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples site-playground test-playground lock clean
+.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours site pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples site-playground test-playground lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -53,9 +56,14 @@ format: $(READY) ## put all Python code into its canonical form
 
 reference: $(READY) colours ## write all that is generated from the library: docs/reference, docs/guide.md, llms.txt, what editors read
 	$(BIN)/python -m aidl_dev.reference .
+	$(BIN)/python -m aidl_site.pictures .
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
 	$(BIN)/python -m aidl_dev.highlighting .
+
+site: $(READY) $(SITE)/.ready ## build the site into build/site, the playground with it; dead links fail; ADDRESS is where it will be found
+	$(BIN)/python -m aidl_site . --builder $(SITE)/bin/zensical $(if $(ADDRESS),--address $(ADDRESS)) $(if $(PLAYGROUND),--playground)
+	@$(if $(PLAYGROUND),$(MAKE) --no-print-directory site-playground && $(BIN)/python -m aidl_site . --check)
 
 pane: ## bundle the editor of the preview's pane: aidl_lang/tools/preview/pane/editor.js
 	cd editors/codemirror && npm ci --silent --no-audit --no-fund && npm run --silent pane
@@ -119,9 +127,17 @@ lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools
 	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
 		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
+	$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['dependency-groups']['site'])" \
+		| CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --generate-hashes --allow-unsafe --strip-extras \
+			--no-emit-find-links --no-emit-index-url --output-file requirements-site.lock -
 
 clean: ## remove what was built; the virtualenv stays
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+
+$(SITE)/.ready: requirements-site.lock
+	@$(PYTHON) -m venv $(SITE)
+	@$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-site.lock
+	@touch $@
 
 # Done again only when the lock or the project file is newer than the last time.
 $(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject.toml web/pyproject.toml

@@ -13,8 +13,7 @@ canonical form. `docs/python.md` shows all of it.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from errno import ENOENT
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -25,6 +24,8 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
+    from build123d import Compound
+
     from aidl_lang.building.model import Knob
     from aidl_lang.common.world import World
     from aidl_lang.export import Options
@@ -163,18 +164,13 @@ class Model:
         is more than one file to it, as of several sheets.
         """
         from aidl_lang.export import suffix_of
-        from aidl_lang.tools.cli.keywords import read
+        from aidl_lang.tools.cli.options import read
 
         wanted = suffix_of("", suffix)
         made = self._compiled.exported(wanted, options or read(asked, self._compiled).options)
         if made.further:
-            raise AidlError(
-                Diagnostic(
-                    "E0914",
-                    f"{len(made.further) + 1} files are no single content",
-                    hints=("`save` writes them beside each other",),
-                )
-            )
+            message = f"{len(made.further) + 1} files are no single content"
+            raise AidlError(Diagnostic("E0914", message, hints=("`save` writes them beside each other",)))
         return made.data
 
     def save(self, path: str | Path, **options: object) -> Saved:
@@ -188,8 +184,8 @@ class Model:
         """
         from aidl_lang.common.files import replace
         from aidl_lang.export import suffix_of
-        from aidl_lang.export.naming import contents, is_pattern
-        from aidl_lang.tools.cli.keywords import read
+        from aidl_lang.export.cut_list import contents, is_pattern
+        from aidl_lang.tools.cli.options import read
 
         asked = read(options, self._compiled)
         suffix = suffix_of(str(path), asked.format)
@@ -206,6 +202,17 @@ class Model:
             Path(name).parent.mkdir(parents=True, exist_ok=True)
             replace(Path(name), data)
         return Saved(tuple(Path(name) for name, _ in made), notes)
+
+    def to_build123d(self, thickness: float | None = None) -> Compound:
+        """Returns the shapes as build123d has them, under their dotted paths: Parts of what has a thickness
+        (`thickness` is that of solids without one, mm), Sketches of what has none, Curves of strokes, and
+        a joint at each named circle and point.
+
+        Raises AidlError for a model that is not `ok` or makes no valid shape, and without build123d.
+        """
+        from aidl_lang.tools.cad import to_build123d
+
+        return to_build123d(self._compiled, thickness)
 
     def _repr_svg_(self) -> str | None:
         """Returns the drawing for notebooks, as far as the solver came."""
@@ -252,22 +259,14 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
         message = "this Path holds a program, not the name of a file"
         raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
     from aidl_lang.tools.cli import files
+    from aidl_lang.tools.cli.files import UseError
 
     disk = DiskWorld(text_or_path.parent)
-    with _as_own():
-        text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
-    return SourceFile(name, text), KeptWorld(disk)
-
-
-@contextmanager
-def _as_own() -> Iterator[None]:
-    """Raises what the command line refuses as AidlError."""
-    from aidl_lang.tools.cli.report import UseError
-
     try:
-        yield
+        text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
     except UseError as reason:
         raise AidlError(reason.diagnostic) from None
+    return SourceFile(name, text), KeptWorld(disk)
 
 
 def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
@@ -321,7 +320,7 @@ def sweep(
     sweep`, as keywords. What is read is as for `compile`. Raises AidlError for values, outputs and engines
     that cannot be, and for a program that is wrong as written.
     """
-    from aidl_lang.tools.cli.keywords import read
+    from aidl_lang.tools.cli.options import read
     from aidl_lang.tools.sweeping.python import Sweep
 
     asked = read(options)

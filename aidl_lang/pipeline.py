@@ -47,10 +47,12 @@ if TYPE_CHECKING:
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
 
-def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
-    """Reads a text into a Program: parsed, resolved and type-checked. `compile` can go on from it."""
+def front(
+    text: SourceFile | parser.Parsed, world: World | None = None, settings: Settings = Settings()
+) -> Front:
+    """Reads a text, parsed or not, into a Program that is checked. `compile` can go on from it."""
     with working:
-        return read(source, world, settings, Stopwatch())
+        return read(text, world, settings, Stopwatch())
 
 
 @record()
@@ -180,7 +182,7 @@ def compile(
 
     With a `memory` of the last run, structures that no change since then concerns are not solved again; with
     the result of `front` for this very program, it is not checked again. Raises Cancelled if the run is given
-    up (see `cancelling`).
+    up (see `common.running`).
     """
     watch = Stopwatch()
     with working:
@@ -377,7 +379,7 @@ def _finish(
         if settings.solving.explain:
             with watch("fixes"):
                 if any(d.fix is not None for d in told):
-                    from aidl_lang.explaining.verifying import verified
+                    from aidl_lang.explaining.trials import verified
 
                     told = verified(told, [*diagnostics, *told], trials)
                 told = tries.answered(told, [*diagnostics, *told], built.model)
@@ -411,15 +413,12 @@ def _finish(
 def _drawn(
     built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
-    """Returns the solved model, its evaluator and drawing, what there is to tell of the drawing, and the
-    assertions that fail.
-    """
+    """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
     with watch("asserts"):
-        is_solved = model.status == "solved"
-        found = assertion_notes(built, model, drawing, evaluator, solved_fully=is_solved)
+        found = assertion_notes(built, model, drawing, evaluator, solved_fully=model.status == "solved")
     return model, evaluator, drawing, notes, found
 
 

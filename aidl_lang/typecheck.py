@@ -10,18 +10,22 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
-from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
-from aidl_lang.checking.counts import counting_params
-from aidl_lang.checking.cycles import find_cycles
-from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.conditions import (
+    check_condition,
+    check_empty,
+    check_item,
+    check_operation,
+    counting_params,
+    find_cycles,
+)
+from aidl_lang.checking.facts import Fact, of_symbol
 from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
-from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.operators import compare
-from aidl_lang.checking.resolving.resolution import Resolution
-from aidl_lang.checking.resolving.symbols import word_meant
-from aidl_lang.checking.subset import check_subset
+from aidl_lang.checking.members import compare
+from aidl_lang.checking.resolving.symbols import Resolution, word_meant
+from aidl_lang.checking.rules import a, shown
+from aidl_lang.checking.subset import Variant, check_subset
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -36,9 +40,7 @@ from aidl_lang.checking.types import (
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.checking.validity import check_validity
-from aidl_lang.checking.variants import Variant
 from aidl_lang.checking.violations import Violation
-from aidl_lang.checking.wording import a, shown
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span

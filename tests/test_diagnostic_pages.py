@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile

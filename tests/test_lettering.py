@@ -20,8 +20,8 @@ from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.curves import Bezier, Line
-from aidl_lang.geometry.letters import lettering as lettering_region
-from aidl_lang.geometry.letters import stencilled
+from aidl_lang.geometry.evaluate import reverse
+from aidl_lang.geometry.letters import lettered_region, stencilled
 from aidl_lang.geometry.measures import loop_area
 from tests.amount import tries
 
@@ -129,7 +129,7 @@ def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) 
     for character in CHARACTERS:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
-            region = lettering_region([curves])
+            region = lettered_region([curves])
             assert region is not None, character
             faces = region.faces
             alternating = Polygon()
@@ -140,6 +140,21 @@ def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) 
             areas = [[loop_area(loop) for loop in face.loops] for face in faces]
             assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas), character
             assert sum(map(sum, areas)) == pytest.approx(alternating.area, rel=0.02), character
+
+
+def test_letters_that_may_meet_are_arranged() -> None:
+    """Of letters side by side each keeps its faces; where boxes meet, or one is open, nothing is said."""
+    glyphs = lettering.typeset("BO", "left", 1.6)
+    first, second = ([Line(*c) if len(c) == 2 else Bezier(*c) for c in g.curves] for g in glyphs)  # type: ignore[call-arg]
+    apart = lettered_region([first, second])
+    assert apart is not None
+    assert [len(face.holes) for face in apart.faces] == [2, 1]
+    turned = lettered_region([[reverse(piece) for piece in reversed(letter)] for letter in (first, second)])
+    assert turned is not None
+    areas = [sum(map(loop_area, face.loops)) for region in (apart, turned) for face in region.faces]
+    assert areas[:2] == pytest.approx(areas[2:])
+    assert lettered_region([first, first]) is None
+    assert lettered_region([first[1:]]) is None
 
 
 @FACES

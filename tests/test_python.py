@@ -18,7 +18,7 @@ import pytest
 
 import aidl_lang
 from aidl_lang.tools.cli import main
-from tests.compiled import EXAMPLES, example
+from tests.compiled import FEW, example
 from tests.documents import ROOT, Block, blocks
 
 PAGE = ROOT / "docs" / "python.md"
@@ -237,7 +237,7 @@ def test_params_are_set_anew() -> None:
 # --- Copies ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FEW)
 def test_models_pickle(path: Path) -> None:
     model = example(path.stem)
     again: aidl_lang.Model = pickle.loads(pickle.dumps(model))

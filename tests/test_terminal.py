@@ -11,17 +11,22 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from aidl_lang.tools.terminal.characters import Cell, Label, cells, nearest, text, written
-from aidl_lang.tools.terminal.protocols import (
+from aidl_lang.tools.terminal import (
     CELL,
+    Cell,
+    Label,
     Screen,
+    cells,
     fit,
     has_true_colour,
     iterm,
     kitty,
+    nearest,
     plausible,
     protocol,
     sixel,
+    text,
+    written,
 )
 
 RED, BLUE, WHITE = (255, 0, 0), (0, 0, 255), (255, 255, 255)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.building.lower import lower
 from aidl_lang.checking import builtins
-from aidl_lang.checking.variants import FORBIDDEN, Variant
+from aidl_lang.checking.subset import FORBIDDEN, Variant
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
@@ -30,7 +30,7 @@ from aidl_lang.solver.settings import Stages
 from aidl_lang.solver.solution import Status
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.reference.guide import guide
+from aidl_lang.tools.reference.pages import guide
 from tests.amount import tries
 from tests.documents import ROOT
 from tests.property.programs import Part, Sketch, part, sketches

@@ -7,12 +7,13 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.measured import formula
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
 from aidl_lang.building.primitives import defining, view, xy
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
@@ -316,10 +317,22 @@ def foreseen(*roots: Expression) -> tuple[Expression, ...]:
     most cases: what is cut keeps its box, a part in common has the common part of the boxes, and what is
     moved in or out has its sides moved as far.
     """
+    return with_measured(_foreseen_side, *roots)
+
+
+def with_formulas(*roots: Expression) -> tuple[Expression, ...]:
+    """Returns expressions with each area and perimeter that has a formula replaced by this."""
+    return with_measured(formula, *roots)
+
+
+def with_measured(
+    known: Callable[[Measurement], Expression | None], *roots: Expression
+) -> tuple[Expression, ...]:
+    """Returns expressions with what the drawing would be measured for replaced by what is known of it."""
     replaced: dict[Expression, Expression] = {}
     for node in list(ex.nodes(roots, only_open=True)):
         if isinstance(node.payload, Measurement):
-            replaced[node] = _foreseen_side(node.payload)
+            replaced[node] = known(node.payload) or node
         elif any(a in replaced for a in node.args):
             replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
     return tuple(replaced.get(root, root) for root in roots)

@@ -27,8 +27,8 @@ from aidl_lang.building.values import (
     type_of,
 )
 from aidl_lang.checking import rules
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH, PLAIN
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast

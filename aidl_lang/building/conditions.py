@@ -26,8 +26,8 @@ from aidl_lang.building.values import (
     type_of,
 )
 from aidl_lang.checking import rules, units
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 RELATIONS = ("==", "<=", ">=", "<", ">")

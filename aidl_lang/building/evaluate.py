@@ -32,8 +32,8 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.builtins import WORDS
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import UNITS
-from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 

@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
-from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.resolve import resolve
-from aidl_lang.checking.subset import adapted
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant, adapted
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Stopwatch
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.interp import Interpretation, interpret, nothing_built
+from aidl_lang.parser import DEFAULT_LIMITS as DEFAULT_TEXT_LIMITS
+from aidl_lang.parser import Parsed, TextLimits, parse
 from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.solver.settings import Stages
 from aidl_lang.typecheck import Program
@@ -35,7 +35,7 @@ class Settings:
              writing a file, measuring, comparing
     """
 
-    text: parser.TextLimits = parser.DEFAULT_LIMITS
+    text: TextLimits = DEFAULT_TEXT_LIMITS
     building: BuildingLimits = DEFAULT_LIMITS
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
     variant: Variant = Variant.FULL
@@ -45,19 +45,18 @@ class Settings:
     @staticmethod
     def of(variant: Variant, *, strict: bool = False) -> Settings:
         """Returns the settings of a variant of the language: the paper's has the paper's solver, too."""
-        settings = Settings(variant=variant, strict=strict)
-        if variant is not Variant.PAPER:
-            return settings
-        return replace(settings, solving=replace(settings.solving, stages=Stages.PAPER))
+        stages = Stages.PAPER if variant is Variant.PAPER else Settings.solving.stages
+        solving = replace(Settings.solving, stages=stages)
+        return Settings(variant=variant, strict=strict, solving=solving)
 
 
 Front: TypeAlias = tuple[Program, list[Diagnostic]]
 
 
-def read(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
-    """Reads a text into a Program: parsed, resolved and type-checked."""
+def read(text: SourceFile | Parsed, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
+    """Reads a text into a Program: parsed, unless it is, resolved and type-checked."""
     with watch("parse"):
-        parsed = parser.parse(source, settings.text)
+        parsed = text if isinstance(text, Parsed) else parse(text, settings.text)
     with watch("library"):
         library = library_module.load()
     with watch("resolve"):

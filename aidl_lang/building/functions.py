@@ -13,7 +13,8 @@ from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.lettering import ink
 from aidl_lang.building.letters_along import lettered
-from aidl_lang.building.model import Geometry, Measurement, Structure
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
+from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
@@ -28,6 +29,7 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    point,
 )
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
@@ -325,6 +327,24 @@ def _measure(kind: str, dimension: Dimension) -> Function:
     return function
 
 
+def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the centroid of a closed geometry, which has one by a formula."""
+    of = a["of"]
+    found = centroid(of, env.here) if isinstance(of, Geometry) else None
+    if found is None or not isinstance(of, Geometry):
+        it.report("E0512", f"`{node.span.one_line}` has no formula", node, hints=[FORMULAS])
+        return NOTHING
+    where, area = it.place(node) or node.span, Measurement("area", (of,))
+    if not any(known.span == where for known in it.assertions):
+        foreseen = formula(area)
+        assert foreseen is not None
+        size = Num(ex.apply("abs", foreseen), AREA)  # it may turn over
+        drawn = compare_numbers(it, "==", size, Num(ex.measure(area), AREA), node)
+        assert isinstance(drawn, Condition)
+        it.assertions.append(Assertion(env.here, drawn, OTHERWISE, node.span.one_line, where))
+    return point(*found)
+
+
 def _keep(dimension: MaybeDimension) -> MaybeDimension:
     return dimension
 
@@ -366,6 +386,7 @@ FUNCTIONS: dict[str, Function] = {
     **patterns.FUNCTIONS,
     "area": _measure("area", AREA),
     "perimeter": _measure("perimeter", LENGTH),
+    "centroid": _centroid,
     "outline_clearance": _measure("clearance", LENGTH),
     "overlaps": _measure("overlaps", PLAIN),
 }

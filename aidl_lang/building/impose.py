@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
-from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved
+from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_formulas
 from aidl_lang.building.by_hand import is_by_hand, record_dimension
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.measured import FORMULAS, OTHERWISE
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -39,8 +40,8 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.building.wording import Read, Wording
 from aidl_lang.checking import rules
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
@@ -172,6 +173,7 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
         "areas, perimeters and clearances of outlines are known after solving only",
         node,
         hints=[
+            f"{FORMULAS}: name that",
             "put it in an `assert`, or constrain boxes and distances instead",
             "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
         ],
@@ -205,6 +207,7 @@ def _impose_condition(
             comparisons.append(part)
     if any(map(_is_angle, ast.walk(node))):
         ask_to_turn(comparisons)
+    comparisons = _by_formulas(it, comparisons, node, env, weight)
     if _refuses_measured(it, comparisons, node):
         return
     if found := _measurements(comparisons):
@@ -243,6 +246,26 @@ def _with_foreseen_boxes(
     if weight is None:
         _check_when_drawn(it, comparisons, box, node, env)
     return [_foreseen(comparison) for comparison in comparisons]
+
+
+def _by_formulas(
+    it: Interpreter, comparisons: list[Comparison], node: ast.Expression, env: Env, weight: float | None
+) -> list[Comparison]:
+    """Returns comparisons with the areas and perimeters that have formulas by these; what is drawn is
+    measured again.
+    """
+    if all(m.kind in SIDES for m in _measurements(comparisons)):
+        return comparisons
+    sides = (with_formulas(c.left, c.right) for c in comparisons)
+    found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
+    if weight is None and all(m.kind in SIDES for m in _measurements(found)):
+        wording = Wording(node, it, env, _read)
+        where, turn = it.place(node) or node.span, ", ".join(env.scope.labels)
+        both = Condition("and", tuple(comparisons))
+        it.assertions.append(
+            Assertion(env.here, both, OTHERWISE, node.span.one_line, where, turn, wording=wording)
+        )
+    return found
 
 
 def _foreseen(comparison: Comparison) -> Comparison:

@@ -33,9 +33,9 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 _PLAN = 10.0

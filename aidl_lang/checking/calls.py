@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking import fields, units
+from aidl_lang.checking import builtins, units
 from aidl_lang.checking.binding import outcomes
 from aidl_lang.checking.builtins import COPYING, PATTERNS, is_word
-from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined
+from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined, result
 from aidl_lang.checking.habits import check_habits
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.standard import CONSTANT, result
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -206,7 +205,7 @@ def _built_in(
     if name in PATTERNS:
         listed = replace(facts[0], reads=reads, place=None).listed(2 if name == "grid" else 1)
         return replace(listed, pattern=name)
-    return Fact(fields.RESULTS.get(name, ANY), reads)
+    return Fact(builtins.RESULTS.get(name, ANY), reads)
 
 
 def parameter_of(index: int, fits: Sequence[Binding]) -> str | None:

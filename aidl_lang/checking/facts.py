@@ -1,13 +1,37 @@
-"""Facts about an expression before anything is built: its type, and the unknowns it reads."""
+"""Facts about names and expressions before anything is built: types, and the unknowns that are read."""
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from aidl_lang.checking.resolving.symbols import Symbol
-from aidl_lang.checking.types import ANY, AnyType, GeometryType, ListType, NumberType, PointType, Type
+from aidl_lang.checking import builtins
+from aidl_lang.checking.library import Library
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
+from aidl_lang.checking.types import (
+    ANY,
+    PARAMETER_TYPES,
+    AnyType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RangeType,
+    StructureType,
+    Type,
+)
+from aidl_lang.common.names import find, fold
 from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
+
+
+# --- Facts about an expression before anything is built: its type, and the unknowns it reads.
 
 
 @record(slots=True)
@@ -80,3 +104,231 @@ def is_point(kind: Type) -> bool:
 def is_number(kind: Type) -> bool:
     """Tells whether a type is a number, or an edge that stands for its coordinate."""
     return isinstance(kind, NumberType) or kind == GeometryType("line")
+
+
+# --- Facts about names: of params, lets, loop variables, parameters, geometry and structures.
+
+
+def of_symbol(check: Inference, symbol: Symbol) -> Fact:
+    """Returns the fact of a name as it is declared."""
+    match symbol.kind:
+        case SymbolKind.BUILTIN:
+            return _builtin(check, symbol)
+        case SymbolKind.NAMESPACE:
+            return UNKNOWN
+        case SymbolKind.STRUCTURE if symbol.scope is None:  # its own name, inside the structure
+            return _structure_itself(check, symbol.node)
+        case SymbolKind.LOOP:
+            return _loop_variable(check, symbol)
+        case SymbolKind.ARGUMENT:
+            return _argument(check, symbol)
+        case _:
+            return _declared(check, symbol)
+
+
+def _builtin(check: Inference, symbol: Symbol) -> Fact:
+    if symbol.name == "self":
+        return _structure_itself(check, check.homes[-1])
+    if symbol.name in builtins.STRUCTURE:
+        return Fact(builtins.STRUCTURE[symbol.name])
+    let = check.resolution.library.constants.get(symbol.name)
+    return UNKNOWN if let is None else _literal(check, let.value)
+
+
+def _literal(check: Inference, node: ast.Expression) -> Fact:
+    return check.fact(node) if isinstance(node, ast.Number | ast.String | ast.Boolean) else UNKNOWN
+
+
+def _structure_itself(check: Inference, node: ast.Node | None) -> Fact:
+    if not isinstance(node, ast.Structure):
+        return UNKNOWN
+    place = ReadPlace(node)
+    return Fact(StructureType(), frozenset({place}), node, place)
+
+
+def _loop_variable(check: Inference, symbol: Symbol) -> Fact:
+    loop = symbol.node
+    assert isinstance(loop, ast.For | ast.ForArguments | ast.Comprehension)
+    if len(loop.variables) > 1:
+        return UNKNOWN
+    run = check.facts.get(loop.iterable)
+    if run is None:
+        return UNKNOWN
+    if isinstance(run.type, RangeType):
+        return Fact(NumberType(None, whole=True)) if _is_plain_range(loop.iterable) else UNKNOWN
+    element = run.element()
+    return Fact(ANY, element.reads) if isinstance(element.type, NumberType) else element
+
+
+def _argument(check: Inference, symbol: Symbol) -> Fact:
+    parameter = symbol.node
+    assert isinstance(parameter, ast.Parameter)
+    if parameter.type is None:
+        return UNKNOWN
+    word = find(parameter.type.text, PARAMETER_TYPES)
+    return Fact(PARAMETER_TYPES[word]) if word else UNKNOWN
+
+
+def _declared(check: Inference, symbol: Symbol) -> Fact:
+    """Returns the fact of a declared name; of several declarations, what they have in common."""
+    fact: Fact | None = None
+    for node in symbol.nodes:
+        one = _declaration(check, symbol, node)
+        fact = one if fact is None else joined(fact, one)
+    fact = fact or UNKNOWN
+    if isinstance(fact.type, NumberType) and fact.type.dimension is None and not fact.reads:
+        fact = replace(fact, bare=symbol)
+    return fact
+
+
+def _declaration(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
+    if node in check.running:
+        return UNKNOWN  # a cycle, which is reported when its names are checked
+    check.running.add(node)
+    assert symbol.scope is not None
+    before, check.homes = check.homes, symbol.scope.homes
+    try:
+        return _value_of(check, symbol, node)
+    finally:
+        check.homes = before
+        check.running.discard(node)
+
+
+def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
+    home = check.homes[-1]
+    match node:
+        case ast.Param():
+            return _param(check, node)
+        case ast.Let(value=value):
+            return check.fact(value)
+        case ast.Var(value=value):
+            return Fact(_unlocked(check.fact(value).type), frozenset({ReadPlace(home)}))
+        case ast.Structure(indices=indices):
+            place = ReadPlace(home, (symbol.name,))
+            return Fact(StructureType(), frozenset({place}), node, place).listed(len(indices))
+        case ast.Assign(value=value, indices=indices):
+            fact = check.fact(value)
+            is_made = symbol.kind is SymbolKind.GEOMETRY
+            if isinstance(fact.type, StructureType) or (is_made and _holds_structures(fact.type)):
+                place = ReadPlace(home, (symbol.name,))
+                fact = replace(fact, reads=frozenset({place}), place=place)
+            elif is_made:
+                # A copy of an ancestor's geometry is for the ancestor to constrain.
+                far = {p for p in fact.reads if p.holder is not home}
+                fact = fact.reading(frozenset({ReadPlace(home), *far}))
+            return fact.listed(len(indices))
+        case _:
+            return UNKNOWN
+
+
+def _holds_structures(kind: Type) -> bool:
+    while isinstance(kind, ListType):
+        kind = kind.element
+    return isinstance(kind, StructureType)
+
+
+def _param(check: Inference, node: ast.Param) -> Fact:
+    fact = check.fact(node.value)
+    if not isinstance(fact.type, NumberType):
+        return fact
+    dimension = fact.type.dimension
+    if dimension is None and isinstance(node.domain, ast.Range):
+        for end in (node.domain.start, node.domain.end):
+            bound = check.fact(end).type
+            if isinstance(bound, NumberType) and bound.dimension is not None:
+                dimension = bound.dimension
+    return Fact(NumberType(dimension, whole=dimension is None))
+
+
+def _is_plain_range(node: ast.Expression) -> bool:
+    return isinstance(node, ast.Range) and not any(
+        isinstance(n, ast.Number) and n.unit is not None for n in ast.walk(node)
+    )
+
+
+def _unlocked(kind: Type) -> Type:
+    """Returns the type of a number that the solver finds: not whole, and ANY for a bare one, whose dimension
+    its constraints decide.
+    """
+    if isinstance(kind, NumberType):
+        return ANY if kind.dimension is None else NumberType(kind.dimension)
+    return kind
+
+
+# --- Facts about the library's own definitions. They see nothing of a program, so each is found once.
+
+CONSTANT = frozenset({"len", "written"})
+"""Functions whose results are constants even for unknowns."""
+
+_EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))
+
+
+def body_of(check: Inference, definition: ast.Node) -> SymbolScope:
+    """Returns the scope of the body of a structure or a definition."""
+    if check.is_standard(definition):
+        return _body(check.resolution.library, definition)
+    return check.resolution.scope_of(definition)
+
+
+def part(check: Inference, definition: ast.Node, key: str) -> Fact:
+    """Returns the fact of a name that a body declares."""
+    if check.is_standard(definition):
+        return _part(check.resolution.library, definition, key)
+    return of_symbol(check, body_of(check, definition).values[key])
+
+
+def result(check: Inference, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
+    """Returns the fact of a function's expression, and whether its result depends on the solved values of its
+    arguments, not only on those as written.
+    """
+    if check.is_standard(definition):
+        return _result(check.resolution.library, definition)
+    before, check.homes = check.homes, body_of(check, definition).homes
+    try:
+        return check.fact(definition.value), _reads_arguments(definition)
+    finally:
+        check.homes = before
+
+
+def _reads_arguments(definition: ast.FunctionDefinition) -> bool:
+    names = {parameter.name.text for parameter in definition.parameters}
+    stack: list[ast.Node] = [definition.value]
+    while stack:
+        match stack.pop():
+            case ast.Name(text) if text in names:
+                return True
+            case ast.Call(callee=callee) if fold(callee.text) in CONSTANT:
+                pass
+            case node:
+                stack.extend(ast.children(node))
+    return False
+
+
+@lru_cache(maxsize=1024)
+def _body(library: Library, definition: ast.Node) -> SymbolScope:
+    with _ONE_AT_A_TIME:
+        return body_of(_alone(library, definition), definition)
+
+
+@lru_cache(maxsize=4096)
+def _part(library: Library, definition: ast.Node, key: str) -> Fact:
+    with _ONE_AT_A_TIME:
+        return part(_alone(library, definition), definition, key)
+
+
+@lru_cache(maxsize=1024)
+def _result(library: Library, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
+    with _ONE_AT_A_TIME:
+        return result(_alone(library, definition), definition)
+
+
+_ONE_AT_A_TIME = threading.Lock()  # an inference serves one thread
+
+
+@lru_cache(maxsize=1024)
+def _alone(library: Library, definition: ast.Node) -> Inference:
+    """Returns an inference for one definition: for it, the library is the program."""
+    from aidl_lang.checking.infer import Inference  # it imports this module
+    from aidl_lang.checking.resolve import resolve
+
+    return Inference(resolve(_EMPTY, None, library), standard=())

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from aidl_lang.checking.builtins import MATH
 from aidl_lang.checking.resolving.declare import made_by
 from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import AnyType, Binding, ListType, NumberType, PointType
 from aidl_lang.checking.units import ANGLE, PLAIN
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix, has_errors
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast

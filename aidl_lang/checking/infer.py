@@ -10,11 +10,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import reduce
 
-from aidl_lang.checking import calls, members, named, operators, rules, units
+from aidl_lang.checking import calls, facts, members, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
-from aidl_lang.checking.resolving.resolution import Resolution
-from aidl_lang.checking.resolving.symbols import Symbol
-from aidl_lang.checking.rules import TypeMisfit
+from aidl_lang.checking.resolving.symbols import Resolution, Symbol
+from aidl_lang.checking.rules import TypeMisfit, shown
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -30,7 +29,6 @@ from aidl_lang.checking.types import (
     Type,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
@@ -128,7 +126,7 @@ class Inference:
 
     def _name(self, node: ast.Name) -> Fact:
         symbol = self.resolution.uses.get(node)
-        return named.of_symbol(self, symbol) if symbol is not None else UNKNOWN
+        return facts.of_symbol(self, symbol) if symbol is not None else UNKNOWN
 
     def _point(self, node: ast.Point) -> Fact:
         reads = NOTHING_READ
@@ -321,10 +319,10 @@ _INFER: dict[type, Callable[..., Fact]] = {
     ast.Comprehension: Inference._comprehension,
     ast.ForArguments: Inference._for_arguments,
     ast.IfArguments: Inference._if_arguments,
-    ast.Unary: operators.unary,
-    ast.Binary: operators.binary,
-    ast.Comparison: operators.comparison,
-    ast.Membership: operators.membership,
+    ast.Unary: members.unary,
+    ast.Binary: members.binary,
+    ast.Comparison: members.comparison,
+    ast.Membership: members.membership,
     ast.Range: Inference._range,
     ast.Conditional: Inference._conditional,
 }

@@ -19,7 +19,7 @@ from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-from aidl_lang.syntax import ast, plain
+from aidl_lang.syntax import ast
 
 DERIVED = "library.jsonl"
 
@@ -200,7 +200,7 @@ def built() -> bytes:
 
     def store(node: ast.Node) -> tuple[int, int, int]:
         start = len(body)
-        body.extend(_line(plain.encoded(node)))
+        body.extend(_line(ast.encoded(node)))
         return numbers[node.span.source.name], start, len(body)
 
     index = {
@@ -222,7 +222,7 @@ def _opened(data: bytes, sources: tuple[SourceFile, ...]) -> Library:
     index = json.loads(data[:trees])
 
     def tree(file: int, start: int, end: int) -> Any:
-        return plain.decoded(json.loads(data[trees + start : trees + end]), sources[file])
+        return ast.decoded(json.loads(data[trees + start : trees + end]), sources[file])
 
     def overloads(name: str) -> tuple[Signature, ...]:
         return tuple(

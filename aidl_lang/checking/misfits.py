@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking.binding import in_order, select
-from aidl_lang.checking.facts import is_number, is_point
+from aidl_lang.checking.facts import body_of, is_number, is_point
 from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
-from aidl_lang.checking.standard import body_of
+from aidl_lang.checking.rules import shown
 from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
     Binding,
@@ -24,7 +24,6 @@ from aidl_lang.checking.types import (
     StructureType,
     accepts,
 )
-from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import WORDS, fold, is_slip, nearest
 from aidl_lang.common.prose import ticked

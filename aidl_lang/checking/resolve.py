@@ -23,12 +23,19 @@ from aidl_lang.checking.allowing import allowances
 from aidl_lang.checking.builtins import ATTRIBUTES, WORDED, is_word
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving import complaints
+from aidl_lang.checking.resolving.complaints import ATTRIBUTES_MEANT, without_idle
 from aidl_lang.checking.resolving.cuts import hole_calls, meant, with_placed_cuts
 from aidl_lang.checking.resolving.declare import Declarer, is_definition, made_by
-from aidl_lang.checking.resolving.foreign import ATTRIBUTES_MEANT, without_idle
 from aidl_lang.checking.resolving.imports import ImportedModules, load_imports, with_inner_imports
-from aidl_lang.checking.resolving.resolution import Resolution, library_scope
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
+from aidl_lang.checking.resolving.symbols import (
+    UNKNOWNS,
+    Resolution,
+    Symbol,
+    SymbolKind,
+    SymbolScope,
+    library_scope,
+    word_meant,
+)
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label, ordered
 from aidl_lang.common.drawings import WHOLE

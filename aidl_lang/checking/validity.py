@@ -14,12 +14,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import CONNECTING, DERIVING, FOLLOWED, PATTERNS
+from aidl_lang.checking.builtins import CONNECTING, DERIVING, FOLLOWED, PATTERNS, PRIMITIVE
 from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.facts import Fact, ReadPlace, is_point
-from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.relocate import StatementSite, member_path
 from aidl_lang.checking.resolving.complaints import used_early
 from aidl_lang.checking.resolving.symbols import UNKNOWNS
 from aidl_lang.checking.types import (
@@ -33,7 +31,7 @@ from aidl_lang.checking.types import (
     StructureType,
     Type,
 )
-from aidl_lang.checking.violations import FarReference, Violation
+from aidl_lang.checking.violations import FarReference, StatementSite, Violation, member_path
 from aidl_lang.syntax import ast
 
 

@@ -6,7 +6,6 @@ import gc
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 import time
 import traceback
@@ -14,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from enum import Enum
-from multiprocessing import connection, forkserver
+from multiprocessing import connection
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
 from typing import Any, Protocol, TypeVar
@@ -231,10 +230,11 @@ def prepared(preload: str | Sequence[str]) -> multiprocessing.context.BaseContex
     """Returns how processes are started that have loaded some modules. It begins to load them, which goes on
     while others do other things.
     """
-    if sys.platform == "win32":
+    if not hasattr(os, "fork"):
         return multiprocessing.get_context("spawn")
-    # starts a process from one that has the language loaded and no threads
-    context = multiprocessing.get_context("forkserver")
+    from multiprocessing import forkserver
+
+    context = multiprocessing.get_context("forkserver")  # of a process with the language and no threads
     context.set_forkserver_preload([preload] if isinstance(preload, str) else list(preload))
     forkserver.ensure_running()
     return context
@@ -289,7 +289,7 @@ def _prepare(memory: int) -> None:
     gc.set_threshold(_BETWEEN_SEARCHES)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_server, daemon=True).start()
-    if sys.platform != "win32":
+    with suppress(ImportError, OSError, ValueError):  # Windows has no such module, and macOS no such limit
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))

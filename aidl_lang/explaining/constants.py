@@ -16,8 +16,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, RemedySearch, remedies
-from aidl_lang.explaining.trials import Trials
-from aidl_lang.explaining.verifying import mends
+from aidl_lang.explaining.trials import Trials, mends
 from aidl_lang.solver import Solution
 from aidl_lang.solver.solution import Failure, GroupFailure, Member
 

@@ -18,7 +18,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.leaving import leaving_notes
+from aidl_lang.explaining.staying import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing

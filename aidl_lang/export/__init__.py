@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import PurePath
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.records import record
@@ -136,17 +137,16 @@ class Format:
     `label` describes the file in menus; a format without one is asked for by its suffix alone.
     `cuts` tells whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages,
     `inches` whether it may be in other units than mm.
-    Several sheets go to as many files, unless `write_all` puts them into one.
+    `write` has the jobs of all sheets.
     """
 
-    write: Callable[[Job], Exported]
+    write: Callable[[Sequence[Job]], Exported]
     label: str = ""
     needs: str | None = None
     extra: str | None = None
     cuts: bool = False
     tiles: bool = False
     inches: bool = False
-    write_all: Callable[[Sequence[Job]], Exported] | None = None
 
 
 class Exporter:
@@ -167,12 +167,8 @@ class Exporter:
         unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
         if job.options.sheet is not None or job.options.kerf:
             jobs, notes = self._prepared
-        if wanted.write_all is not None:
-            made = wanted.write_all(jobs)
-        else:
-            made = _files([*map(wanted.write, jobs), *_list_pages(jobs, suffix)])
-            notes = notes + _unlisted(job, suffix)
-        return replace(made, notes=(*notes, *unsaid, *made.notes))
+        made = wanted.write(jobs)
+        return replace(made, notes=(*notes, *_unlisted(job, suffix), *unsaid, *made.notes))
 
     def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
         """Writes each part that differs from the others by itself, flat and with its lower left corner at the
@@ -331,100 +327,53 @@ def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
     return pages(jobs)
 
 
-def _list_pages(jobs: Sequence[Job], suffix: str) -> list[Exported]:
-    """Returns the pages of the cut list that are asked for, each as a file of its own."""
-    if suffix not in PICTURES:
-        return []
-    return [Exported(PICTURES[suffix](page, jobs[0].options)) for page in _pages_of_list(jobs)]
-
-
 def _unlisted(job: Job, suffix: str) -> list[Diagnostic]:
-    if "list" not in job.options.show or suffix in PICTURES:
+    if "list" not in job.options.show or suffix in (*PICTURES, ".csv"):
         return []
     hint = "write it beside: `-o cutlist.csv`, or `-o cutlist.pdf`"
     return [Diagnostic("N0755", f"the cut list is drawn in pictures, and `{suffix}` is none", hints=(hint,))]
 
 
-def _svg(job: Job) -> Exported:
-    from aidl_lang.export.picture import pages
-    from aidl_lang.export.svg import to_svg
+def _pictures(suffix: str) -> Callable[[Sequence[Job]], Exported]:
+    """Returns the writer of a format of pictures: their pages, and behind them those of the cut list."""
 
-    return _files([Exported(to_svg(page, units=job.options.units).encode()) for page in pages(job)])
+    def write(jobs: Sequence[Job]) -> Exported:
+        from aidl_lang.export.picture import pages
 
+        root = jobs[0].model.root
+        drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
+        return rendered(drawn, suffix, jobs[0].options, (root.doc or root.path).partition("\n")[0])
 
-def _png(job: Job) -> Exported:
-    from aidl_lang.export.picture import pages
-    from aidl_lang.export.png import character_notes, to_png
-
-    drawn = pages(job)
-    data, *further = (to_png(page, job.options.pixels) for page in drawn)
-    return Exported(data, tuple(further), character_notes(drawn))
+    return write
 
 
-def _pdf(job: Job) -> Exported:
-    return _pdf_of_all([job])
-
-
-def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.pdf import to_pdf
-    from aidl_lang.export.picture import pages
-    from aidl_lang.export.png import character_notes
-
-    drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
-    root = jobs[0].model.root
-    return Exported(to_pdf(drawn, (root.doc or root.path).partition("\n")[0]), notes=character_notes(drawn))
-
-
-def _json(job: Job) -> Exported:
+def _json(jobs: Sequence[Job]) -> Exported:
     from aidl_lang.export.json import to_json
 
+    (job,) = jobs
     return Exported(to_json(job.model, job.drawing, job.diagnostics(), job.options.timings).encode())
 
 
-def _dxf(job: Job) -> Exported:
-    from aidl_lang.export.dxf import to_dxf
-
-    return to_dxf(job)
-
-
-def _csv(job: Job) -> Exported:
-    return _csv_of_all([job])
+def _writer(module: str, name: str) -> Callable[[Any], Exported]:
+    """Returns a writer by its module, which is loaded when it first writes."""
+    return lambda given: getattr(import_module(f"aidl_lang.export.{module}"), name)(given)
 
 
-def _csv_of_all(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.cut_list_files import to_csv
-
-    return to_csv(jobs)
-
-
-def _step(job: Job) -> Exported:
-    from aidl_lang.export.step import to_step
-
-    return to_step(job)
-
-
-def _stl(job: Job) -> Exported:
-    from aidl_lang.export.mesh import to_stl
-
-    return to_stl(job)
-
-
-def _3mf(job: Job) -> Exported:
-    from aidl_lang.export.threemf import to_3mf
-
-    return to_3mf(job)
+def _each(module: str, name: str) -> Callable[[Sequence[Job]], Exported]:
+    """Returns the writer of a format that has a file for each sheet."""
+    return lambda jobs: _files([*map(_writer(module, name), jobs)])
 
 
 FORMATS: dict[str, Format] = {
-    ".svg": Format(_svg, "SVG drawing", cuts=True, tiles=True, inches=True),
-    ".pdf": Format(_pdf, "PDF, true to scale", cuts=True, tiles=True, write_all=_pdf_of_all),
-    ".png": Format(_png, "PNG picture", cuts=True, tiles=True),
-    ".dxf": Format(_dxf, "DXF for cutters", cuts=True, inches=True),
-    ".csv": Format(_csv, cuts=True, write_all=_csv_of_all),
-    ".step": Format(_step, "STEP solid", "OCP", "step"),
-    ".stp": Format(_step, needs="OCP", extra="step"),
-    ".stl": Format(_stl, "STL mesh"),
-    ".3mf": Format(_3mf, "3MF for printers", "lib3mf", "3mf"),
+    ".svg": Format(_pictures(".svg"), "SVG drawing", cuts=True, tiles=True, inches=True),
+    ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
+    ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
+    ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
+    ".csv": Format(_writer("cut_list_files", "to_csv"), cuts=True),
+    ".step": Format(_each("step", "to_step"), "STEP solid", "OCP", "step"),
+    ".stp": Format(_each("step", "to_step"), needs="OCP", extra="step"),
+    ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
+    ".3mf": Format(_each("threemf", "to_3mf"), "3MF for printers", "lib3mf", "3mf"),
     ".json": Format(_json),
 }
 
@@ -432,15 +381,31 @@ OFFERED = {suffix[1:]: made.label for suffix, made in FORMATS.items() if made.la
 """The formats that menus and tools offer, without the dot, with their labels."""
 
 
+PICTURES = (".svg", ".png", ".pdf")
+
+
 def render(picture: Picture, suffix: str, options: Options) -> bytes:
     """Writes a single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
-    return PICTURES[suffix](picture, options)
+    if suffix == ".svg":
+        from aidl_lang.export.svg import to_svg
+
+        return to_svg(picture, units=options.units).encode()
+    if suffix == ".png":
+        from aidl_lang.export.png import to_png
+
+        return to_png(picture, options.pixels)
+    from aidl_lang.export.pdf import to_pdf
+
+    return to_pdf([picture], "AIDL")
 
 
 def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str) -> Exported:
     """Writes pictures in the format of a file suffix among `PICTURES`: a PDF has a page for each, of others
     there is a file for each. Raises as `export` does.
     """
+    if suffix == ".svg":
+        data, *further = (render(page, suffix, options) for page in pages)
+        return Exported(data, tuple(further))
     from aidl_lang.export.png import character_notes
 
     if suffix == ".pdf":
@@ -448,29 +413,4 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
 
         return Exported(to_pdf(pages, title), notes=character_notes(pages))
     data, *further = (render(page, suffix, options) for page in pages)
-    return Exported(data, tuple(further), () if suffix == ".svg" else character_notes(pages))
-
-
-def _svg_picture(picture: Picture, options: Options) -> bytes:
-    from aidl_lang.export.svg import to_svg
-
-    return to_svg(picture, units=options.units).encode()
-
-
-def _png_picture(picture: Picture, options: Options) -> bytes:
-    from aidl_lang.export.png import to_png
-
-    return to_png(picture, options.pixels)
-
-
-def _pdf_picture(picture: Picture, options: Options) -> bytes:
-    from aidl_lang.export.pdf import to_pdf
-
-    return to_pdf([picture], "AIDL")
-
-
-PICTURES: dict[str, Callable[[Picture, Options], bytes]] = {
-    ".svg": _svg_picture,
-    ".png": _png_picture,
-    ".pdf": _pdf_picture,
-}
+    return Exported(data, tuple(further), character_notes(pages))

@@ -17,8 +17,8 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.export import UNITS, Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
-from aidl_lang.export.labels import labels
 from aidl_lang.export.marks import Text
+from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
@@ -176,8 +176,6 @@ def _short(name: str) -> str:
     return name if len(name) <= 60 else f"{name[:59]}…"
 
 
-# --- DXF for laser cutters, routers and other CAD systems: 1:1 in mm or inches, y upwards.
-#
 # Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
 # other kinds are fitted by arcs (`geometry.arcs`). Outer outlines run counter-clockwise, inner ones
 # clockwise. On request the file is one of R12, which says the same in older words; or it is exact, and an

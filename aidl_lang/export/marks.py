@@ -1,15 +1,18 @@
-"""The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards."""
+"""The marks of pictures, as data, and whole pictures made anew: scaled, moved, made coarse."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from collections.abc import Callable
+from dataclasses import field, replace
 from typing import NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.curves import Line, Piece, Vec, image
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face, Loop
+
+# --- The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards.
 
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
@@ -80,6 +83,11 @@ class Area:
         outline.
         """
         return self.ink is None and self.role not in ("", HALO)
+
+
+def widened(box: Bounds, by: float) -> Bounds:
+    """Returns a box with so much more on each side."""
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def polygon(*corners: Vec) -> Face:
@@ -173,3 +181,157 @@ class Picture:
     @property
     def height(self) -> float:
         return self.box[3] - self.box[1]
+
+
+def scaled(picture: Picture, factor: float) -> Picture:
+    """Returns the picture with all its lengths multiplied."""
+    scale = Placing(factor)
+    return Picture(scale.box(picture.box), tuple(map(scale.group, picture.groups)))
+
+
+@record()
+class Placing:
+    """Multiplies all lengths, then moves by `shift`."""
+
+    factor: float
+    shift: Vec = (0.0, 0.0)
+
+    def point(self, p: Vec) -> Vec:
+        return self.factor * p[0] + self.shift[0], self.factor * p[1] + self.shift[1]
+
+    def box(self, box: Bounds) -> Bounds:
+        return *self.point(box[:2]), *self.point(box[2:])
+
+    def group(self, group: Group) -> Group:
+        clip = None if group.clip is None else self.box(group.clip)
+        return replace(group, marks=tuple(map(self.mark, group.marks)), clip=clip)
+
+    def mark(self, mark: Mark) -> Mark:
+        k = self.factor
+        match mark:
+            case Area(face=face, ink=ink, gradient=gradient):
+                return replace(
+                    mark,
+                    face=self.face(face),
+                    ink=None if ink is None else self.ink(ink),
+                    gradient=None if gradient is None else self.gradient(gradient),
+                )
+            case Curves(pieces=pieces, ink=ink):
+                return replace(mark, pieces=tuple(map(self.piece, pieces)), ink=self.ink(ink))
+            case Text(at=at, size=size):
+                return replace(mark, at=self.point(at), size=k * size)
+            case Dot(at=at, radius=radius):
+                return replace(mark, at=self.point(at), radius=k * radius)
+            case Frame(box=box, width=width, dash=dash):
+                return replace(mark, box=self.box(box), width=k * width, dash=k * dash)
+
+    def gradient(self, gradient: Gradient) -> Gradient:
+        radius = None if gradient.radius is None else self.factor * gradient.radius
+        start, end = self.point(gradient.start), self.point(gradient.end)
+        return replace(gradient, start=start, end=end, radius=radius)
+
+    def ink(self, ink: Ink) -> Ink:
+        dash = None if ink.dash is None else tuple(self.factor * part for part in ink.dash)
+        return replace(ink, width=self.factor * ink.width, dash=dash)
+
+    def face(self, face: Face) -> Face:
+        return Face(self.loop(face.outer), tuple(map(self.loop, face.holes)))
+
+    def loop(self, loop: Loop) -> Loop:
+        return replace(loop, pieces=tuple(map(self.piece, loop.pieces)))
+
+    def piece(self, piece: Piece) -> Piece:
+        return image(piece, self.point, self.factor)
+
+
+# --- Pictures for few pixels: no line thinner than one, and black lines on white without colours.
+
+_BLACK, _WHITE = "#000000", "#ffffff"
+_SHORTEST_DASH = 2.0
+"""Pixels; shorter ones cannot be told from a line."""
+_SEEN_THROUGH = 0.5
+"""Opacity up to which a fill hides nothing where there is black and white alone."""
+
+
+def framed(picture: Picture, proportion: float) -> Picture:
+    """Returns the picture with white around it, `proportion` times as wide as high."""
+    left, bottom, right, top = picture.box
+    x = max(0.0, picture.height * proportion - picture.width) / 2
+    y = max(0.0, picture.width / proportion - picture.height) / 2
+    return replace(picture, box=(left - x, bottom - y, right + x, top + y))
+
+
+def coarse(picture: Picture, pixel: float) -> Picture:
+    """Returns the picture with no line thinner than a `pixel`, mm."""
+    return _redrawn(picture, lambda mark: _thickened(mark, pixel))
+
+
+def resolved(picture: Picture, pixel: float) -> Picture:
+    """Returns the picture with dashes that no `pixel`, mm, can show as what they look like: a paler line.
+    (Of a million dashes resvg draws none.)
+    """
+    return _redrawn(picture, lambda mark: _blurred(mark, pixel))
+
+
+def outlined(picture: Picture) -> Picture:
+    """Returns the picture in black and white: outlines hide what is below them, and seams are left out."""
+    return _redrawn(picture, _plain)
+
+
+def separated(picture: Picture) -> tuple[Picture, tuple[Text, ...]]:
+    """Returns the picture without its texts, and the texts."""
+    texts = tuple(mark for group in picture.groups for mark in group.marks if isinstance(mark, Text))
+    return _redrawn(picture, lambda mark: None if isinstance(mark, Text) else mark), texts
+
+
+def _redrawn(picture: Picture, change: Callable[[Mark], Mark | None]) -> Picture:
+    groups = (
+        replace(group, marks=tuple(new for mark in group.marks if (new := change(mark)) is not None))
+        for group in picture.groups
+    )
+    return replace(picture, groups=tuple(groups))
+
+
+def _thickened(mark: Mark, pixel: float) -> Mark:
+    match mark:
+        case Area(ink=Ink() as ink) | Curves(ink=ink):
+            dash = ink.dash if ink.dash and min(ink.dash) > _SHORTEST_DASH * pixel else None
+            return replace(mark, ink=replace(ink, width=max(ink.width, pixel), dash=dash))
+        case Frame():
+            return replace(mark, width=max(mark.width, pixel))
+        case Dot():
+            return replace(mark, radius=max(mark.radius, pixel))
+    return mark
+
+
+def _blurred(mark: Mark, pixel: float) -> Mark:
+    match mark:
+        case Area(ink=Ink(dash=tuple() as dash) as ink) | Curves(ink=Ink(dash=tuple() as dash) as ink):
+            if sum(dash) > _SHORTEST_DASH * pixel:
+                return mark
+            drawn = sum(dash[::2]) / sum(dash)
+            return replace(mark, ink=replace(ink, dash=None, opacity=drawn * ink.opacity))
+    return mark
+
+
+def _plain(mark: Mark) -> Mark | None:
+    match mark:
+        case Area(ink=ink):
+            if mark.is_sign:
+                return replace(mark, fill=_BLACK, opacity=1.0)
+            is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH and not mark.fades
+            fill = _WHITE if is_hiding else None
+            line = None if ink is None else _solid(ink)
+            return replace(mark, fill=fill, opacity=1.0, ink=line, gradient=None)
+        case Curves(role="seam"):
+            return None
+        case Curves(role="halo", ink=ink):
+            return replace(mark, ink=replace(ink, color=_WHITE))
+        case Curves(ink=ink):
+            return replace(mark, ink=_solid(ink))
+        case Text() | Dot() | Frame():
+            return replace(mark, color=_BLACK)
+
+
+def _solid(ink: Ink) -> Ink:
+    return replace(ink, color=_BLACK, opacity=1.0)

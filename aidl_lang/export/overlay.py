@@ -1,8 +1,4 @@
-"""Layers that explain a drawing: names, points, boxes, constraints, degrees of freedom, plans.
-
-Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look for
-a free place near what they name; lists stand to the right of the drawing or below it.
-"""
+"""Layers that explain a drawing: names, points, boxes, constraints, freedom, plans; labels of parts."""
 
 from __future__ import annotations
 
@@ -12,16 +8,97 @@ from dataclasses import field
 from typing import TypeGuard
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
-from aidl_lang.export.marks import Dot, Frame, Mark, Text
+from aidl_lang.export import Job, themes
+from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Piece, Vec
-from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.evaluate import Bounds, are_near, bounds
+from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.parts import COARSE
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.tessellate import piece_points, region_polygons
+
+# --- Names and numbers of parts on sheets, each where its part has room for it.
+
+LABELS = frozenset({"names", "numbers"})
+"""What `--show` may ask for of parts on sheets."""
+SIZE = 5.0
+"""Largest font size, mm."""
+_BASELINE = 0.3
+"""How far below its middle the baseline of a text runs, relative to its size."""
+_STEPS = 15
+"""Places looked at along each side of a part."""
+_AIR = 0.9
+"""Share of the room that a text takes."""
+
+
+def labels(job: Job) -> Iterator[Text]:
+    """Yields a text for each part, as large as it allows, up to what is read easily."""
+    asked = job.options.show & LABELS
+    if not asked or job.options.sheet is None:
+        return
+    root, numbers = job.model.root.path, job.cut_list.numbers if "numbers" in asked else {}
+    for body in job.drawing.bodies:
+        words = [str(numbers[body.path])] if numbers else []
+        words += [body.path.removeprefix(f"{root}.")] if "names" in asked else []
+        label = " ".join(words)
+        middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
+        at = middle[0], middle[1] - _BASELINE * size
+        yield Text(at, label, size, themes.NAME, "middle", halo=False)
+
+
+def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
+    """Returns what is engraved about a body, as polylines."""
+    near = (s.pieces for s in drawing.strokes)
+    boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
+    return [piece_points(piece, COARSE) for piece, box in boxes if are_near(box, body.box)]
+
+
+def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
+    """Returns the middle and the size of the largest text, so many times as wide as high, that lies in the
+    material beside what is engraved, as near to the middle of the part as there is room.
+    """
+    shrunk = [polygon / (width, 1.0) for polygon in region_polygons(region, COARSE)]
+    sides = [_sides(np.concatenate((polygon, polygon[:1]))) for polygon in shrunk]
+    sides += [_sides(line / (width, 1.0)) for line in engraved]
+    outline = np.concatenate(shrunk)
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    shares = (np.arange(_STEPS) + 0.5) / _STEPS
+    spots = low + np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2) * (high - low)
+    spots = np.concatenate(([(low + high) / 2], spots))
+    spots = spots[np.argsort(np.hypot(*((spots - spots[0]) * (width, 1.0)).T), kind="stable")]
+    spots = spots[within] if (within := inside(shrunk, spots)).any() else spots[:1]
+    # A square lies in a circle: where a text is as high as wide, its room is that of a square.
+    sizes = _AIR * np.sqrt(2) * _clearance(spots, np.concatenate(sides))
+    best = int(np.argmax(np.minimum(sizes, SIZE)))
+    x, y = spots[best] * (width, 1.0)
+    return (float(x), float(y)), float(min(sizes[best], SIZE))
+
+
+def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns start and end of each side of a polyline, a row each."""
+    return np.concatenate((line[:-1], line[1:]), axis=1)
+
+
+def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the distance of each point to the nearest side."""
+    start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
+    square = np.maximum((way**2).sum(axis=1), 1e-30)
+    least = np.full(len(spots), np.inf)
+    for k, spot in enumerate(spots):
+        t = np.clip(((spot - start) * way).sum(axis=1) / square, 0, 1)
+        least[k] = np.hypot(*(spot - start - t[:, None] * way).T).min()
+    return least
+
+
+# Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look
+# for a free place near what they name; lists stand to the right of the drawing or below it.
 
 FONT_SIZE = 0.022
 MANY = 150
@@ -84,7 +161,7 @@ class Explainer:
     def first_free(self, candidates: list[Text]) -> Text:
         checkpoint()
         air = 0.2 * candidates[0].size
-        chosen = min(candidates, key=lambda c: self.taken.overlap(_grown(c.box, air)))
+        chosen = min(candidates, key=lambda c: self.taken.overlap(widened(c.box, air)))
         self.taken.add(chosen.box)
         return chosen
 
@@ -126,10 +203,6 @@ def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
     yield (middle, bottom - size), "middle"
     yield (right + gap, (top + bottom) / 2 - 0.3 * size), "start"
     yield (left - gap, (top + bottom) / 2 - 0.3 * size), "end"
-
-
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def _overlap(a: Bounds, b: Bounds) -> float:

@@ -10,8 +10,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.lettering import unknown_characters
 from aidl_lang.common.prose import first_few
 from aidl_lang.common.resources import resource
-from aidl_lang.export.marks import Picture, Text
-from aidl_lang.export.scaling import resolved, scaled
+from aidl_lang.export.marks import Picture, Text, resolved, scaled
 from aidl_lang.export.svg import to_svg
 
 # --- The font of texts in pictures, for formats that embed it.

@@ -1,21 +1,24 @@
-"""STEP (AP214), written by Open CASCADE: solids of bodies that have a thickness, plane faces of the others,
-and the strokes.
-
-Every body is a product of its own in an assembly named after the root.
-"""
+"""STEP (AP214), written by Open CASCADE: solids of bodies that have a thickness, plane faces of others."""
 
 from __future__ import annotations
 
 import io
+import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import count
+from typing import Any
 
 import OCP.Standard
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRep import BRep_Builder
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.collections import HArray1_StepRepr_RepresentationItem
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakePrism
+from OCP.collections import Array1_gp_Pnt, HArray1_StepRepr_RepresentationItem
+from OCP.Geom import Geom_BezierCurve, Geom_Circle, Geom_Ellipse, Geom_Line, Geom_Plane
+from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
@@ -31,27 +34,187 @@ from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
 
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
-from aidl_lang.export.shapes import Shapes, together, without
-from aidl_lang.export.solids import placed_bodies, placed_strokes
+from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import TAU, ends, round_range
 from aidl_lang.geometry.joints import jointed
-from aidl_lang.geometry.placement import placement_notes
-from aidl_lang.geometry.region import Face
+from aidl_lang.geometry.placement import Plane, placement_notes
+from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style
 from aidl_lang.version import __version__
+
+# --- Builds shapes of Open CASCADE from exact outlines: solids, plane faces and curves.
+#
+# Where two pieces of an outline meet they share one vertex, so that solids are watertight by construction.
+# Lines become planes and arcs cylinders, all else linear extrusions; nothing is approximated.
+
+_UP = gp_Dir(0.0, 0.0, 1.0)
+_WHOLE_TURN = TAU - 1e-12
+
+
+class Shapes:
+    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it. Ends meet within `tolerance`,
+    mm.
+    """
+
+    def __init__(self, plane: Plane, tolerance: float, thickness: float = 0.0) -> None:
+        self._build = BRep_Builder()
+        self._tolerance = tolerance
+        self._motion = gp_Trsf()
+        self._motion.SetValues(*plane.placed(thickness).flatten().tolist())
+        self._growth = gp_Vec(0.0, 0.0, thickness).Transformed(self._motion)
+        self._vertices: dict[Vec, TopoDS_Vertex] = {}
+
+    def solid(self, face: Face) -> TopoDS_Shape:
+        return BRepPrimAPI_MakePrism(self.face(face), self._growth).Shape()
+
+    def face(self, face: Face) -> TopoDS_Face:
+        self._vertices.clear()
+        made = TopoDS_Face()
+        plane = Geom_Plane(gp_Ax3(gp_Pnt(), _UP).Transformed(self._motion))
+        self._build.MakeFace(made, plane, self._tolerance)
+        for loop in face.loops:
+            checkpoint()
+            self._build.Add(made, self._wire(loop))
+        return made
+
+    def recess(self, of: Recess) -> Iterator[TopoDS_Shape]:
+        """Yields the solids that a recess is, on its plane."""
+        circle = of.region.circle
+        if of.narrowing and circle is not None:
+            axes = _axes(circle.center, 0.0).Transformed(self._motion)
+            bottom = circle.radius - of.narrowing
+            yield BRepPrimAPI_MakeCone(axes, bottom, circle.radius, of.depth).Shape()
+        else:
+            yield from map(self.solid, of.region.faces)
+
+    def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
+        """Returns an edge for each piece."""
+        self._vertices.clear()
+        return [self._edge(piece, *self._ends(piece)) for piece in map(_upright, pieces)]
+
+    def _ends(self, piece: Piece) -> tuple[TopoDS_Vertex, TopoDS_Vertex]:
+        start, end = ends(piece)
+        return self._vertex(start), self._vertex(end)
+
+    def _wire(self, loop: Loop) -> TopoDS_Shape:
+        made = TopoDS_Wire()
+        self._build.MakeWire(made)
+        pieces = [_upright(piece) for piece in loop.pieces]
+        corners = [self._vertex(ends(piece)[0]) for piece in pieces]
+        for piece, start, end in zip(pieces, corners, corners[1:] + corners[:1], strict=True):
+            self._build.Add(made, self._edge(piece, start, end))
+        made.Closed(True)
+        return made.Reversed() if loop.reversed else made
+
+    def _vertex(self, p: Vec) -> TopoDS_Vertex:
+        """Returns the vertex of a place; outlines that touch share it."""
+        if p not in self._vertices:
+            made = self._vertices[p] = TopoDS_Vertex()
+            self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
+        return self._vertices[p]
+
+    def _edge(self, piece: Piece, start: TopoDS_Vertex, end: TopoDS_Vertex) -> TopoDS_Shape:
+        """Returns an edge along its curve; a clockwise arc runs against a counter-clockwise circle."""
+        curve, first, last = _curve(piece)
+        curve.Transform(self._motion)
+        is_clockwise = isinstance(piece, Arc | EllipseArc) and piece.sweep < 0
+        if is_clockwise:
+            start, end = end, start
+        made = TopoDS_Edge()
+        self._build.MakeEdge(made, curve, self._tolerance)
+        self._build.Add(made, start.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+        self._build.Add(made, end.Oriented(TopAbs_Orientation.TopAbs_REVERSED))
+        self._build.Range(made, first, last)
+        return made.Reversed() if is_clockwise else made
+
+
+def without(solid: TopoDS_Shape, tools: Iterable[TopoDS_Shape]) -> list[TopoDS_Shape]:
+    """Returns the solids that are left of one."""
+    for tool in tools:
+        cut = BRepAlgoAPI_Cut(solid, tool)
+        if not cut.IsDone():
+            raise StdFail_NotDone("not cut")
+        solid = cut.Shape()
+    found, solids = TopExp_Explorer(solid, TopAbs_ShapeEnum.TopAbs_SOLID), []
+    while found.More():
+        solids.append(found.Current())
+        found.Next()
+    return solids
+
+
+def together(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
+    """Returns a compound of several shapes, and a single shape itself."""
+    if len(shapes) == 1:
+        return shapes[0]
+    made, build = TopoDS_Compound(), BRep_Builder()
+    build.MakeCompound(made)
+    for shape in shapes:
+        build.Add(made, shape)
+    return made
+
+
+def _curve(piece: Piece) -> tuple[Any, float, float]:
+    """Returns the curve of a piece in the plane z = 0 and the parameters where it begins and ends. Round ones
+    run counter-clockwise; a whole turn begins where its angle is 0.
+    """
+    match piece:
+        case Line((x0, y0), (x1, y1)):
+            direction = gp_Vec(x1 - x0, y1 - y0, 0.0)
+            return Geom_Line(_point(piece.start), gp_Dir(direction)), 0.0, direction.Magnitude()
+        case Bezier(p0, p1, p2, p3):
+            poles = Array1_gp_Pnt(1, 4)
+            for number, p in enumerate((p0, p1, p2, p3), 1):
+                poles.SetValue(number, _point(p))
+            return Geom_BezierCurve(poles), 0.0, 1.0
+    first, sweep = round_range(piece)
+    first = min(first, first + sweep) % TAU
+    last = first + abs(sweep)
+    match piece:
+        case Ellipse() | EllipseArc():
+            return Geom_Ellipse(_axes(piece.center, piece.angle), piece.rx, piece.ry), first, last
+        case Arc() if abs(sweep) >= _WHOLE_TURN:
+            return Geom_Circle(_axes(piece.center, first), piece.radius), 0.0, TAU
+        case Arc() | Circle():
+            return Geom_Circle(_axes(piece.center, 0.0), piece.radius), first, last
+
+
+def _axes(center: Vec, angle: float) -> gp_Ax2:
+    return gp_Ax2(_point(center), _UP, gp_Dir(math.cos(angle), math.sin(angle), 0.0))
+
+
+def _point(p: Vec) -> gp_Pnt:
+    return gp_Pnt(*p, 0.0)
+
+
+def _upright(piece: Piece) -> Piece:
+    """Returns ellipses with their longer half-axis first, as Open CASCADE and STEP want."""
+    if not isinstance(piece, Ellipse | EllipseArc) or piece.rx >= piece.ry:
+        return piece
+    rx, ry, angle = piece.ry, piece.rx, piece.angle + math.pi / 2
+    if isinstance(piece, Ellipse):
+        return Ellipse(piece.center, rx, ry, angle)
+    first = piece.first - math.pi / 2
+    return EllipseArc(piece.center, rx, ry, angle, piece.start, piece.end, first, piece.sweep)
+
+
+# Every body is a product of its own in an assembly named after the root.
 
 _NO_TIME = "1970-01-01T00:00:00"
 """A fixed time, which readers want: the same drawing gives the same file at any time."""
 _ACCURACY = 1e-9
 """Distance within which ends meet, relative to the size of the drawing."""
-_MILLIMETRE = 1e-3
 _SETTINGS = {
     "write.step.schema": "AP214IS",
     "write.step.unit": "MM",
@@ -69,7 +232,7 @@ _REFUSALS = (
 
 
 @record()
-class _Part:
+class Product:
     """A product: its name, its solids, faces or edges, and its style."""
 
     name: str
@@ -80,14 +243,19 @@ class _Part:
 
 def to_step(job: Job) -> Exported:
     """Writes the STEP file. Raises ExportError (E0918) for a body that cannot be placed or made solid."""
-    tolerance = max(1e-7, _ACCURACY * job.drawing.size)
-    parts = [*_bodies(job, tolerance), *_strokes(job, tolerance)]
+    tolerance, parts = products(job)
     with _settings(tolerance):
         data = _File(job.model.root.path, parts).data()
     return Exported(data, notes=tuple(placement_notes(job.model.root, job.drawing)))
 
 
-def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
+def products(job: Job) -> tuple[float, list[Product]]:
+    """Returns the distance within which ends meet, mm, and the shapes. Raises as `to_step` does."""
+    tolerance = max(1e-7, _ACCURACY * job.drawing.size)
+    return tolerance, [*_bodies(job, tolerance), *_strokes(job, tolerance)]
+
+
+def _bodies(job: Job, tolerance: float) -> Iterator[Product]:
     for placed in placed_bodies(job):
         body = placed.body
         with _refusals(body.path):
@@ -97,14 +265,14 @@ def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
             tools = [t for r in placed.recesses for t in Shapes(r.plane, tolerance, r.depth).recess(r)]
             if tools:
                 made = [solid for shape in made for solid in without(shape, tools)]
-        yield _Part(body.path, made, body.style)
+        yield Product(body.path, made, body.style)
 
 
-def _strokes(job: Job, tolerance: float) -> Iterator[_Part]:
+def _strokes(job: Job, tolerance: float) -> Iterator[Product]:
     for stroke, plane in placed_strokes(job):
         with _refusals(stroke.geometry):
             made = Shapes(plane, tolerance).curves(stroke.pieces)
-        yield _Part(stroke.geometry, made, stroke.style, is_stroke=True)
+        yield Product(stroke.geometry, made, stroke.style, is_stroke=True)
 
 
 def _valid(make: Callable[[Face], TopoDS_Shape], face: Face) -> TopoDS_Shape:
@@ -161,12 +329,12 @@ class _File:
     breaks long texts anywhere.
     """
 
-    def __init__(self, root: str, parts: Sequence[_Part]) -> None:
+    def __init__(self, root: str, parts: Sequence[Product]) -> None:
         self._numbers: dict[str, int] = {}
         self._name = root
         self._parts = parts
         self._document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
-        XCAFDoc_DocumentTool.SetLengthUnit_s(self._document, _MILLIMETRE)
+        XCAFDoc_DocumentTool.SetLengthUnit_s(self._document, 1e-3)  # mm
         main = self._document.Main()
         self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(main)
         self._layers = XCAFDoc_DocumentTool.LayerTool_s(main)
@@ -242,13 +410,14 @@ class _File:
                 raise StdFail_NotDone("not transferred")
             if part.style.color is None or not found:
                 continue
-            color = STEPConstruct_Styles.EncodeColor_s(_color(part.style.color))
+            parts = (value / 255 for value in rgb(part.style.color))
+            said = Quantity_Color(*parts, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+            color = STEPConstruct_Styles.EncodeColor_s(said)
             colors = (None, color) if part.is_stroke else (color, None)
             shown = STEPConstruct_RenderingProperties()
             if part.style.is_clear and not part.is_stroke:
-                shown = STEPConstruct_RenderingProperties(
-                    color, 1.0 - (1.0 if part.style.opacity is None else part.style.opacity)
-                )
+                opacity = 1.0 if part.style.opacity is None else part.style.opacity
+                shown = STEPConstruct_RenderingProperties(color, 1.0 - opacity)
             items = HArray1_StepRepr_RepresentationItem(1, len(found))
             for number, item in enumerate(found, 1):
                 look = styles.MakeColorPSA(item, *colors, shown)
@@ -266,7 +435,7 @@ class _File:
         self._shapes.UpdateAssemblies()
         return whole
 
-    def _product(self, part: _Part) -> TDF_Label:
+    def _product(self, part: Product) -> TDF_Label:
         label = self._shapes.AddShape(together(part.shapes), False)
         self._call(label, part.name)
         if part.style.layer is not None:
@@ -282,11 +451,6 @@ class _File:
     def _number(self, text: str) -> str:
         """Returns the placeholder of a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
-
-
-def _color(css: str) -> Quantity_Color:
-    parts = (value / 255 for value in rgb(css))
-    return Quantity_Color(*parts, Quantity_TypeOfColor.Quantity_TOC_sRGB)
 
 
 def _ascii(text: str) -> TCollection_HAsciiString:

@@ -33,8 +33,8 @@ from aidl_lang.export.marks import (
     Picture,
     Stop,
     Text,
+    scaled,
 )
-from aidl_lang.export.scaling import scaled
 from aidl_lang.geometry.boolean import without
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
@@ -270,8 +270,6 @@ def _toned(color: str, tone: float) -> str:
     goal = 255.0 if tone > 0 else 0.0
     return hexadecimal(part + abs(tone) * (goal - part) for part in rgb(color))
 
-
-# --- SVG: millimetres or inches, y upwards, one group per structure, holes really cut, curves as curves.
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 

@@ -33,7 +33,7 @@ from aidl_lang.geometry.legibility import (
     lettering_note,
     unseen_note,
 )
-from aidl_lang.geometry.letters import lettering
+from aidl_lang.geometry.letters import lettered_region
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import GRID, Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
@@ -547,7 +547,7 @@ def _told_apart(
     filled = {id(leaf) for part in parts for leaf in (part, *part.parts)} & drawn.keys()
     letters = [part.walk() for part in parts if part.type == "glyph"]
     written = [[drawn[id(leaf)] for leaf in letter if id(leaf) in filled] for letter in letters]
-    region = lettering(written) if sum(map(len, written)) == len(filled) > 0 else None
+    region = lettered_region(written) if sum(map(len, written)) == len(filled) > 0 else None
     if region is None:
         known = (
             (s.geometry, [(leaf, curves[k]) for leaf, k in s.leaves if id(leaf) in filled]) for s in shapes

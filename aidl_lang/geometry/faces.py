@@ -138,27 +138,24 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
     """Returns the edges without those that lead to an open end, removed repeatedly."""
     kept = list(uses)
     while True:
-        degree: dict[int, int] = defaultdict(int)
-        for use in kept:
-            degree[first_node(network, use)] += 1
-            degree[last_node(network, use)] += 1
-        rest = [u for u in kept if degree[first_node(network, u)] > 1 and degree[last_node(network, u)] > 1]
-        if len(rest) == len(kept):
-            return rest
-        kept = rest
+        degree = _degrees(network, kept)
+        if min(degree.values(), default=2) > 1:
+            return kept
+        ends = ((use, network.edges[use[0]]) for use in kept)
+        kept = [use for use, edge in ends if degree[edge.start] > 1 and degree[edge.end] > 1]
 
 
-def _is_odd(network: Network, uses: Iterable[Use]) -> bool:
-    """Tells whether an odd number of edges end in some node."""
-    degree = Counter(end(network, use) for use in uses for end in (first_node, last_node))
-    return any(d % 2 for d in degree.values())
+def _degrees(network: Network, uses: Iterable[Use]) -> Counter[int]:
+    """Returns how many edges end in each node."""
+    edges = [network.edges[number] for number, _ in uses]
+    return Counter([*(edge.start for edge in edges), *(edge.end for edge in edges)])
 
 
 def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
     """Returns the edges that join loops and bound no face, but for those that are run through twice. There
     are none where every node has an even degree.
     """
-    if not _is_odd(network, uses):
+    if not any(d % 2 for d in _degrees(network, uses).values()):
         return set()
     _, bounding = _outlines(network, uses)
     return {edge for edge, count in Counter(edge for edge, _ in uses).items() if count == 1} - bounding
@@ -168,7 +165,7 @@ def _alternating(network: Network, uses: list[Use]) -> Section:
     """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
     enclosed.
     """
-    if _is_odd(network, uses):
+    if any(d % 2 for d in _degrees(network, uses).values()):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
 

@@ -64,22 +64,24 @@ class Ground:
         """Tells whether the body below some curves drawn at a place has nearly their colour: all along them,
         or else somewhere.
         """
-        below = self._around(curves, range(bisect_left(self._places, place)))
+        count = bisect_left(self._places, place)
+        below = self._around(curves, range(count))
         seen = ((k, self.bodies[k].color) for k in below)
         alike = {k for k, own in seen if own is not None and color is not None and look_alike(own, color)}
         if not alike:
             return False
         asked = all if wholly else any
-        found = asked(bool(on) and on[-1] in alike for on in self._holders(self._middles(curves), below))
-        if found is wholly:  # by the middles alone it may still be otherwise
-            return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
-        return found
+        middles = ([k for k in self._at_middles[curve] if k < count] for curve in curves)
+        if asked(bool(on) and on[-1] in alike for on in middles) is not wholly:
+            return not wholly
+        # By the middles alone it may still be otherwise.
+        return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
 
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
         over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
-        over = [k for k in over if all(self._holders(self._middles(curves), [k]))]
+        over = [k for k in over if all(k in self._at_middles[curve] for curve in curves)]
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
 
@@ -135,14 +137,22 @@ class Ground:
         pieces = (part(c, s.t0, s.t1, s.start, s.end) for c, s in parts)
         return list(zip(pieces, holders, strict=True))
 
-    def _middles(self, curves: Sequence[int]) -> list[Vec]:
-        return [point(self.curves[k], 0.5) for k in curves]
+    @cached_property
+    def _at_middles(self) -> list[list[int]]:
+        """The bodies that the middle of each curve lies in."""
+        return self._holders([point(curve, 0.5) for curve in self.curves], range(len(self.bodies)))
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
         """Returns for each spot those of some bodies that it lies in."""
         on_grid = self.network.to_grid(np.array(spots)) * np.float64(GRID)
-        within = np.array([inside_mask(self.bodies[k].section, on_grid) for k in bodies])
-        return [[k for k, is_in in zip(bodies, of, strict=True) if is_in] for of in within.T.tolist()]
+        order = np.argsort(on_grid[:, 0], kind="stable")
+        along, found = on_grid[order, 0], [list[int]() for _ in spots]
+        for k in bodies:
+            left, _, right, _ = self.bodies[k].section.bounds()
+            beside = order[np.searchsorted(along, left) : np.searchsorted(along, right, side="right")]
+            for n in beside[inside_mask(self.bodies[k].section, on_grid[beside])].tolist():
+                found[n].append(k)
+        return found
 
 
 def _lies_within(inner: Bounds, outer: Bounds) -> bool:

@@ -22,7 +22,7 @@ from aidl_lang.geometry.sections import fill
 from aidl_lang.geometry.trace import closed_loop, faces_of, first_point, trace
 
 
-def lettering(letters: Sequence[Sequence[Piece]]) -> Region | None:
+def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
     other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
     """
@@ -68,7 +68,7 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
     """Returns the outline of a character through which bridges lead to all that it encloses: upright ones of
     that width, above and below the middle of each counter, through the strokes next to it.
     """
-    region = lettering([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or Region()
+    region = lettered_region([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or Region()
     for wider in range(_ROUNDS):
         counters = [hole for face in region.faces for hole in face.holes]
         if not counters:

@@ -41,8 +41,8 @@ def measure(region: Region) -> Measures:
     """Returns all measures of a region."""
     area = mx = my = perimeter = 0.0
     for loop in region.loops:
-        a, x, y = loop_moments(loop)
-        area, mx, my = area + a, mx + x, my + y
+        (x0, y0), (a, x, y) = moments_about_start(loop)
+        area, mx, my = area + a, mx + (x + a * x0), my + (y + a * y0)
         perimeter += sum(length(piece) for piece in loop.pieces)
     centroid = (mx / area, my / area) if area else (0.0, 0.0)
     return Measures(area, perimeter, centroid, region_bounds(region), len(region.loops))
@@ -63,17 +63,9 @@ def perimeter(region: Region) -> float:
 def loop_area(loop: Loop) -> float:
     """Returns the area of a loop, positive counter-clockwise."""
     start = ends(loop.pieces[0])[0]
-    area = sum(
-        _bezier_area(piece, start) if isinstance(piece, Bezier) else _moments(piece, start)[0]
-        for piece in loop.pieces
-    )
+    pieces = loop.pieces
+    area = sum(_bezier_area(p, start) if isinstance(p, Bezier) else _moments(p, start)[0] for p in pieces)
     return -area if loop.reversed else area
-
-
-def loop_moments(loop: Loop) -> Moments:
-    """Returns area and first moments of a loop."""
-    (x, y), (a, mx, my) = moments_about_start(loop)
-    return a, mx + a * x, my + a * y
 
 
 def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from itertools import pairwise
 from typing import TypeVar
 
@@ -117,7 +118,7 @@ class Network:
         self.may_refine = False
         self._weld, self._middles = Weld(self.tolerance), Weld(self.tolerance)
         self.nodes = self._weld.points
-        self.node = self._weld.number
+        self.node = cache(self._weld.number)
         self.edges: list[Edge] = []
         self._known: dict[tuple[int, ...], int] = {}
         self._fine: set[int] = set()

@@ -179,7 +179,7 @@ class _Outliner:
                 return self._from_regions(g, recipe, groups, curves)
         if not region:
             self.notes.append(notes.nothing_left(g, recipe))
-        return _pieces(region)
+        return [*region.pieces]
 
     def _operand(self, group: Iterable[SolvedGeometry]) -> list[SolvedGeometry]:
         """Returns the geometry that an outline is made of, as it is drawn."""
@@ -226,9 +226,9 @@ class _Outliner:
         whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
         try:
             if area:
-                found = _pieces(tiled_areas(area, region, lattice, whole=whole))
+                found = [*tiled_areas(area, region, lattice, whole=whole).pieces]
             elif width > 0:
-                found = _pieces(tiled_bars(cell, region, lattice, width))
+                found = [*tiled_bars(cell, region, lattice, width).pieces]
             else:
                 found = tiled_strokes(cell, region, lattice, whole=whole)
         except TooManyCopiesError as many:
@@ -263,7 +263,7 @@ class _Outliner:
         if not result:
             depth = _deepest(region, -recipe.numbers["distance"]) if recipe.kind == "offset" else None
             self.notes.append(notes.nothing_left(g, recipe, depth))
-        return _pieces(result)
+        return [*result.pieces]
 
     # --- Finished corners --------------------------------------------------------------------------
 
@@ -448,10 +448,6 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
     """Returns the region that some geometry encloses together."""
     found = ((g, list(_leaves(g))) for g in geometry)
     return region_of((g, leaves) for g, leaves in found if leaves)[0]
-
-
-def _pieces(region: Region) -> list[Piece]:
-    return list(region.pieces)
 
 
 def _extent(curves: Sequence[Piece]) -> float:

@@ -36,7 +36,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
 def _has_place(geometry: SolvedGeometry) -> bool:
     """Tells whether all of a geometry, with its parts, can be drawn."""
     return (
-        _is_within(geometry.values.values())
+        (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
         and all(map(_has_place, geometry.parts))
         and (geometry.recipe is None or _is_possible(geometry))
     )

@@ -77,7 +77,9 @@ class Hulls:
             shared = nodes[one, end]
             rows = np.flatnonzero(shared == nodes[other, across])
             for reach in _REACHES:
-                rows = rows[meets[rows].any(axis=(1, 2))]
+                rows = rows[meets[rows].any(axis=(1, 2))] if len(rows) else rows
+                if not len(rows):
+                    break
                 ours, theirs = _beside(end, reach), _beside(across, reach)
                 a, b = self._hulls[one[rows], ours], self._hulls[other[rows], theirs]
                 apart = rows[self._on_two_sides(a, b, places[shared[rows]])]

@@ -1,18 +1,17 @@
-"""The syntax tree: frozen nodes with spans.
-
-Nodes compare and hash by identity, so that passes can keep tables keyed by node; `same` compares two
-trees by content, leaving places and comments aside.
-"""
+"""The syntax tree: frozen nodes with spans, and trees as plain data."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
+
+# Nodes compare and hash by identity, so that passes can keep tables keyed by node; `same` compares two trees
+# by content, leaving places and comments aside.
 
 
 @record(eq=False, repr=False, kw_only=True)
@@ -534,3 +533,42 @@ def same(a: object, b: object) -> bool:
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(map(same, a, b))
     return a == b
+
+
+# --- Syntax trees as plain data, which JSON keeps: numbers, texts, lists, None.
+#
+# A node is `[number of its class, start, end, fields …]`, a tuple `[0, items …]`; everything else stands for
+# itself. The numbers are those of this version's classes, so data goes with the code that made it.
+
+_TUPLE = 0
+_CLASSES: tuple[Any, ...] = (
+    tuple,
+    *(kind for kind in list(globals().values()) if isinstance(kind, type) and issubclass(kind, Node)),
+)
+_NUMBERS = {kind: number for number, kind in enumerate(_CLASSES)}
+
+
+def encoded(value: object) -> object:
+    """Returns a tree as data, without the text it was parsed from. Raises TypeError for a value that no tree
+    has.
+    """
+    if isinstance(value, Node):
+        names: tuple[str, ...] = value.__match_args__  # every field but the span
+        fields = [encoded(getattr(value, name)) for name in names]
+        return [_NUMBERS[type(value)], value.span.start, value.span.end, *fields]
+    if isinstance(value, tuple):
+        return [_TUPLE, *map(encoded, value)]
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise TypeError(f"{type(value).__name__} is no part of a syntax tree")
+
+
+def decoded(data: Any, source: SourceFile) -> Any:
+    """Returns the tree that `encoded` made into data, in the text it was parsed from."""
+    if type(data) is not list:
+        return data
+    number = data[0]
+    if number == _TUPLE:
+        return tuple([decoded(item, source) for item in data[1:]])
+    fields = [decoded(item, source) if type(item) is list else item for item in data[3:]]
+    return _CLASSES[number](*fields, span=Span(source, data[1], data[2]))

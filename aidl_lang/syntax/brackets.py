@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -13,7 +12,9 @@ from aidl_lang.syntax.trouble import (
     closing,
     line_end,
     replaced,
+    wrong,
 )
+from aidl_lang.syntax.tables import END, Token, begins_line
 from aidl_lang.syntax.words import VALUE_STARTS
 
 CLOSE_BLOCK = "close the block"
@@ -103,16 +104,14 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     right = _CLOSER[opener.kind]
     if not t.accepts(right):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0102",
-            f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
-            t.span(opener),
-            "opened here",
-            (Label(t.span(), f"`{right}` belongs here"),),
-            fix=replaced(f"write `{right}`", t.span(), right),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but(right, right),)),
+    return wrong(
+        "E0102",
+        f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
+        t.span(opener),
+        "opened here",
+        (Label(t.span(), f"`{right}` belongs here"),),
+        fix=replaced(f"write `{right}`", t.span(), right),
+        repair=t.exchanged(right),
     )
 
 
@@ -130,15 +129,13 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
         depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
     meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
-    return SyntaxProblem(
-        Diagnostic(
-            "E0112",
-            f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement",
-            t.span(),
-            f"within {_BRACKET[t.open[-1].kind]}",
-            fix=Fix("write `,`", edits, is_sure=True),
-        ),
-        TokenRepair(t.position, stop, meant),
+    return wrong(
+        "E0112",
+        f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement",
+        t.span(),
+        f"within {_BRACKET[t.open[-1].kind]}",
+        fix=Fix("write `,`", edits, is_sure=True),
+        repair=TokenRepair(t.position, stop, meant),
     )
 
 
@@ -153,16 +150,14 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
         return None
     opener = t.open[-1]
     text = "".join(closers)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0102",
-            f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
-            t.span(opener),
-            "opened here and not closed",
-            (Label(t.gap(), f"`{text}` is missing"),),
-            fix=replaced(f"put in `{text}`", t.gap(), text),
-        ),
-        TokenRepair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
+    return wrong(
+        "E0102",
+        f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
+        t.span(opener),
+        "opened here and not closed",
+        (Label(t.gap(), f"`{text}` is missing"),),
+        fix=replaced(f"put in `{text}`", t.gap(), text),
+        repair=t.put_in(*closers),
     )
 
 
@@ -179,16 +174,14 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
     place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
-    return SyntaxProblem(
-        Diagnostic(
-            "E0102",
-            "expected `}` to close the block that begins here",
-            t.span(opener),
-            "opened here and not closed",
-            (Label(place, "`}` is missing"),),
-            fix=replaced(CLOSE_BLOCK, place, closer),
-        ),
-        TokenRepair(t.position, t.position, (t.token_here("}"),)),
+    return wrong(
+        "E0102",
+        "expected `}` to close the block that begins here",
+        t.span(opener),
+        "opened here and not closed",
+        (Label(place, "`}` is missing"),),
+        fix=replaced(CLOSE_BLOCK, place, closer),
+        repair=t.put_in("}"),
     )
 
 
@@ -225,15 +218,13 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
 def stray_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0118",
-            f"`{t.token.text}` closes nothing",
-            t.span(),
-            "no bracket is open here",
-            fix=replaced("remove it", t.span(), ""),
-        ),
-        TokenRepair(t.position, t.position + 1),
+    return wrong(
+        "E0118",
+        f"`{t.token.text}` closes nothing",
+        t.span(),
+        "no bracket is open here",
+        fix=replaced("remove it", t.span(), ""),
+        repair=t.exchanged(),
     )
 
 
@@ -243,16 +234,14 @@ def missing_comma(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(",", t.token.kind):
         return None
     opener, inside = t.open[-1], _ITEMS[t.open[-1].kind]
-    return SyntaxProblem(
-        Diagnostic(
-            "E0112",
-            f"expected `,` between two {inside}",
-            t.gap(),
-            "a comma is missing here",
-            (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
-            fix=replaced("put in `,`", t.gap(), ","),
-        ),
-        TokenRepair(t.position, t.position, (t.token_here(","),)),
+    return wrong(
+        "E0112",
+        f"expected `,` between two {inside}",
+        t.gap(),
+        "a comma is missing here",
+        (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
+        fix=replaced("put in `,`", t.gap(), ","),
+        repair=t.put_in(","),
     )
 
 
@@ -273,16 +262,14 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
     if before.kind not in (*_VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0112",
-            f"expected `,` before a block of arguments that begins with `{token.text}`",
-            place,
-            "a comma is missing here",
-            (Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here"),),
-            fix=replaced("put in `,`", place, ","),
-        ),
-        TokenRepair(n, n, (Token(",", ",", before.end, before.end),)),
+    return wrong(
+        "E0112",
+        f"expected `,` before a block of arguments that begins with `{token.text}`",
+        place,
+        "a comma is missing here",
+        (Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here"),),
+        fix=replaced("put in `,`", place, ","),
+        repair=TokenRepair(n, n, (Token(",", ",", before.end, before.end),)),
     )
 
 
@@ -296,16 +283,14 @@ def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(*"}" * count, ")"):
         return None
     opener, text = t.open[-1], "}" * count
-    return SyntaxProblem(
-        Diagnostic(
-            "E0102",
-            f"expected `{text}` to close the block that begins here",
-            t.span(opener),
-            "opened here and not closed",
-            (Label(t.gap(), f"`{text}` is missing"),),
-            fix=replaced(f"put in `{text}`", t.gap(), " " + text),
-        ),
-        TokenRepair(t.position, t.position, tuple(t.token_here("}") for _ in range(count))),
+    return wrong(
+        "E0102",
+        f"expected `{text}` to close the block that begins here",
+        t.span(opener),
+        "opened here and not closed",
+        (Label(t.gap(), f"`{text}` is missing"),),
+        fix=replaced(f"put in `{text}`", t.gap(), " " + text),
+        repair=t.put_in(*text),
     )
 
 
@@ -315,7 +300,7 @@ def choice_in_block(t: Trouble) -> SyntaxProblem | None:
         return None
     message = "in a block of arguments, `if` behind an argument begins a block of its own"
     hint = "write `if c then a else b`, or put `a if c else b` in parentheses"
-    return SyntaxProblem(Diagnostic("E0119", message, t.span(), hints=(hint,)))
+    return wrong("E0119", message, t.span(), hints=(hint,))
 
 
 def name_in_block(t: Trouble) -> SyntaxProblem | None:
@@ -328,17 +313,15 @@ def name_in_block(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind == ":":
         hint = f"write `{name}: …` among the arguments outside of the block"
         message = f"an argument in a block has no name, and this is called `{name}`"
-        return SyntaxProblem(Diagnostic("E0119", message, t.span(t.before, t.token), hints=(hint,)))
+        return wrong("E0119", message, t.span(t.before, t.token), hints=(hint,))
     place = Span(t.source, t.before.start, t.before.start)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0119",
-            f"a block of arguments makes nothing, and `{name} = …` would",
-            t.span(t.before, t.token),
-            hints=(f"`let {name} = …` names a value for the rest of the block",),
-            fix=replaced("write `let`", place, "let "),
-        ),
-        TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),)),
+    return wrong(
+        "E0119",
+        f"a block of arguments makes nothing, and `{name} = …` would",
+        t.span(t.before, t.token),
+        fix=replaced("write `let`", place, "let "),
+        hints=(f"`let {name} = …` names a value for the rest of the block",),
+        repair=TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),)),
     )
 
 
@@ -347,28 +330,24 @@ def three_coordinates(t: Trouble) -> SyntaxProblem | None:
         return None
     if t.before.kind != "," or not t.accepts(")"):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0123",
-            "a point has two coordinates: `(x, y)`",
-            t.span(t.open[-1], t.token),
-            "this has a third",
-            hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
-        )
+    return wrong(
+        "E0123",
+        "a point has two coordinates: `(x, y)`",
+        t.span(t.open[-1], t.token),
+        "this has a third",
+        hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
     )
 
 
 def stray_comma(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "," or t.open or not t.accepts(";"):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0122",
-            "statements are not separated by commas",
-            t.span(),
-            "a new line or `;` does",
-            hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
-            fix=replaced("write `;`", t.span(), ";"),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but(";", ";"),)),
+    return wrong(
+        "E0122",
+        "statements are not separated by commas",
+        t.span(),
+        "a new line or `;` does",
+        right=";",
+        hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
+        repair=t.exchanged(";"),
     )

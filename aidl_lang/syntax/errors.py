@@ -7,9 +7,9 @@ from collections.abc import Callable
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
-from aidl_lang.syntax.tokens import END, Token
-from aidl_lang.syntax.trouble import SyntaxProblem, Trouble, replaced
+from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
+from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
+from aidl_lang.syntax.tables import END, Token
 from aidl_lang.syntax.words import describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
@@ -34,7 +34,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     missing.nameless_structure,
     missing.repeated_placement,
     missing.out_of_place_in_constrain,
-    placements.placement_in_expression,
+    missing.placement_in_expression,
     spelling.reserved_word,
     missing.else_without_if,
     brackets.unclosed_arguments,
@@ -107,7 +107,7 @@ def _unexpected(t: Trouble) -> SyntaxProblem:
         place = describe(t.token) if t.token.kind != END else "the end of the file"
         message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
     secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()
-    return SyntaxProblem(Diagnostic("E0101", message, t.span(), secondary=secondary))
+    return wrong("E0101", message, t.span(), secondary=secondary)
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:

@@ -7,7 +7,7 @@ from typing import Any
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tokens import Token
+from aidl_lang.syntax.tables import Token
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
 _UNITS = ("turn", "deg", "rad", "mm", "cm", "in", "ft", "m", "°")

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -17,7 +16,9 @@ from aidl_lang.syntax.trouble import (
     line_end,
     replaced,
     statement_end,
+    wrong,
 )
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
 
 # --- Prose ----------------------------------------------------------------------------------------
 
@@ -48,14 +49,12 @@ def prose(t: Trouble) -> SyntaxProblem | None:
     )
     starts[0] = first
     edits = tuple(Edit(Span(t.source, at, at), "// ") for at in starts)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0108",
-            "this is prose, and no part of the program",
-            Span(t.source, first, end),
-            fix=Fix("make it a comment", edits, is_sure=True),
-        ),
-        TokenRepair(t.begin, stop),
+    return wrong(
+        "E0108",
+        "this is prose, and no part of the program",
+        Span(t.source, first, end),
+        fix=Fix("make it a comment", edits, is_sure=True),
+        repair=TokenRepair(t.begin, stop),
     )
 
 
@@ -102,14 +101,12 @@ def foreign_loop(t: Trouble) -> SyntaxProblem | None:
     head.append(Token("in", "in", *found.span("i")))
     stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
     span = Span(t.source, start, end)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0113",
-            f"a loop is written `{right} {{ … }}`",
-            span,
-            fix=replaced(f"write `{right}`", span, right),
-        ),
-        TokenRepair(t.begin, stop, (*head, *inner)),
+    return wrong(
+        "E0113",
+        f"a loop is written `{right} {{ … }}`",
+        span,
+        right=right,
+        repair=TokenRepair(t.begin, stop, (*head, *inner)),
     )
 
 
@@ -155,15 +152,15 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
         Token("}", "}", t.tokens[last].end, t.tokens[last].end),
     )
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
-    return SyntaxProblem(
-        Diagnostic(
-            "E0121",
-            f"the block of `{t.first.text}` stands in braces, not behind a colon",
-            t.span(),
-            "`{` belongs here, and `}` at the end of the block",
-            fix=Fix("put the block in braces", (opening, close), is_sure=True),
+    return wrong(
+        "E0121",
+        f"the block of `{t.first.text}` stands in braces, not behind a colon",
+        t.span(),
+        "`{` belongs here, and `}` at the end of the block",
+        fix=Fix("put the block in braces", (opening, close), is_sure=True),
+        repair=TokenRepair(
+            t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])
         ),
-        TokenRepair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])),
     )
 
 
@@ -213,11 +210,12 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
             tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
         tokens.append(Token(")", ")", *place))
     span = t.span(t.token, t.tokens[close])
-    return SyntaxProblem(
-        Diagnostic(
-            "E0109", f"{what} is written `{right}`", span, fix=replaced(f"write `{right}`", span, right)
-        ),
-        TokenRepair(t.position, close + 1, tuple(tokens)),
+    return wrong(
+        "E0109",
+        f"{what} is written `{right}`",
+        span,
+        right=right,
+        repair=TokenRepair(t.position, close + 1, tuple(tokens)),
     )
 
 
@@ -239,9 +237,12 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
     tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
     span = t.span(parts[0][0], parts[2][-1])
     fix = replaced(f"write `{right}`", span, right)
-    return SyntaxProblem(
-        Diagnostic("E0109", f"a choice is written `{right}`", span, fix=fix),
-        TokenRepair(begin, stop, tuple(tokens)),
+    return wrong(
+        "E0109",
+        f"a choice is written `{right}`",
+        span,
+        fix=fix,
+        repair=TokenRepair(begin, stop, tuple(tokens)),
     )
 
 
@@ -276,15 +277,13 @@ def inches(t: Trouble) -> SyntaxProblem | None:
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
     gap = Span(t.source, number.end, before.start)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0106",
-            f"a unit touches its number: `{number.text}in`",
-            t.span(number, before),
-            "the space ends the number",
-            fix=replaced("remove the space", gap, ""),
-        ),
-        TokenRepair(
+    return wrong(
+        "E0106",
+        f"a unit touches its number: `{number.text}in`",
+        t.span(number, before),
+        "the space ends the number",
+        fix=replaced("remove the space", gap, ""),
+        repair=TokenRepair(
             t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)
         ),
     )
@@ -314,9 +313,8 @@ def loose_point(t: Trouble) -> SyntaxProblem | None:
         point, number, at = t.token, before, t.position
     span = t.span(number, point)
     fix = replaced(f"write `{number.text}`", span, number.text)
-    return SyntaxProblem(
-        Diagnostic("E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix),
-        TokenRepair(at, at + 1),
+    return wrong(
+        "E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix, repair=TokenRepair(at, at + 1)
     )
 
 
@@ -325,14 +323,8 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
     sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
     if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0109",
-            f"`{t.token.text}` is written `{sign}`",
-            t.span(),
-            fix=replaced(f"write `{sign}`", t.span(), sign),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but(sign, sign),)),
+    return wrong(
+        "E0109", f"`{t.token.text}` is written `{sign}`", t.span(), right=sign, repair=t.exchanged(sign)
     )
 
 
@@ -364,14 +356,12 @@ def import_of_module(t: Trouble) -> SyntaxProblem | None:
         return None
     stop = statement_end(t.source, t.tokens, t.begin)
     span = t.span(t.first, t.tokens[stop - 1])
-    return SyntaxProblem(
-        Diagnostic(
-            "E0113",
-            f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
-            span,
-            fix=replaced("remove the line", span, ""),
-        ),
-        TokenRepair(t.begin, stop),
+    return wrong(
+        "E0113",
+        f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
+        span,
+        fix=replaced("remove the line", span, ""),
+        repair=TokenRepair(t.begin, stop),
     )
 
 
@@ -386,13 +376,11 @@ def several_names(t: Trouble) -> SyntaxProblem | None:
     )
     if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.automaton.in_constraints):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0103",
-            "each name gets its value by itself: `let x = 3; let y = 4`",
-            t.span(t.first),
-            "one name at a time",
-        )
+    return wrong(
+        "E0103",
+        "each name gets its value by itself: `let x = 3; let y = 4`",
+        t.span(t.first),
+        "one name at a time",
     )
 
 
@@ -418,12 +406,10 @@ def documentation_text(t: Trouble) -> SyntaxProblem | None:
     span = Span(t.source, t.token.start, end)
     lines = [line.strip() for line in inner.strip().splitlines()]
     comment = "\n".join(f"// {line}".rstrip() for line in lines)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0117",
-            "a text alone says nothing; a remark begins with `//`",
-            span,
-            fix=replaced("make it a comment", span, comment),
-        ),
-        TokenRepair(t.position, stop),
+    return wrong(
+        "E0117",
+        "a text alone says nothing; a remark begins with `//`",
+        span,
+        fix=replaced("make it a comment", span, comment),
+        repair=TokenRepair(t.position, stop),
     )

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import (
+from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
     TokenRepair,
@@ -16,7 +15,9 @@ from aidl_lang.syntax.trouble import (
     line_end,
     replaced,
     statement_end,
+    wrong,
 )
+from aidl_lang.syntax.tables import END, Token, begins_line
 
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
@@ -65,9 +66,7 @@ def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProbl
 def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> SyntaxProblem:
     span = Span(source, word.start, word.end)
     fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
-    return SyntaxProblem(
-        Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), TokenRepair(0, 1)
-    )
+    return wrong("E0113", message, span, fix=fix, hints=(hint,) if hint else (), repair=TokenRepair(0, 1))
 
 
 def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -96,9 +95,12 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem
         is_last = not source.text[end : line_end(source.text, end)].strip()
         message += "; what is still to be done says a comment"
         right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
-    return SyntaxProblem(
-        Diagnostic("E0117", message, span, fix=replaced(f"write `{right}`", span, right)),
-        TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),)),
+    return wrong(
+        "E0117",
+        message,
+        span,
+        right=right,
+        repair=TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),)),
     )
 
 
@@ -128,11 +130,12 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
         Token("=", "=", tokens[at].start, tokens[at].end),
         *value,
     )
-    return SyntaxProblem(
-        Diagnostic(
-            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
-        ),
-        TokenRepair(0, (after + 1 if in_braces else stop) - begin, written),
+    return wrong(
+        "E0113",
+        f"a function is written `{right}`",
+        span,
+        fix=replaced("write it so", span, right),
+        repair=TokenRepair(0, (after + 1 if in_braces else stop) - begin, written),
     )
 
 
@@ -194,11 +197,12 @@ def _as_function(
 ) -> SyntaxProblem:
     names = [token.text for token in head if token.kind == "NAME"]
     right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
-    return SyntaxProblem(
-        Diagnostic(
-            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
-        ),
-        TokenRepair(start, stop, tuple(_function(names, head, value, span))),
+    return wrong(
+        "E0113",
+        f"a function is written `{right}`",
+        span,
+        fix=replaced("write it so", span, right),
+        repair=TokenRepair(start, stop, tuple(_function(names, head, value, span))),
     )
 
 

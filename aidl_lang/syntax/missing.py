@@ -1,16 +1,95 @@
-"""Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks,
-statements.
-"""
+"""Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks."""
 
 from __future__ import annotations
 
-from aidl_lang.common.diagnostics import Diagnostic, Label
+from collections.abc import Sequence
+
+from aidl_lang.common.diagnostics import Fix, Label
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.kinds import kind_of
-from aidl_lang.syntax.tokens import END
+from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, replaced, wrong
+from aidl_lang.syntax.tables import END, Token, begins_line
 from aidl_lang.syntax.tree import out_of_place
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
-from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe
+from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe, kind_of
+
+# --- Placements in lists and arguments, where none can stand.
+
+_OPENING, _CLOSING = ("CALL", "(", "[", "{"), (")", "]", "}")
+
+
+def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
+    if t.token.kind not in ("at", "rotated") or not t.open or t.before is None or t.before.kind != ")":
+        return None
+    opening = t.tokens.index(t.open[-1], t.begin)
+    close = closing(t.tokens, opening)
+    if close < t.position or t.tokens[close].kind != ("]" if t.open[-1].kind == "[" else ")"):
+        return None
+    listed = _as_members(t, opening, close)
+    stop = _item_end(t.tokens, t.position, close)
+    call = f"{t.tokens[_call_start(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
+    hint = f"give the part a name of its own: `part = {call}`"
+    if t.tokens[stop].kind == "for":
+        hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
+    fix, repair = listed or (None, TokenRepair(t.position, stop))
+    return wrong(
+        "E0126",
+        f"`{t.token.kind}` stands behind a definition, not inside an expression",
+        t.span(to=t.tokens[stop - 1]),
+        fix=fix,
+        hints=(hint,) if fix is None else (),
+        repair=repair,
+    )
+
+
+def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
+    """Returns the fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] =
+    b()`.
+    """
+    name, after = t.first, t.tokens[close + 1]
+    is_list = [token.kind for token in t.tokens[t.begin : opening + 1]] == ["NAME", "=", "["]
+    is_last = after.kind in ("}", ";", END) or begins_line(t.source.text, after.start)
+    whole = t.span(name, t.tokens[close])
+    if not (is_list and is_last) or any(sign in whole.text for sign in ("//", "/*", "#")):
+        return None
+    items: list[Sequence[Token]] = []
+    start = opening + 1
+    while start < close:
+        stop = _item_end(t.tokens, start, close)
+        if t.tokens[stop].kind == "for" or stop == start:
+            return None
+        items.append(t.tokens[start:stop])
+        start = stop + 1
+    lines, tokens = [], list[Token]()
+    for i, item in enumerate(items):
+        at = item[0].start, item[0].start
+        own = name if i == 0 else Token(name.kind, name.text, *at)
+        index = Token("[", "[", *at), Token("NUMBER", str(i), *at), Token("]", "]", *at), Token("=", "=", *at)
+        tokens += [own, *index, *item]
+        lines.append(f"{name.text}[{i}] = {Span(t.source, item[0].start, item[-1].end).text}")
+    text = ("\n" + " " * t.indentation(name.start)).join(lines)
+    fix = replaced("give each its own line", whole, text)
+    return fix, TokenRepair(t.begin, close + 1, tuple(tokens))
+
+
+def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
+    """Returns the number of the `,` or `for` behind an item, or of the bracket that closes the list."""
+    depth = 0
+    for n in range(start, close):
+        if depth == 0 and tokens[n].kind in (",", "for"):
+            return n
+        depth += (tokens[n].kind in _OPENING) - (tokens[n].kind in _CLOSING)
+    return close
+
+
+def _call_start(tokens: Sequence[Token], close: int) -> int:
+    """Returns the number of the token that opens the bracket closed at `close`."""
+    depth = 0
+    for n in range(close, -1, -1):
+        depth += (tokens[n].kind in _CLOSING) - (tokens[n].kind in _OPENING)
+        if depth == 0:
+            return n
+    return close
+
 
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
@@ -22,15 +101,13 @@ def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0111",
-            "a name is given its value by `=`, not `==`",
-            t.span(),
-            "`==` compares",
-            fix=replaced("write `=`", t.span(), "="),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but("=", "="),)),
+    return wrong(
+        "E0111",
+        "a name is given its value by `=`, not `==`",
+        t.span(),
+        "`==` compares",
+        right="=",
+        repair=t.exchanged("="),
     )
 
 
@@ -39,18 +116,16 @@ def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "=" or not t.accepts("==", "NAME"):
         return None
     definition = t.first.kind not in STATEMENT_WORDS and not t.open
-    return SyntaxProblem(
-        Diagnostic(
-            "E0110",
-            "`=` gives a value to a name; what must be equal is written with `==`",
-            t.span(),
-            "write `==`",
-            hints=("a part of a geometry already has a value: `constrain a.x == b.x` ties it to another",)
-            if definition
-            else (),
-            fix=replaced("write `==`", t.span(), "=="),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but("==", "=="),)),
+    return wrong(
+        "E0110",
+        "`=` gives a value to a name; what must be equal is written with `==`",
+        t.span(),
+        "write `==`",
+        right="==",
+        hints=("a part of a geometry already has a value: `constrain a.x == b.x` ties it to another",)
+        if definition
+        else (),
+        repair=t.exchanged("=="),
     )
 
 
@@ -60,24 +135,20 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
         return None
     after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
     if t.following.kind == "NAME" and after_next.kind == "=":
-        return SyntaxProblem(
-            Diagnostic(
-                "E0109",
-                f"`{t.first.text}` takes no type: its value tells",
-                t.span(t.token, t.following),
-                hints=("write the unit with the number: `80mm`, `30deg`",),
-                fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
-            ),
-            TokenRepair(t.position, t.position + 2),
-        )
-    return SyntaxProblem(
-        Diagnostic(
+        return wrong(
             "E0109",
-            "a name is given its value by `=`, not `:`",
-            t.span(),
-            fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
-        ),
-        TokenRepair(t.position, t.position + 1, (t.token.but("=", "="),)),
+            f"`{t.first.text}` takes no type: its value tells",
+            t.span(t.token, t.following),
+            fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
+            hints=("write the unit with the number: `80mm`, `30deg`",),
+            repair=TokenRepair(t.position, t.position + 2),
+        )
+    return wrong(
+        "E0109",
+        "a name is given its value by `=`, not `:`",
+        t.span(),
+        fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
+        repair=t.exchanged("="),
     )
 
 
@@ -87,14 +158,12 @@ def missing_equals(t: Trouble) -> SyntaxProblem | None:
         return None
     if t.token.kind not in VALUE_STARTS or not t.accepts("=", t.token.kind):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0103",
-            f"expected `=` between the name and its value: `{t.first.text} {t.before and t.before.text} = …`",
-            t.span(),
-            fix=replaced("put in `=`", t.gap(), " ="),
-        ),
-        TokenRepair(t.position, t.position, (t.token_here("="),)),
+    return wrong(
+        "E0103",
+        f"expected `=` between the name and its value: `{t.first.text} {t.before and t.before.text} = …`",
+        t.span(),
+        fix=replaced("put in `=`", t.gap(), " ="),
+        repair=t.put_in("="),
     )
 
 
@@ -126,21 +195,19 @@ def missing_value(t: Trouble) -> SyntaxProblem | None:
 
 
 def _lacking(t: Trouble, message: str) -> SyntaxProblem:
-    return SyntaxProblem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
+    return wrong("E0103", message, t.span(t.before), "nothing follows")
 
 
 def choice_without_parentheses(t: Trouble) -> SyntaxProblem | None:
     """Recognises `a == if c then b else d`."""
     if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0101",
-            f"a choice stands in parentheses behind {describe(t.before or t.first)}",
-            t.span(),
-            "this begins a choice",
-            hints=("write `(if c then a else b)`",),
-        )
+    return wrong(
+        "E0101",
+        f"a choice stands in parentheses behind {describe(t.before or t.first)}",
+        t.span(),
+        "this begins a choice",
+        hints=("write `(if c then a else b)`",),
     )
 
 
@@ -151,15 +218,13 @@ def typed_definition(t: Trouble) -> SyntaxProblem | None:
     kind, name = t.statement
     if kind.kind != "NAME" or name.kind != "NAME":
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0113",
-            f"a definition has no type before its name: `{name.text} = …`",
-            t.span(kind),
-            "the value tells what it is",
-            fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
-        ),
-        TokenRepair(t.begin, t.begin + 1),
+    return wrong(
+        "E0113",
+        f"a definition has no type before its name: `{name.text} = …`",
+        t.span(kind),
+        "the value tells what it is",
+        fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
+        repair=TokenRepair(t.begin, t.begin + 1),
     )
 
 
@@ -168,14 +233,12 @@ def import_without_path(t: Trouble) -> SyntaxProblem | None:
     if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
         return None
     name = t.before.text
-    return SyntaxProblem(
-        Diagnostic(
-            "E0103",
-            f"`import {name}` does not say from which file",
-            t.span(t.first, t.before),
-            "a file is named by its path, in quotes",
-            hints=(f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name',),
-        )
+    return wrong(
+        "E0103",
+        f"`import {name}` does not say from which file",
+        t.span(t.first, t.before),
+        "a file is named by its path, in quotes",
+        hints=(f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name',),
     )
 
 
@@ -188,29 +251,25 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
         inner = t.token.text[1:-1]
         name = "".join(c if c.isalnum() else "_" for c in inner) or word + "_1"
         name = name if name.isidentifier() else "_" + name
-        return SyntaxProblem(
-            Diagnostic(
-                "E0116",
-                f"a name is written without quotes: `{word} {name}`",
-                t.span(),
-                fix=replaced(f"write `{name}`", t.span(), name),
-            ),
-            TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),)),
+        return wrong(
+            "E0116",
+            f"a name is written without quotes: `{word} {name}`",
+            t.span(),
+            right=name,
+            repair=TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),)),
         )
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
     name = _fresh_name(t, word)
     article = "an" if word[0] in "aeiou" else "a"
-    return SyntaxProblem(
-        Diagnostic(
-            "E0116",
-            f"{article} `{word}` needs a name: `{word} {name} {{ … }}`",
-            t.span(t.first),
-            "the name is missing",
-            hints=("constraints and other parts speak of it by its name",),
-            fix=replaced(f"name it `{name}`", t.gap(), f" {name}"),
-        ),
-        TokenRepair(t.position, t.position, (t.token_here("NAME", name),)),
+    return wrong(
+        "E0116",
+        f"{article} `{word}` needs a name: `{word} {name} {{ … }}`",
+        t.span(t.first),
+        "the name is missing",
+        fix=replaced(f"name it `{name}`", t.gap(), f" {name}"),
+        hints=("constraints and other parts speak of it by its name",),
+        repair=TokenRepair(t.position, t.position, (t.token_here("NAME", name),)),
     )
 
 
@@ -230,16 +289,14 @@ def missing_block(t: Trouble) -> SyntaxProblem | None:
     if not (colon or t.on_new_line or t.token.kind in (END, "}", ";") or t.token.kind in STATEMENT_WORDS):
         return None
     head = describe(t.first)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0121",
-            f"expected `{{` to begin the block of {head}",
-            t.gap(),
-            "the block begins with `{` and ends with `}`",
-            (Label(t.span(t.first), "for this"),),
-            hints=("blocks stand in braces, not behind a colon",) if colon else (),
-        ),
-        TokenRepair(t.position, t.position + 1) if colon and t.following.kind == "{" else None,
+    return wrong(
+        "E0121",
+        f"expected `{{` to begin the block of {head}",
+        t.gap(),
+        "the block begins with `{` and ends with `}`",
+        (Label(t.span(t.first), "for this"),),
+        hints=("blocks stand in braces, not behind a colon",) if colon else (),
+        repair=t.exchanged() if colon and t.following.kind == "{" else None,
     )
 
 
@@ -248,15 +305,13 @@ def repeated_placement(t: Trouble) -> SyntaxProblem | None:
     earlier = next((token for token in t.statement if token.kind == word), None)
     if word not in ("at", "rotated") or earlier is None or t.open:
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0120",
-            f"`{word}` is said twice",
-            t.span(),
-            "the second time",
-            (Label(t.span(earlier), "the first time"),),
-            hints=("a structure has one position and one rotation",),
-        )
+    return wrong(
+        "E0120",
+        f"`{word}` is said twice",
+        t.span(),
+        "the second time",
+        (Label(t.span(earlier), "the first time"),),
+        hints=("a structure has one position and one rotation",),
     )
 
 
@@ -269,14 +324,12 @@ def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
         return None
     word = t.first.text
     where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"
-    return SyntaxProblem(
-        Diagnostic(
-            "E0119",
-            f"`{word}` cannot stand inside `constrain`",
-            t.span(t.first),
-            "only constraints, `let`, `prefer`, `for` and `if` do",
-            hints=(f"move it {where}",),
-        ),
+    return wrong(
+        "E0119",
+        f"`{word}` cannot stand inside `constrain`",
+        t.span(t.first),
+        "only constraints, `let`, `prefer`, `for` and `if` do",
+        hints=(f"move it {where}",),
         with_block=True,
     )
 
@@ -300,14 +353,12 @@ def bare_value(t: Trouble) -> SyntaxProblem | None:
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None
     span = t.span(t.first, t.before)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0117",
-            f"`{_shortened(span.text)}` alone says nothing",
-            span,
-            "a statement defines a name, compares, or calls something",
-            hints=("to constrain it, compare it: `… == …`", "to name it, write `name = …`"),
-        )
+    return wrong(
+        "E0117",
+        f"`{_shortened(span.text)}` alone says nothing",
+        span,
+        "a statement defines a name, compares, or calls something",
+        hints=("to constrain it, compare it: `… == …`", "to name it, write `name = …`"),
     )
 
 
@@ -319,11 +370,9 @@ def _shortened(text: str) -> str:
 def else_without_if(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "else" or not t.between:
         return None
-    return SyntaxProblem(
-        Diagnostic(
-            "E0101",
-            "`else` follows the block of an `if`, and there is none before it",
-            t.span(),
-            hints=("`if c { … } else { … }`",),
-        )
+    return wrong(
+        "E0101",
+        "`else` follows the block of an `if`, and there is none before it",
+        t.span(),
+        hints=("`if c { … } else { … }`",),
     )

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, line_end, replaced
+from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, line_end, replaced, wrong
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, is_open_comment, tokenize
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
     QUOTES,
@@ -28,16 +28,14 @@ def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
         return None
     end = Span(t.source, t.token.end, t.token.end)
     opening = Span(t.source, t.token.start, t.token.start + 2)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0107",
-            "this comment is not closed: expected `*/`",
-            opening,
-            "the comment begins here and takes in the rest of the file",
-            hints=("close it with `*/`, or begin each line of it with `//`",),
-            fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
-        ),
-        TokenRepair(t.position, t.position + 1),
+    return wrong(
+        "E0107",
+        "this comment is not closed: expected `*/`",
+        opening,
+        "the comment begins here and takes in the rest of the file",
+        fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
+        hints=("close it with `*/`, or begin each line of it with `//`",),
+        repair=t.exchanged(),
     )
 
 
@@ -53,15 +51,13 @@ def unclosed_string(t: Trouble) -> SyntaxProblem | None:
     string = Token("STRING", written + closing, t.token.start, end)
     rest = tokenize(t.source, end, t.token.end).tokens[:-1]
     place = Span(t.source, end, end)
-    return SyntaxProblem(
-        Diagnostic(
-            "E0107",
-            f"this text is not closed: expected `{text[0]}` before the end of the line",
-            Span(t.source, t.token.start, end),
-            "the text begins here",
-            fix=replaced(f"close the text with `{text[0]}`", place, closing),
-        ),
-        TokenRepair(t.position, t.position + 1, (string, *rest)),
+    return wrong(
+        "E0107",
+        f"this text is not closed: expected `{text[0]}` before the end of the line",
+        Span(t.source, t.token.start, end),
+        "the text begins here",
+        fix=replaced(f"close the text with `{text[0]}`", place, closing),
+        repair=TokenRepair(t.position, t.position + 1, (string, *rest)),
     )
 
 
@@ -71,11 +67,12 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         return None
     text, number = t.token.text, before.text
     if text[0].isdigit() or text[0] == ".":
-        return SyntaxProblem(
-            Diagnostic(
-                "E0105", f"`{number}{text}` is not a number", t.span(before, t.token), "more than one point"
-            ),
-            TokenRepair(t.position, t.position + 1),
+        return wrong(
+            "E0105",
+            f"`{number}{text}` is not a number",
+            t.span(before, t.token),
+            "more than one point",
+            repair=t.exchanged(),
         )
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
@@ -84,18 +81,16 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         problem = Diagnostic("E0105", f"`{number}{text}` is written `{whole.text}`", span, fix=fix)
         return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (whole,)))
     meant = UNIT_WORDS.get(text.lower())
-    return SyntaxProblem(
-        Diagnostic(
-            "E0105",
-            f"`{text}` is not a unit" + (f"; did you mean `{number}{meant}`?" if meant else ""),
-            t.span(before, t.token),
-            f"units are {', '.join(UNITS)}",
-            hints=()
-            if meant
-            else ("a number without a unit is in millimetres as a length, in degrees as an angle",),
-            fix=replaced(f"write `{meant}`", t.span(), meant) if meant else None,
-        ),
-        TokenRepair(t.position, t.position + 1),
+    return wrong(
+        "E0105",
+        f"`{text}` is not a unit" + (f"; did you mean `{number}{meant}`?" if meant else ""),
+        t.span(before, t.token),
+        f"units are {', '.join(UNITS)}",
+        fix=replaced(f"write `{meant}`", t.span(), meant) if meant else None,
+        hints=()
+        if meant
+        else ("a number without a unit is in millimetres as a length, in degrees as an angle",),
+        repair=t.exchanged(),
     )
 
 
@@ -124,7 +119,7 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
     repair: TokenRepair | None = TokenRepair(t.position, t.position + 1, stand_in)
     if not stand_in and t.complete and t.following.kind != END:
         repair = None  # the rest makes no sense without the character
-    return SyntaxProblem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
+    return wrong("E0108", message, t.span(), fix=fix, hints=hints, repair=repair)
 
 
 def _fence(t: Trouble) -> SyntaxProblem:
@@ -133,9 +128,8 @@ def _fence(t: Trouble) -> SyntaxProblem:
     stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
     line = Span(t.source, t.token.start, end)
     message = "the fence of a Markdown block is no part of the program"
-    return SyntaxProblem(
-        Diagnostic("E0108", message, line, fix=replaced("remove it", line, "")),
-        TokenRepair(t.position, stop),
+    return wrong(
+        "E0108", message, line, fix=replaced("remove it", line, ""), repair=TokenRepair(t.position, stop)
     )
 
 
@@ -149,21 +143,15 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
     if not inner or not is_whole or (is_behind_value and not t.on_new_line):
         return None
     edits = (Edit(t.span(), "abs("), Edit(Span(t.source, close.start, close.end), ")"))
-    return SyntaxProblem(
-        Diagnostic(
-            "E0108",
-            f"an absolute value is written `abs({inner})`",
-            Span(t.source, t.token.start, close.end),
-            fix=Fix(f"write `abs({inner})`", edits, is_sure=True),
-        ),
-        TokenRepair(
+    return wrong(
+        "E0108",
+        f"an absolute value is written `abs({inner})`",
+        Span(t.source, t.token.start, close.end),
+        fix=Fix(f"write `abs({inner})`", edits, is_sure=True),
+        repair=TokenRepair(
             t.position,
             stop + 1,
-            (
-                t.token.but("CALL", "abs("),
-                *t.tokens[t.position + 1 : stop],
-                close.but(")", ")"),
-            ),
+            (t.token.but("CALL", "abs("), *t.tokens[t.position + 1 : stop], close.but(")", ")")),
         ),
     )
 
@@ -182,15 +170,13 @@ def _curly_quote(t: Trouble) -> SyntaxProblem:
         stand_in = (Token("STRING", quote + inner.replace("\\", "\\\\") + quote, t.token.start, close + 1),)
         while t.tokens[stop].kind != END and t.tokens[stop].start <= close:
             stop += 1
-    return SyntaxProblem(
-        Diagnostic(
-            "E0108",
-            f"text stands in straight quotes: `{quote}`",
-            t.span() if close is None else Span(t.source, t.token.start, close + 1),
-            "this is a typographic quote",
-            fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
-        ),
-        TokenRepair(t.position, stop, stand_in),
+    return wrong(
+        "E0108",
+        f"text stands in straight quotes: `{quote}`",
+        t.span() if close is None else Span(t.source, t.token.start, close + 1),
+        "this is a typographic quote",
+        fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
+        repair=TokenRepair(t.position, stop, stand_in),
     )
 
 
@@ -205,15 +191,13 @@ def spaced_unit(t: Trouble) -> SyntaxProblem | None:
         gap = Span(t.source, number.end, token.start)
         if "\n" in gap.text or not gap.text or any(unit in number.text for unit in UNITS):
             continue
-        return SyntaxProblem(
-            Diagnostic(
-                "E0106",
-                f"a unit touches its number: `{number.text}{token.text}`",
-                t.span(number, token),
-                "the space ends the number",
-                fix=replaced("remove the space", gap, ""),
-            ),
-            TokenRepair(at, at + 1),
+        return wrong(
+            "E0106",
+            f"a unit touches its number: `{number.text}{token.text}`",
+            t.span(number, token),
+            "the space ends the number",
+            fix=replaced("remove the space", gap, ""),
+            repair=TokenRepair(at, at + 1),
         )
     return None
 
@@ -246,27 +230,23 @@ def operator_spelling(t: Trouble) -> SyntaxProblem | None:
             "...": ("`a..b` includes both ends, `a..<b` leaves out the last",),
             "..=": ("`a..b` includes both ends, `a..<b` leaves out the last",),
         }.get(written, ())
-        return SyntaxProblem(
-            Diagnostic(
-                "E0109",
-                f"`{written}` is written `{right}`",
-                t.span(one, two),
-                hints=hints,
-                fix=replaced(f"write `{right}`", t.span(one, two), right),
-            ),
-            TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),)),
+        return wrong(
+            "E0109",
+            f"`{written}` is written `{right}`",
+            t.span(one, two),
+            right=right,
+            hints=hints,
+            repair=TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),)),
         )
     one, two = t.token, t.following
     if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
         two := one, one := t.before or one
     ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
-        return SyntaxProblem(
-            Diagnostic(
-                "E0109",
-                f"there is no `{one.text}=`: a name keeps the value it was given",
-                t.span(one, two),
-                hints=("give the new value a name of its own: `let longer = length + 5`",),
-            )
+        return wrong(
+            "E0109",
+            f"there is no `{one.text}=`: a name keeps the value it was given",
+            t.span(one, two),
+            hints=("give the new value a name of its own: `let longer = length + 5`",),
         )
     return None
 
@@ -290,14 +270,12 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
         # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
-        return SyntaxProblem(
-            Diagnostic(
-                "E0113",
-                f"there is no `{word}`: a definition begins with its name, `{name} = …`",
-                span,
-                fix=replaced(f"leave out `{word}`", rest, ""),
-            ),
-            TokenRepair(t.begin, t.begin + 1),
+        return wrong(
+            "E0113",
+            f"there is no `{word}`: a definition begins with its name, `{name} = …`",
+            span,
+            fix=replaced(f"leave out `{word}`", rest, ""),
+            repair=TokenRepair(t.begin, t.begin + 1),
         )
     if right:
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
@@ -305,7 +283,7 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
             repair = TokenRepair(t.begin, t.begin + 1, tuple(stand_in))
         is_sure = repair is not None and word.lower() not in TWO_WAYS
         fix = replaced(f"write `{right}`", span, right, is_sure=is_sure)
-    return SyntaxProblem(Diagnostic("E0113", f"there is no `{word}`: {message}", span, fix=fix), repair)
+    return wrong("E0113", f"there is no `{word}`: {message}", span, fix=fix, repair=repair)
 
 
 def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
@@ -329,14 +307,12 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
         return None
     word = token.text
     if word == "at" and t.open and t.following.kind in (":", "="):
-        return SyntaxProblem(
-            Diagnostic(
-                "E0104",
-                "`at` is a word of the language; where a shape is says its `center`",
-                t.span(token),
-                fix=replaced("write `center`", t.span(token), "center"),
-            ),
-            TokenRepair(at, at + 1, (token.but("NAME", "center"),)),
+        return wrong(
+            "E0104",
+            "`at` is a word of the language; where a shape is says its `center`",
+            t.span(token),
+            right="center",
+            repair=TokenRepair(at, at + 1, (token.but("NAME", "center"),)),
         )
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)
@@ -348,18 +324,16 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
     is_declared = (at > 0 and t.tokens[at - 1].kind in STATEMENT_WORDS) or (
         at == t.begin and t.tokens[stop].kind == "="
     )
-    return SyntaxProblem(
-        Diagnostic(
-            "E0104",
-            f"`{word}` is a word of the language and cannot be {role}",
-            t.span(token),
-            example(word),
-            hints=(f"choose another name, as `{word}_1`",) if not called else (),
-            fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1", is_sure=is_declared)
-            if not called
-            else None,
-        ),
-        TokenRepair(at, stop, (as_name,)),
+    return wrong(
+        "E0104",
+        f"`{word}` is a word of the language and cannot be {role}",
+        t.span(token),
+        example(word),
+        fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1", is_sure=is_declared)
+        if not called
+        else None,
+        hints=(f"choose another name, as `{word}_1`",) if not called else (),
+        repair=TokenRepair(at, stop, (as_name,)),
     )
 
 

@@ -18,9 +18,8 @@ from aidl_lang.common.names import fold, is_slip, nearest
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
-from aidl_lang.syntax.kinds import KIND_OF_WORD, KINDS, kind_of
-from aidl_lang.syntax.tokens import Token
-from aidl_lang.syntax.words import FOREIGN_WORDS
+from aidl_lang.syntax.tables import Token
+from aidl_lang.syntax.words import FOREIGN_WORDS, KIND_OF_WORD, KINDS, kind_of
 
 
 class ThenIf:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from aidl_eval.study import command as study
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, say, show
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
-from aidl_lang.tools.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_eval.plan import Plan

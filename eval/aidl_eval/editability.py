@@ -12,9 +12,9 @@ from aidl_eval.requirements import Prompt, Status, examine_regions
 from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.ends.values import Value, allowed, rounded
+from aidl_lang.tools.ends import Value, allowed, rounded
 from aidl_lang.tools.llm.aidl import Aidl
-from aidl_lang.tools.llm.language import Language
+from aidl_lang.tools.llm.messages import Language
 
 SHARES = (-0.25, -0.1, 0.1, 0.25)
 """Changes of a number, as shares of its value."""

@@ -15,7 +15,7 @@ from aidl_eval.whole import pieces
 from aidl_lang import SourceFile
 from aidl_lang.export import Options
 from aidl_lang.tools.llm.aidl import counted
-from aidl_lang.tools.llm.language import Language
+from aidl_lang.tools.llm.messages import Language
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from aidl_eval.python_cad import PythonCad
 from aidl_eval.rendering import Wrapped
 from aidl_eval.requirements import Prompt
 from aidl_eval.svg import Svg
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.generation import Settings
-from aidl_lang.tools.llm.language import Language
+from aidl_lang.tools.llm.messages import Language
 
 VARIANTS: dict[str, Language] = {
     **{str(variant): Aidl(variant) for variant in Variant},

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from aidl_eval.regions import Regions
-from aidl_lang.tools.llm.language import Conversation, Language, Verdict
+from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
 
 SECONDS = 30
 """Seconds that a program may run."""

@@ -18,8 +18,7 @@ from aidl_eval.requirements import Prompt
 from aidl_lang import Diagnostic, __version__
 from aidl_lang.common.files import replace
 from aidl_lang.tools.llm.generation import Attempt, Generation
-from aidl_lang.tools.llm.language import Verdict
-from aidl_lang.tools.llm.messages import Usage
+from aidl_lang.tools.llm.messages import Usage, Verdict
 
 Record = dict[str, Any]
 

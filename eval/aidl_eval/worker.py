@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 from aidl_eval.rendering import Wrapped
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.processes import Guarded, Limit
-from aidl_lang.tools.llm.language import Conversation, Language, Verdict
+from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
 
 T = TypeVar("T")
 

@@ -6,7 +6,7 @@ import os
 import time
 from dataclasses import dataclass, field
 
-from aidl_lang.tools.llm.language import Verdict
+from aidl_lang.tools.llm.messages import Verdict
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from aidl_eval.rendering import RenderedLanguage
 from aidl_eval.requirements import load
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Settings, compile
-from aidl_lang.tools.cli.eval import register
+from aidl_lang.tools.cli.generate import register_eval
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.aidl import Aidl
 
@@ -92,6 +92,6 @@ def test_help_can_be_switched_off() -> None:
 def test_the_command_knows_the_same_variants() -> None:
     """It repeats their names, so that it starts without the languages."""
     parser = ArgumentParser()
-    register(parser)
+    register_eval(parser)
     choices = next(action.choices for action in parser._actions if action.dest == "variants")
     assert sorted(choices or ()) == sorted(VARIANTS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.tools.agents.quantities import LONGEST, quantity
+from aidl_lang.tools.agents.workspace import LONGEST, quantity
 
 
 @pytest.mark.parametrize(

@@ -222,7 +222,9 @@ def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_packages_that_are_missing(said: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("aidl_lang.tools.cli.mcp.find_spec", lambda name: None if name == "mcp" else object())
+    monkeypatch.setattr(
+        "aidl_lang.tools.cli.serving.find_spec", lambda name: None if name == "mcp" else object()
+    )
     assert said() == (
         "error[E0942]: the server needs `mcp`, not installed here\n  = hint: pip install 'aidl-lang[mcp]'\n"
     )

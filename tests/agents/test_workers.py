@@ -11,9 +11,9 @@ import pytest
 
 from aidl_lang.common.processes import MEMORY
 from aidl_lang.common.records import record
+from aidl_lang.tools.agents.calling import Workers
 from aidl_lang.tools.agents.results import Page
 from aidl_lang.tools.agents.tools import Tools
-from aidl_lang.tools.agents.workers import Workers
 
 
 @record()
@@ -39,10 +39,10 @@ def workers() -> Iterator[Workers]:
 
 
 def test_calls_that_break_are_given_up_and_others_answered(workers: Workers) -> None:
-    workers.seconds = 6.0
+    workers.seconds = 3.0
     hang, fine = asyncio.run(_both(workers, "hang", "fine"))
     assert hang == (
-        "error E0943: the call took longer than 6 s and was given up\n"
+        "error E0943: the call took longer than 3 s and was given up\n"
         "  hint: ask for less: fewer parts, smaller arrays, no outlines worked out of many others"
     )
     assert fine == "fine"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.tools.cli.new import structure_name
+from aidl_lang.tools.cli.doc import structure_name
 from tests.cli.conftest import GOOD, WRONG
 from tests.commands import Result
 
@@ -238,7 +238,7 @@ def test_doc_answers_plain_questions_at_once(aidl: Aidl, question: str, answer: 
 
 def test_doc_lists_all_names_by_topic(aidl: Aidl) -> None:
     listed = aidl("doc").out
-    assert listed.startswith("The language\n  solid ")
+    assert listed.startswith("Rectangles and what is made from them\n  square ")
     assert re.search(r"^  slot +\S", listed, flags=re.MULTILINE)
 
 
@@ -341,7 +341,7 @@ def test_programs_used_here_are_what_they_say(aidl: Aidl) -> None:
 
 @pytest.mark.parametrize("asked", [["--report"], ["study", "results"], ["--help"]])
 def test_eval_says_what_to_install(aidl: Aidl, monkeypatch: pytest.MonkeyPatch, asked: list[str]) -> None:
-    monkeypatch.setattr("aidl_lang.tools.cli.eval.find_spec", lambda name: None)
+    monkeypatch.setattr("aidl_lang.tools.cli.generate.find_spec", lambda name: None)
     assert aidl("eval", *asked) == Result(
         2,
         "",

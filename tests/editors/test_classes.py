@@ -13,7 +13,7 @@ from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.highlighting.classes import CLASSES, Piece, classify
 from aidl_lang.tools.reference.collect import reference
 from tests.documents import ROOT, programs

@@ -21,9 +21,8 @@ from tree_sitter import Node
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.lines import begins_with_sign
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import END, Token, tokenize
+from aidl_lang.syntax.tables import END, Token, load_tables, tokenize
+from aidl_lang.syntax.warnings import begins_with_sign
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.amount import TRIES_ALL, large
 from tests.documents import ROOT, programs
@@ -104,10 +103,11 @@ def test_every_program_of_the_project_is_read_without_an_error() -> None:
 
 def test_every_program_is_taken_or_refused_as_by_the_parser() -> None:
     assert len(all_programs()) > 1500
-    verdicts = {place: (refused(parse(text)), errors(text)) for place, text in all_programs().items()}
+    some = sorted(all_programs().items())[:: 1 if TRIES_ALL else 3]
+    verdicts = {place: (refused(parse(text)), errors(text)) for place, text in some}
     different = {place: said for place, said in verdicts.items() if bool(said[0]) != bool(said[1])}
     assert different == {}
-    assert sum(1 for reason, _ in verdicts.values() if reason) > 150
+    assert sum(1 for reason, _ in verdicts.values() if reason) > 40
 
 
 # --- Mutants --------------------------------------------------------------------------------------

@@ -13,8 +13,8 @@ from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.running import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.tools.ends import Sweep, SweepJob, searching, sentence, sweep
-from aidl_lang.tools.ends.results import Tried
+from aidl_lang.tools import ends
+from aidl_lang.tools.ends import Sweep, SweepJob, Tried, sentence, sweep
 
 PLATE = """\
 solid plate {
@@ -132,7 +132,7 @@ drawing d {
 
 
 def test_slow_failing_is_not_searched(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(searching, "_PATIENCE", 0.0)
+    monkeypatch.setattr(ends, "_PATIENCE", 0.0)
     (lower, upper) = [
         each for each in swept(PLATE).turned if each.knob.path in ("width", "height") and not each.ok
     ]
@@ -164,14 +164,14 @@ def _hangs(*_: object) -> Tried:
 def test_process_that_breaks_is_a_result(
     monkeypatch: pytest.MonkeyPatch, breaking: object, said: str
 ) -> None:
-    monkeypatch.setattr(searching, "tried", breaking)
+    monkeypatch.setattr(ends, "tried", breaking)
     monkeypatch.setattr(SweepJob, "seconds", 3.0)
     turned = swept("solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }").turned
     assert [sentence(each, "plate.aidl") for each in turned] == [f"at `r = {r}` {said}" for r in (1, 3)]
 
 
 def test_time_for_all_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(searching, "tried", _hangs)
+    monkeypatch.setattr(ends, "tried", _hangs)
     text = "solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }"
     knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
     found = sweep(SweepJob("a.aidl", text), knobs, (), seconds=0.5)
@@ -179,7 +179,7 @@ def test_time_for_all_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_sweep_that_nobody_waits_for_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(searching, "tried", _hangs)
+    monkeypatch.setattr(ends, "tried", _hangs)
     text = "solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }"
     knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
     asked: list[int] = []

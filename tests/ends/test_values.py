@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.building.model import Knob
-from aidl_lang.tools.ends.values import ends, limit
+from aidl_lang.tools.ends import ends, limit
 
 
 def knob(value: object, low: float | None = None, high: float | None = None, **more: object) -> Knob:

@@ -57,6 +57,7 @@ def compiled(text: str) -> pipeline.Compiled:
     return pipeline.compile(SourceFile("<text>", text), DiskWorld(ROOT / "examples" / "workshop"))
 
 
+@cache
 def pages(text: str, **draft: object) -> list[Picture]:
     found = compiled(text)
     assert found.ok
@@ -86,7 +87,11 @@ def block(text: Text) -> Block:
     return Block(text.at, text.angle, (-half, 0.0, half, CAPITAL * text.size))
 
 
-ALL = [pytest.param(path.read_text("utf-8"), id=path.stem) for path in WORKSHOP]
+DEAR = {"pi_case": [pytest.mark.slow]}
+"""Much slower than all others together."""
+ALL = [
+    pytest.param(path.read_text("utf-8"), id=path.stem, marks=DEAR.get(path.stem, [])) for path in WORKSHOP
+]
 ALL.append(pytest.param(ASSEMBLY, id="shelf"))
 ALL.append(pytest.param(PANEL, id="panel"))
 ALL.append(pytest.param((ROOT / "examples" / "motor_bracket.aidl").read_text("utf-8"), id="motor_bracket"))

@@ -27,7 +27,7 @@ from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from tests.amount import large, tried
-from tests.compiled import EXAMPLES, compiled
+from tests.compiled import LIGHTER, compiled
 from tests.export.readers import read_dxf
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
@@ -201,7 +201,7 @@ def test_lines_of_a_drawing_are_joined_in_any_order_and_direction():
     assert (found.closed, found.get_points("xy")) == (False, [(0, 0), (5, 0), (5, 3)])
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_examples(path: Path):
     """Bodies by name, their areas from the entities read back, holes without seams."""
     result = compiled(path.read_text("utf-8"))

@@ -23,7 +23,7 @@ from aidl_lang.export.json import to_dict, to_json
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import Box, Change, ConstraintReport, Mobility, SolvedModel
-from tests.compiled import EXAMPLES
+from tests.compiled import LIGHTER
 from tests.compiled import model as model_of
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
@@ -227,7 +227,7 @@ def test_shapely_reads_the_polygons():
     assert shapely.hausdorff_distance(polygons, exact) <= tolerance
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_polygons_of_the_examples_have_the_areas_of_the_regions(path: Path):
     found, tolerance = regions(path.read_text("utf-8"))
     for region in found.values():

@@ -24,7 +24,7 @@ from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
 from tests.amount import large
-from tests.compiled import EXAMPLES, compiled
+from tests.compiled import LIGHTER, compiled
 from tests.documents import ROOT
 from tests.export.step_reading import StepFile, read
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
@@ -412,7 +412,7 @@ def test_thousands_of_holes() -> None:
     assert data.count(b"CYLINDRICAL_SURFACE(") == large(3_000)
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_examples(path: Path, tmp_path: Path) -> None:
     made = compiled(path.read_text("utf-8"))
     assert made.ok

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from aidl_lang.common.source import SourceFile
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 
 
 def minimised(text: str, holds: Callable[[str], bool], seconds: float) -> str:

@@ -36,9 +36,9 @@ from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.tools.lsp import wire
+from aidl_lang.tools.lsp import serve
 from aidl_lang.tools.lsp.serve import make
-from aidl_lang.tools.sweeping.orders import read_table
+from aidl_lang.tools.sweeping.plan import read_table
 from tests.documents import ROOT
 from tests.fuzz.minimise import minimised
 from tests.test_font_files import bar, both, made_of, open_type, true_type
@@ -241,7 +241,7 @@ async def _served(data: bytes) -> None:
     reader.feed_data(data)
     reader.feed_eof()
     try:
-        async for body in wire.bodies(reader):
+        async for body in serve.bodies(reader):
             server.protocol.receive(body)
             await asyncio.sleep(0)
         server.protocol.receive(b'{"jsonrpc": "2.0", "id": "alive", "method": "aidl/nothing"}')

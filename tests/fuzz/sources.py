@@ -12,7 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from aidl_lang.common.source import SourceFile
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.reference.collect import reference
 from tests.documents import ROOT, programs
 from tests.fuzz.calls import CALLABLES, Writer

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from aidl_lang.geometry.clipping import clipped_each
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
+from aidl_lang.geometry.evaluate import all_bounds, bounds, ends, inward, point, points
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
 from aidl_lang.geometry.fitting import fitted
 from aidl_lang.geometry.hulls import hull
@@ -318,6 +318,13 @@ def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -
 
 def test_hull_of_a_circle_around_all() -> None:
     assert hull([Circle((0, 0), 9), Line((0, 0), (3, 3)), Circle((2, 0), 4)]).loops[0].is_whole
+
+
+@given(st.lists(st.builds(Bezier, *[st.tuples(*[st.floats(-100, 100)] * 2)] * 4), min_size=16, max_size=24))
+def test_boxes_of_many_cubics_are_those_of_each(cubics: list[Bezier]) -> None:
+    level, bent = Bezier((0, 0), (1, 0), (2, 0), (3, 0)), Bezier((0, 0), (0, 0), (5, 9), (5, 9))
+    curves = [*cubics, Circle((1, 2), 3), level, bent]
+    assert np.array(all_bounds(curves)) == pytest.approx(np.array([bounds(c) for c in curves]), abs=1e-9)
 
 
 def test_clipped_lines_end_on_the_border() -> None:

@@ -9,9 +9,8 @@ import pytest
 
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.kinds import KINDS
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import END, Token, tokenize
+from aidl_lang.syntax.tables import END, Token, load_tables, tokenize
+from aidl_lang.syntax.words import KINDS
 from aidl_lang.tools.grammars import export
 from tests.amount import TRIES_ALL
 from tests.grammars.engines import Engine, all_programs, engine, syntax_errors

@@ -8,10 +8,9 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.tools.ide.actions import Action, actions
-from aidl_lang.tools.ide.positions import applied, between
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, look, run
-from tests.compiled import LIGHTER
+from aidl_lang.tools.ide.workspace import View, applied, between, look, run
+from tests.compiled import FEW
 
 from .conftest import EXAMPLES, cursor, opened, seen
 
@@ -187,7 +186,7 @@ def test_what_needs_a_function_from_around_it_is_left() -> None:
 # --- The missing constraint --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("path", LIGHTER)
+@pytest.mark.parametrize("path", FEW)
 def test_what_is_said_to_be_missing_takes_a_freedom_away(path: object) -> None:
     assert path in EXAMPLES
     text = path.read_text("utf-8")  # type: ignore[attr-defined]

@@ -14,13 +14,13 @@ from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.completion.constraints import forms, read
 from aidl_lang.tools.ide.workspace import Workspace, look
 from aidl_lang.tools.snippets import expanded
 from aidl_lang.tools.vocabulary import vocabulary
-from tests.compiled import LIGHTER
+from tests.compiled import FEW
 
 from .conftest import cursor, seen
 
@@ -394,7 +394,7 @@ def closed(text: str) -> str:
 _CLOSERS = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 
 
-@pytest.mark.parametrize("path", LIGHTER)
+@pytest.mark.parametrize("path", FEW)
 def test_what_is_inserted_parses_no_worse(path: Path) -> None:
     """A word is taken out of a program, or all that follows it too, what is open being closed: each entry
     that is put there leaves no more mistakes than there are without it. A name may begin a statement.

@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
-from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.references import Refusal
-from aidl_lang.tools.ide.workspace import View, Workspace, look, run
+from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.ide.conftest import EXAMPLES, seen
 
 ROD = """drawing d {

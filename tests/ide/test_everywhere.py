@@ -12,7 +12,7 @@ from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.signatures import signature_help
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
-from tests.compiled import LIGHTER
+from tests.compiled import FEW
 
 from .conftest import seen
 
@@ -54,7 +54,7 @@ def _ask(view: View, offset: int, files: Callable[[], list[Path]]) -> None:
         assert overload.active is None or overload.active < len(overload.parameters)
 
 
-@pytest.mark.parametrize("path", LIGHTER)
+@pytest.mark.parametrize("path", FEW)
 def test_every_place_is_answered(path: Path) -> None:
     chance = random.Random(f"all of {path.stem}")
     text = path.read_text("utf-8")

@@ -8,8 +8,7 @@ import pytest
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.guesses import Guess, guesses
-from aidl_lang.tools.ide.positions import applied
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import View, applied
 from tests.documents import ROOT, Block, programs
 from tests.ide.conftest import seen
 

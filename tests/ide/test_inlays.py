@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.tools.ide.lenses import InlayKind, inlays
-from aidl_lang.tools.ide.positions import applied
-from aidl_lang.tools.ide.workspace import look, run
+from aidl_lang.tools.ide.workspace import applied, look, run
 from tests.ide.conftest import opened, seen
 
 MOVED = """drawing d {

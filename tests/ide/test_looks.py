@@ -6,9 +6,8 @@ import pytest
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.lenses import lenses
-from aidl_lang.tools.ide.positions import applied
-from aidl_lang.tools.ide.semantic_tokens import as_bytes, colors, spellings
-from aidl_lang.tools.ide.workspace import View, run
+from aidl_lang.tools.ide.outline import as_bytes, colors, spellings
+from aidl_lang.tools.ide.workspace import View, applied, run
 
 from .conftest import seen
 

@@ -9,17 +9,19 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.meaning import mention_at, mentions, place_of
 from aidl_lang.tools.ide.references import (
     CannotError,
     definitions,
     highlights,
+    mention_at,
+    mentions,
+    place_of,
     references,
     rename,
     renameable,
 )
 from aidl_lang.tools.ide.workspace import Project, View, Workspace
-from tests.compiled import LIGHTER
+from tests.compiled import FEW
 
 from .conftest import opened
 
@@ -252,7 +254,7 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
             assert own[0].span in spans
 
 
-@pytest.mark.parametrize("path", LIGHTER)
+@pytest.mark.parametrize("path", FEW)
 def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
     project = Project(Workspace([path.parent]))
     view = project.view(path)

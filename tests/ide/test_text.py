@@ -10,10 +10,18 @@ from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.tools.ide.outline import Entry, folds, outline, search, selections
-from aidl_lang.tools.ide.positions import format_document, format_range
-from aidl_lang.tools.ide.semantic_tokens import MODIFIERS, TYPES, Colored, semantic_tokens
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.outline import (
+    MODIFIERS,
+    TYPES,
+    Colored,
+    Entry,
+    folds,
+    outline,
+    search,
+    selections,
+    semantic_tokens,
+)
+from aidl_lang.tools.ide.workspace import View, format_document, format_range
 from tests.amount import tries
 
 from .conftest import EXAMPLES, opened, seen

@@ -5,12 +5,11 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.common.prose import shortest
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.guesses import can_write_back, guesses, write_back
 from aidl_lang.tools.ide.lenses import inlays
-from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, Workspace, look, run
+from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.ide.conftest import EXAMPLES, seen
 from tests.ide.test_guesses import curves, near
 

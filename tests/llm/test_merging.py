@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
-from aidl_lang.tools.llm.merging import merge
+from aidl_lang.tools.llm.aidl import merge
 from tests.amount import tries
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))

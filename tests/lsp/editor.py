@@ -13,7 +13,7 @@ import pytest_lsp
 from lsprotocol import types
 from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, LanguageClient, register_lsp_features
 
-from aidl_lang.tools.lsp.protocol import converter
+from aidl_lang.tools.lsp.server import converter
 from tests.documents import ROOT
 
 COMMAND = [sys.executable, "-m", "aidl_lang", "lsp"]

@@ -12,13 +12,13 @@ from typing import Any
 import pytest
 
 from aidl_lang.common import names
-from aidl_lang.tools.lsp import tidying
+from aidl_lang.tools.lsp import running
 from aidl_lang.tools.lsp.serve import make
 
 PROGRAM = (
     "solid plate {{\n    rim = circle(radius: 5)\n    hole bore {{ edge = circle(radius: 2) }}\n}}\n// {}\n"
 )
-EDITS = 40
+EDITS = 20
 
 
 class Nobody:
@@ -74,7 +74,7 @@ def test_models_of_old_texts_and_closed_documents_are_released(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As on a machine where every collection takes long."""
-    monkeypatch.setattr(tidying, "_LONG", 0.0)
+    monkeypatch.setattr(running, "_LONG", 0.0)
     try:
         typing, closed = asyncio.run(typed(tmp_path / "a.aidl"))
     finally:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.cli.lsp import find_spec
+from aidl_lang.tools.cli.serving import find_spec
 from tests.lsp.editor import COMMAND, ENVIRONMENT
 from tests.lsp.test_in_flight import SLOW
 
@@ -171,7 +171,7 @@ def test_without_its_packages_it_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(
-        "aidl_lang.tools.cli.lsp.find_spec", lambda name: None if name == "pygls" else find_spec(name)
+        "aidl_lang.tools.cli.serving.find_spec", lambda name: None if name == "pygls" else find_spec(name)
     )
     assert main(["lsp"]) == 2
     said = capsys.readouterr().err
@@ -182,7 +182,7 @@ def test_without_its_packages_it_says_what_to_install(
 def test_nothing_but_the_protocol_is_on_standard_output() -> None:
     script = (
         "import sys, os, asyncio\n"
-        "from aidl_lang.tools.lsp import wire\n"
+        "from aidl_lang.tools.lsp import serve as wire\n"
         "incoming, outgoing = wire.claim_standard_streams()\n"
         "print('stray'); sys.stdout.flush(); os.write(1, b'stray')\n"
         "os.write(outgoing, os.read(incoming, 99)); assert sys.stdin.read() == ''\n"

@@ -10,8 +10,7 @@ from lark import Lark
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import load_tables, tokenize
 
 GRAMMAR = resource("grammar/aidl.lark").read_text(encoding="utf-8")
 RULES = "\n".join(line for line in GRAMMAR.splitlines() if not line.startswith("//"))

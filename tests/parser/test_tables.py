@@ -16,7 +16,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import tables
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.syntax.tables import tokenize
 from tests.grammars.engines import all_programs
 
 GRAMMAR = resource("grammar/aidl.lark").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.tools import cli
-from aidl_lang.tools.cli import listening
+from aidl_lang.tools.cli import serving
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def file(tmp_path: Path) -> str:
 def test_missing_packages_are_named(
     file: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(listening, "find_spec", lambda name: None if name == "uvicorn" else find_spec(name))
+    monkeypatch.setattr(serving, "find_spec", lambda name: None if name == "uvicorn" else find_spec(name))
     assert cli.main(["preview", file]) == 2
     assert capsys.readouterr().err == (
         "error[E0952]: the preview needs `uvicorn`, not installed here\n"

@@ -13,9 +13,8 @@ from shapely.geometry import Polygon
 from svgelements import Path as SvgPath
 
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
-from aidl_lang.tools.ide.preview import LAYERS, Writer, elements_at, preview
+from aidl_lang.tools.ide.preview import LAYERS, Writer, elements_at, preview, svg_of
 from aidl_lang.tools.ide.preview.elements import elements
-from aidl_lang.tools.ide.preview.making import svg_of
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.compiled import LIGHTER
 from tests.preview.views import view_of

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.tools.ide.positions import Positions, Unit
+from aidl_lang.tools.ide.workspace import Positions, Unit
 
 TEXTS = st.lists(st.sampled_from(["a", "é", "…", "🅰", "😀", "\n", "\r", "\r\n", "\t", "\ufeff", " "])).map(
     "".join

@@ -19,8 +19,8 @@ import shapely.affinity
 import aidl_lang
 from tests.amount import tried
 
-TRIALS = tried(100)
-BATCH = 25
+TRIALS = tried(60)
+BATCH = min(25, TRIALS)
 ENOUGH = 0.99
 NEAR = 1e-6
 STEP, ROW = 400, 10

@@ -20,6 +20,7 @@ import aidl_lang
 from aidl_lang.pipeline import Settings
 from tests.amount import tries
 from tests.checker.checking import broken
+from tests.compiled import EXAMPLES, LIGHTER
 from tests.property.orders import reordered
 from tests.property.programs import (
     ANY_TEXT,
@@ -32,7 +33,6 @@ from tests.property.programs import (
 )
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 SCHEMA = json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8"))
 TOLERANCE = 1e-6
 SMALL = Settings(building=replace(Settings().building, entities=400, turns=2000, constraints=400, items=2000))
@@ -117,7 +117,7 @@ def test_the_same_program_gives_the_same_bytes(sketch: Sketch) -> None:
     assert first.to_svg() == second.to_svg()
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_examples_validate_against_the_schema(path: Path) -> None:
     jsonschema.validate(document(aidl_lang.compile(path.read_text("utf-8"))), SCHEMA)
 
@@ -158,7 +158,7 @@ def test_the_order_of_independent_structures_does_not_matter(sketch: Sketch, cha
     assert apart(document(aidl_lang.compile(one)), document(aidl_lang.compile(other))) < TOLERANCE
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_the_order_in_an_example_does_not_matter(path: Path) -> None:
     text = path.read_text("utf-8")
     one = document(aidl_lang.compile(text))

@@ -12,7 +12,7 @@ from aidl_lang.checking.builtins import CUTS
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.common import resources
 from aidl_lang.common.source import SourceFile
-from aidl_lang.syntax import ast, plain
+from aidl_lang.syntax import ast
 from aidl_lang.typecheck import check
 
 SMALL = """
@@ -78,14 +78,14 @@ def _places(node: ast.Node) -> list[tuple[str, int, int]]:
 def test_every_tree_of_the_library_survives_as_data() -> None:
     for module in library.load().modules:
         for node in module.statements:
-            again = plain.decoded(plain.encoded(node), module.source)
+            again = ast.decoded(ast.encoded(node), module.source)
             assert ast.same(node, again)
             assert _places(node) == _places(again)
 
 
 def test_only_trees_become_data() -> None:
     with pytest.raises(TypeError, match="SourceFile is no part of a syntax tree"):
-        plain.encoded((SourceFile("", ""),))
+        ast.encoded((SourceFile("", ""),))
 
 
 def test_definitions_are_decoded_once(checkout: Path) -> None:

@@ -10,12 +10,9 @@ from typing import TypeVar
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
-from aidl_lang.tools.sweeping.axes import axis
-from aidl_lang.tools.sweeping.orders import read_table
 from aidl_lang.tools.sweeping.outputs import outputs
-from aidl_lang.tools.sweeping.plan import planned
-from aidl_lang.tools.sweeping.session import Job, Session
-from aidl_lang.tools.sweeping.starting import opened, reproducing
+from aidl_lang.tools.sweeping.plan import axis, planned, read_table
+from aidl_lang.tools.sweeping.session import Job, Session, opened, reproducing
 from aidl_lang.tools.sweeping.working import Making
 
 T = TypeVar("T")

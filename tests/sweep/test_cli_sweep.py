@@ -18,8 +18,8 @@ import ezdxf
 import pytest
 
 import aidl_lang
-from aidl_lang.tools.cli import main, sweep_progress
-from aidl_lang.tools.sweeping import starting
+from aidl_lang.tools.cli import main, sweep
+from aidl_lang.tools.sweeping import session
 from aidl_lang.tools.sweeping.session import Progress
 from tests.commands import Result
 from tests.commands import aidl as aidl
@@ -46,7 +46,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("NO_COLOR", "1")
     (tmp_path / "plate.aidl").write_text(PLATE)
     (tmp_path / "sign.aidl").write_text(SIGN)
-    monkeypatch.setattr(starting, "Guarded", lambda workers, preload: Here())
+    monkeypatch.setattr(session, "Guarded", lambda workers, preload: Here())
     return tmp_path
 
 
@@ -228,11 +228,11 @@ def test_a_command_with_a_hostile_name_makes_its_file(folder: Path, aidl: Comman
 def test_words_with_invisible_characters_reach_a_shell() -> None:
     words = ["a\nb", "x\u202ey", "tab\there", "it's\x1b", "back\\slash\n", "é\n", "\udcff"]
     told = subprocess.run(
-        ["bash", "-c", f"printf '%s\\0' {starting.joined(words)}"], capture_output=True, check=True
+        ["bash", "-c", f"printf '%s\\0' {session.joined(words)}"], capture_output=True, check=True
     ).stdout
     assert told.split(b"\0")[:-1] == [word.encode("utf-8", "surrogateescape") for word in words]
-    assert starting.joined(words).isprintable()
-    assert shlex.split(starting.joined(["a b", "c"])) == ["a b", "c"]
+    assert session.joined(words).isprintable()
+    assert shlex.split(session.joined(["a b", "c"])) == ["a b", "c"]
 
 
 @pytest.mark.slow
@@ -284,8 +284,8 @@ def test_progress_on_a_terminal_and_for_programs(tmp_path: Path) -> None:
 def test_a_cluster_without_workers_is_told_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sweep_progress, "_PATIENCE", 0.0)
-    with sweep_progress.progress("auto") as listen:
+    monkeypatch.setattr(sweep, "_PATIENCE", 0.0)
+    with sweep.progress("auto") as listen:
         for places in (2, 0, 0, 0, 1, 0):
             listen(Progress(10, 3, 0, 0, (), places, 0))
     assert capsys.readouterr().err == "the cluster has no workers; waiting for some\n"

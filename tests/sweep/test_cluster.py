@@ -162,7 +162,7 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
         crew: Crew[str, str] = Crew(engine)
         words = ["well", "die", "hang", "raise", "too"]
         for word in words:
-            crew.give(word, 10.0, obey, word, str(tmp_path))
+            crew.give(word, 5.0, obey, word, str(tmp_path))
         found: dict[str, str | Broke] = {}
         while crew:
             found |= dict(crew.came(60))

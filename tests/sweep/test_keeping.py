@@ -12,10 +12,8 @@ import pytest
 
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.tools.sweeping import keeping
-from aidl_lang.tools.sweeping.bundle import Bundle
-from aidl_lang.tools.sweeping.faults import Fault
+from aidl_lang.tools.sweeping.bundle import Bundle, Change, Fault, Outcome
 from aidl_lang.tools.sweeping.keeping import Store
-from aidl_lang.tools.sweeping.outcome import Change, Outcome
 from aidl_lang.tools.sweeping.working import Making
 
 MAKING = Making((".dxf",))

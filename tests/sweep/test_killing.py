@@ -66,7 +66,7 @@ def without_workers(folder: Path, sweeps: int, seed: int) -> None:
 
 
 def test_workers_that_are_killed_are_replaced(tmp_path: Path) -> None:
-    without_workers(tmp_path, 2, seed=3)
+    without_workers(tmp_path, 1, seed=3)
 
 
 @pytest.mark.slow
@@ -99,7 +99,7 @@ def killed(folder: Path, times: int, seed: int) -> None:
 
 
 def test_a_killed_sweep_goes_on(tmp_path: Path) -> None:
-    killed(tmp_path, 2, seed=1)
+    killed(tmp_path, 1, seed=1)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.tools.sweeping.naming import distinct, safe
+from aidl_lang.tools.sweeping.outputs import distinct, safe
 
 HOSTILE = [
     *("../../etc/passwd", "/etc/passwd", "..", ".", "", " ", "con", "NUL.txt", "a/b\\c", "x\0y", "\n", "-rf"),

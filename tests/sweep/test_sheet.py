@@ -12,7 +12,7 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.tools.sweeping.sheet.layout import fitted, in_one, on_paper
+from aidl_lang.tools.sweeping.sheet import fitted, in_one, on_paper
 from tests.preview.conftest import ARGUMENTS, CHROMIUM
 from tests.sweep.here import PLATE, sweep
 
@@ -127,7 +127,7 @@ def test_too_many_variants_for_a_sheet_are_refused(tmp_path: Path) -> None:
 
 
 def test_pictures_are_bounded() -> None:
-    from aidl_lang.tools.sweeping.sheet.png import png
+    from aidl_lang.tools.sweeping.sheet import png
 
     with Image.open(io.BytesIO(png("none", []))) as image:
         assert image.width > 0

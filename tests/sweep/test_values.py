@@ -11,9 +11,7 @@ from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.files import Reads
 from aidl_lang.common.source import SourceFile
-from aidl_lang.tools.sweeping.axes import axis, from_values
-from aidl_lang.tools.sweeping.orders import read_table
-from aidl_lang.tools.sweeping.plan import planned
+from aidl_lang.tools.sweeping.plan import axis, from_values, planned, read_table
 
 PROGRAM = """\
 param width = 60mm in 40..200

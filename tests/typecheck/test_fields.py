@@ -7,7 +7,7 @@ import pytest
 from aidl_lang.building import boxes, curves
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.values import ListVal, Num, PointVal, Value
-from aidl_lang.checking import fields
+from aidl_lang.checking import builtins
 from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.types import ANY, GeometryType, ListType, NumberType, PointType, Type
 from tests.compiled import compiled
@@ -23,7 +23,7 @@ def test_a_primitive_has_each_field_with_the_type_that_the_checker_expects(kind:
     assert built is not None
     (geometry,) = built.root.own()
     assert geometry.type == kind
-    for name, wanted in fields.PRIMITIVE[kind].items():
+    for name, wanted in builtins.PRIMITIVE[kind].items():
         found = curves.field(geometry, name, built.root)
         assert found is not None, name
         assert _type(found) == wanted, name
@@ -43,4 +43,4 @@ def _type(value: Value) -> Type:
 
 
 def test_boxes() -> None:
-    assert set(fields.BOX) == set(boxes.FIELDS)
+    assert set(builtins.BOX) == set(boxes.FIELDS)

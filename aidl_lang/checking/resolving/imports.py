@@ -1,30 +1,149 @@
-"""The files that a program imports, each read and parsed once.
-
-A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is the
-folder of the program and all below it. Drawings of other programs, `.svg` and `.dxf`, are read as files of
-definitions (see `drawings`). No other file is read, as diagnostics on a file quote it. Mistakes inside an
-imported file are reported at their place there.
-"""
+"""The files that a program imports, and drawings of other programs as files of definitions."""
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterator
 from dataclasses import field, replace
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
 
+from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.cuts import with_placed_cuts
+from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.drawings import is_drawing
+from aidl_lang.common.drawings import WHOLE, is_drawing
+from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace, outlines
 from aidl_lang.common.files import PROGRAM
+from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import FileError, ReadFailure, World, relative_to
 from aidl_lang.syntax import ast
 
-if TYPE_CHECKING:
-    from aidl_lang.checking.resolving.drawings import ImportedDrawing
+# --- Drawings of other programs as files of definitions: a shape for the whole of one, and for each name in
+# it.
+#
+# They are written in AIDL, on what the library has for the purpose, so that a drawing is called, measured,
+# completed and explained as any shape is. What they say is no text of the author's: like the library's it is
+# not looked through for mistakes, and places in it are told as those of the call.
+
+
+@record(eq=False)
+class ImportedDrawing:
+    """A drawing that a program imports: its outlines, and the definitions that stand for them."""
+
+    outlines: OutlineFile
+    module: ast.Module
+    digest: bytes
+
+    def scope(self, library: SymbolScope) -> SymbolScope:
+        """Returns the names that it defines."""
+        scope = SymbolScope(self.module, library, (self.module,))
+        for node in self.module.statements:
+            assert isinstance(node, ast.ShapeDefinition)
+            scope.callables.setdefault(node.name.text, []).append(signature(node))
+        return scope
+
+    def remarks(self, at: ast.Node) -> Iterator[Diagnostic]:
+        """Yields what there is to be told of the file, at the place where it is imported."""
+        for remark in self.outlines.remarks:
+            yield Diagnostic(remark.code, remark.message, at.span, hints=remark.hints)
+
+
+def digest(data: bytes) -> bytes:
+    """Returns what tells the contents of a file from all others."""
+    return hashlib.sha256(data).digest()
+
+
+def nameless(statement: ast.Import, name: str) -> Diagnostic:
+    """Returns the diagnostic on a drawing that is imported without a name."""
+    span = statement.path.span
+    edit = Edit(Span(span.source, span.end, span.end), f" as {name}")
+    return Diagnostic(
+        "E0361",
+        f"`{statement.path.value}` is a drawing, and is imported under a name",
+        statement.span,
+        "nothing says how it is called here",
+        hints=(f"then `{name}()` is all of it, and `{name}.part()` what is called `part` in it",),
+        fix=Fix(f"call it `{name}`", (edit,), is_sure=True),
+    )
+
+
+def read(path: str, data: bytes) -> ImportedDrawing:
+    """Returns a drawing file. Raises DrawingError."""
+    found = outlines(path, data)
+    from aidl_lang.parser import parse
+
+    parsed = parse(SourceFile(path, " ".join(_definitions(found))))
+    assert not parsed.diagnostics
+    statements = (
+        replace(s, doc=_doc(path, found, s.name.text)) if isinstance(s, ast.ShapeDefinition) else s
+        for s in parsed.module.statements
+    )
+    return ImportedDrawing(found, replace(parsed.module, statements=tuple(statements)), digest(data))
+
+
+def refused(error: DrawingError, node: ast.Node) -> Diagnostic:
+    return Diagnostic(error.code, error.message, node.span, hints=error.hints)
+
+
+def _doc(path: str, found: OutlineFile, name: str) -> str:
+    trace = found.trace(name)
+    left, bottom, right, top = trace.box
+    size = f"{rough(right - left)} × {rough(top - bottom)} mm"
+    return f"All outlines of {path}: {size}." if trace is found.whole else f"{name} of {path}: {size}."
+
+
+_OPTIONS = "angle: turn = 0deg, filled: bool = false, rotatable: bool = false"
+
+
+def _definitions(found: OutlineFile) -> Iterator[str]:
+    """Yields the text of the shapes: by the origin of the file, and by the middle of the outlines, with a
+    scale, a width or a height.
+    """
+    for name, trace in ((WHOLE, found.whole), *found.parts.items()):
+        inner = _inner(found, trace)
+        left, bottom, right, top = trace.box
+        width, height = right - left, top - bottom
+        middle = f"({(left + right) / 2!r}mm * scale, {(bottom + top) / 2!r}mm * scale)"
+        from_start = f"let center = start + turned({middle}, angle)"
+        from_center = f"let start = center - turned({middle}, angle)"
+        sizes = f"let width = {width!r}mm * scale let height = {height!r}mm * scale"
+        ways = [
+            ("start: point = (0, 0), scale: number = 1", from_start, sizes),
+            ("center: point, scale: number = 1", from_center, sizes),
+        ]
+        if width > 0.0:
+            size = f"let scale = width / {width!r}mm let height = {height!r}mm * scale"
+            ways.append(("center: point = (0, 0), width: length", from_center, size))
+        if height > 0.0:
+            size = f"let scale = height / {height!r}mm let width = {width!r}mm * scale"
+            ways.append(("center: point = (0, 0), height: length", from_center, size))
+        for parameters, place, size in ways:
+            yield (
+                f"shape {name}({parameters}, {_OPTIONS}) {{ {size} {place} "
+                f'art = traced("{name}", start, scale * 1mm, angle, filled) {inner} }}'
+            )
+
+
+def _inner(found: OutlineFile, trace: Trace) -> str:
+    """Returns the text of the names within a part: of those that have some of its elements and no others."""
+    own = set(trace.elements)
+    names = (
+        name
+        for name, part in found.parts.items()
+        if part is not trace and own.issuperset(part.elements) and name != trace.name
+    )
+    return " ".join(f'let {name} = traced_part(art, "{name}")' for name in names)
+
+
+# --- The files that a program imports, each read and parsed once.
+#
+# A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is
+# the folder of the program and all below it. Drawings of other programs, `.svg` and `.dxf`, are read as
+# files of definitions (see above). No other file is read, as diagnostics on a file quote it. Mistakes
+# inside an imported file are reported at their place there.
 
 SUFFIX = PROGRAM
 MAX_FILES = 200
@@ -124,14 +243,12 @@ class _Loader:
         return module
 
     def _drawing(self, statement: ast.Import, path: str) -> ast.Module | None:
-        from aidl_lang.checking.resolving import drawings
+
         from aidl_lang.common.drawings.drawing import DrawingError
 
         if statement.alias is None and not statement.names:
             name = re.sub(r"\W+", "_", PurePosixPath(path).stem).strip("_")
-            self.result.diagnostics.append(
-                drawings.nameless(statement, name if name.isidentifier() else "art")
-            )
+            self.result.diagnostics.append(nameless(statement, name if name.isidentifier() else "art"))
             return None
         if self.world is None:
             self._unread(statement)
@@ -145,13 +262,13 @@ class _Loader:
                     "E0804", f"drawings that a program imports may have at most {limit}", statement.path
                 )
                 return None
-            found = drawings.read(path, data)
+            found = read(path, data)
         except FileError as error:
             hint = "paths are relative to the file that imports"
             self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
             return None
         except DrawingError as error:
-            self.result.diagnostics.append(drawings.refused(error, statement.path))
+            self.result.diagnostics.append(refused(error, statement.path))
             return None
         self.known[path] = found.module
         self.result.drawings[found.module] = found

@@ -1,4 +1,4 @@
-"""The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame."""
+"""The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
@@ -217,8 +218,6 @@ def _radii(g: SolvedGeometry) -> tuple[float, ...]:
             return ()
 
 
-# --- The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
-#
 # Of two values the first is from before, the second from after; None stands for nothing.
 
 Value: TypeAlias = Scalar | Vec | tuple[Scalar, ...] | None
@@ -327,6 +326,69 @@ class Comparison:
 
     def to_dict(self) -> dict[str, object]:
         """Returns the comparison as plain dicts and lists, numbers to 12 digits."""
-        from aidl_lang.export.comparison.data import to_dict
-
         return to_dict(self)
+
+
+# --- A comparison as plain dicts and lists, for programs.
+
+VERSION = 1
+Json = dict[str, Any]
+
+
+def to_dict(comparison: Comparison) -> Json:
+    """Returns a comparison as plain data. In every pair, the first value is from before, the second from
+    after; numbers have 12 digits.
+    """
+    document: Json = {
+        "aidl_diff": VERSION,
+        "units": "mm",
+        "equal": comparison.is_equal,
+        "status": list(comparison.status),
+        "dof": list(comparison.degrees),
+        "freed": list(comparison.freed),
+        "held": list(comparison.held),
+        "structures": [_structure(s) for s in comparison.structures],
+        "contacts": [
+            {"a": c.a, "b": c.b, "before": _contact(c.before), "after": _contact(c.after)}
+            for c in comparison.contacts
+        ],
+    }
+    result: Json = rounded(document)
+    return result
+
+
+def _structure(s: StructureChange) -> Json:
+    entry: Json = {"path": s.path, "kind": s.kind, "change": s.sort}
+    entry |= _went(s.was, s.move)
+    fields = {"sizes": s.sizes, "params": s.params, "settings": s.settings}
+    entry |= {name: _fields(found) for name, found in fields.items() if found}
+    if s.geometry:
+        entry["geometry"] = [_geometry(g) for g in s.geometry]
+    return entry
+
+
+def _geometry(g: GeometryChange) -> Json:
+    entry: Json = {"name": g.name, "type": g.type, "change": g.sort} | _went(g.was, g.move)
+    if g.fields:
+        entry["fields"] = _fields(g.fields)
+    if g.is_outline_changed:
+        entry["outline"] = "changed"
+    return entry
+
+
+def _went(was: str | None, move: Move | None) -> Json:
+    entry: Json = {} if was is None else {"was": was}
+    if move is not None:
+        entry["move"] = {"dx": move.dx, "dy": move.dy, "turn": move.turn, "mirrored": move.mirrored}
+    return entry
+
+
+def _fields(fields: Fields) -> Mapping[str, list[object]]:
+    return {name: list(pair) for name, pair in fields.items()}
+
+
+def _contact(contact: Contact | None) -> Json | None:
+    if contact is None:
+        return None
+    entry = {"relation": contact.relation, "gap": contact.gap, "area": contact.area}
+    return {name: value for name, value in entry.items() if value is not None}

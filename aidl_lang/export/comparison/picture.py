@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
-from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon
+from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon, widened
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Stroke
@@ -49,7 +49,7 @@ def overlay(comparison: Comparison) -> Picture:
         Group("moves", tuple(_arrows(comparison.structures, before, size))),
     ]
     legend, below = _legend(regions, box, size)
-    return Picture(_grown(union_bounds([box, below]), MARGIN * size), (*groups, Group("legend", legend)))
+    return Picture(widened(union_bounds([box, below]), MARGIN * size), (*groups, Group("legend", legend)))
 
 
 def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region]:
@@ -75,10 +75,6 @@ def _box(*versions: Version) -> Bounds:
     drawings = [v.drawing for v in versions]
     boxes = [d.box for d in drawings if d.bodies or d.strokes] + [p.box for d in drawings for p in d.plans]
     return union_bounds(boxes) if boxes else (0.0, 0.0, 10.0, 10.0)
-
-
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def _ink(name: str, size: float) -> Ink:

@@ -1,22 +1,232 @@
-"""The result of a compiled program: status, bodies, contacts, motions, and files."""
+"""The results of a compiled program: status, bodies, contacts, motions, conflicts, its model, and files."""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from typing import cast
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, TypeAlias, cast
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic, Fix, apply_fixes
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, short
 from aidl_lang.common.render import compact
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import World
+from aidl_lang.explaining import failures
 from aidl_lang.geometry.survey import Part, some_of
-from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.agents import model as models
-from aidl_lang.tools.agents.results import Body, Contact, Drawn, Export, Knob, Status, findings, joined
+from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.tools.agents.results import (
+    Body,
+    Conflict,
+    Contact,
+    Drawn,
+    Export,
+    Given,
+    Knob,
+    Party,
+    Replacement,
+    Status,
+    findings,
+    joined,
+    place,
+    repair,
+)
 from aidl_lang.tools.agents.workspace import Limits, refusal
 from aidl_lang.tools.discretion import Reader
+
+# --- The solved model as JSON in a size that a language model can read: one structure of it, without long
+# parts.
+#
+# Every form is one that `docs/model.schema.json` allows.
+
+Json = dict[str, Any]
+
+
+def restricted(document: Json, path: str) -> Json:
+    """Returns the document with the structure at a path as its root, and only its data. Raises KeyError."""
+    root = next((s for s in _walk(document["root"]) if s["path"] == path), None)
+    if root is None:
+        raise KeyError(path)
+
+    def is_inside(other: str) -> bool:
+        return other == path or other.startswith(f"{path}.")
+
+    bodies = document["bodies"]
+    return document | {
+        "root": root,
+        "constraints": [c for c in document["constraints"] if is_inside(c["path"])],
+        "dof": root["dof"],
+        "free": [free for free in document["free"] if is_inside(free)],
+        "motions": [m for m in document["motions"] if any(map(is_inside, m["things"]))],
+        "changed": [c for c in document["changed"] if is_inside(c["path"])],
+        "bodies": [body for body in bodies if is_inside(body)],
+        "regions": {name: region for name, region in document["regions"].items() if is_inside(name)},
+        "pairs": [p for p in document["pairs"] if is_inside(p["a"]) or is_inside(p["b"])],
+    }
+
+
+def paths(document: Json) -> list[str]:
+    """Returns the paths of all structures, in order of writing."""
+    return [s["path"] for s in _walk(document["root"])]
+
+
+def shortened(document: Json, most: int) -> tuple[Json, str | None]:
+    """Returns the document in at most `most` characters, and a note on what was left out; None if nothing
+    was.
+
+    Data that follow from the rest, or can be asked for by a path, go first.
+    """
+    left_out: list[str] = []
+    for words, shorten in _WAYS:
+        if len(text(document)) <= most:
+            break
+        shorten(document)
+        left_out.append(words)
+    if len(text(document)) > most:
+        document = {
+            name: [] if isinstance(value, list) else {} if name == "regions" else value
+            for name, value in document.items()
+        }
+        left_out = ["everything but the root"]
+    if not left_out:
+        return document, None
+    return document, f"{', '.join(left_out)} left out: ask for one structure by its `path`"
+
+
+def text(document: Json) -> str:
+    """Returns the document as it is sent."""
+    return json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def _walk(structure: Json) -> Iterator[Json]:
+    yield structure
+    for child in structure["structures"]:
+        yield from _walk(child)
+
+
+def _drop_outlines(document: Json) -> None:
+    for region in document["regions"].values():
+        region["faces"] = []
+        region["geometry"] = {"type": "MultiPolygon", "coordinates": []}
+
+
+def _drop_satisfied(document: Json) -> None:
+    document["constraints"] = [c for c in document["constraints"] if not c["satisfied"]]
+
+
+def _drop_parts(document: Json) -> None:
+    for structure in _walk(document["root"]):
+        for geometry in structure["geometry"].values():
+            if "parts" in geometry:
+                geometry["parts"] = {}
+
+
+def _drop_inner_structures(document: Json) -> None:
+    for child in document["root"]["structures"]:
+        child["structures"] = []
+
+
+def _drop_structures(document: Json) -> None:
+    document["root"]["structures"] = []
+    document["regions"] = {}
+    document["free"], document["motions"] = [], []
+
+
+_WAYS: tuple[tuple[str, Callable[[Json], None]], ...] = (
+    ("outlines of regions", _drop_outlines),
+    ("constraints that hold", _drop_satisfied),
+    ("parts of shapes", _drop_parts),
+    ("structures in structures", _drop_inner_structures),
+    ("all structures but the root", _drop_structures),
+)
+
+
+# --- Conflicts of a program: the constraints in them, the change that each would need, and whether that
+# helps.
+
+CODES = ("E0601", "E0602", "E0603", "E0605")
+"""Codes of the diagnostics about conflicts."""
+Params: TypeAlias = Mapping[str, float | str | bool] | None
+_OUTCOMES = {
+    True: ", and the program solves",
+    False: ", but the program does not solve by that alone",
+    None: "",
+}
+_MOST_TRIED = 12
+"""Most remedies that are tried: each is a program to be solved."""
+
+
+class Remedies:
+    """Tries edits on one program."""
+
+    def __init__(self, source: SourceFile, world: World, params: Params, settings: Settings) -> None:
+        self.source, self.world, self.params, self.settings = source, world, params, settings
+        self.tried = 0
+
+    def conflict(self, found: failures.Conflict) -> Conflict:
+        parties, givens = list(map(self._party, found.parties)), list(map(self._given, found.givens))
+        return Conflict(found.headline, found.is_minimal, parties, givens)
+
+    def _given(self, given: failures.ExactNumber) -> Given:
+        return Given(
+            given.name,
+            place(given.span),
+            given.would_fit,
+            repair(given.fix),
+            self._solves(given.fix),
+        )
+
+    def _party(self, party: failures.Party) -> Party:
+        return Party(
+            party.text,
+            party.path,
+            place(party.span),
+            party.off if math.isfinite(party.off) else None,
+            party.would_fit,
+            repair(party.fix) if party.fix else None,
+            self._solves(party.fix) if party.fix else None,
+        )
+
+    def _solves(self, fix: Fix) -> bool | None:
+        """True if the program solves with an edit; None if that was not tried."""
+        if self.tried == _MOST_TRIED:
+            return None
+        self.tried += 1
+        text, applied = apply_fixes(self.source, [Diagnostic("E0601", "", fix=fix)])
+        if not applied:
+            return None
+        changed = SourceFile(self.source.name, text)
+        return pipeline.compile(changed, self.world, self.params, self.settings).status == "solved"
+
+
+def in_lines(conflict: Conflict) -> str:
+    """Returns a conflict in lines."""
+    lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
+    told = [line for p in conflict.parties for line in _told(p)]
+    return "\n".join([f"{conflict.headline}; {lead}:", *told, *map(_exact, conflict.givens)])
+
+
+def _told(party: Party) -> Iterator[str]:
+    off = f"off by {short(party.off)}" if party.off else ""
+    words = "; ".join(filter(None, (party.would_fit, off)))
+    yield f"- line {party.place.line}, in {party.held_by}: {party.constraint}{f' ({words})' if words else ''}"
+    if party.remedy is not None:
+        edits = " and ".join(map(_edit, party.remedy.replacements))
+        yield f"    {party.remedy.title}: {edits}{_OUTCOMES[party.solves]}"
+
+
+def _exact(given: Given) -> str:
+    name = f" `{given.name}`" if given.name else ""
+    return f"- line {given.place.line}: exact{name}; {given.would_fit}{_OUTCOMES[given.solves]}"
+
+
+def _edit(edit: Replacement) -> str:
+    where = f"line {edit.place.line}, column {edit.place.column}"
+    return f"{where}: `{edit.old}` becomes `{edit.new}`" if edit.old else f"{where}: insert `{edit.new}`"
+
 
 MOST_LISTED = 40
 """Most bodies, contacts, parameters and motions that are listed."""
@@ -66,7 +276,7 @@ def drawn(
                 "\n".join(map(_body, bodies)),
                 "\n".join(map(contact, contacts)),
                 "\n".join(left),
-                "" if model is None else models.text(model),
+                "" if model is None else text(model),
                 shortened or "",
                 *map(_file, exports),
             ]
@@ -82,7 +292,7 @@ class _Making:
         self.notes: list[Diagnostic] = []
         self.room = limits.text
 
-    def model(self, path: str | None) -> tuple[models.Json | None, str | None]:
+    def model(self, path: str | None) -> tuple[Json | None, str | None]:
         from aidl_lang.export.json import to_dict
 
         compiled = self.compiled
@@ -91,13 +301,13 @@ class _Making:
         document = to_dict(compiled.model, compiled.drawing, compiled.diagnostics)
         if path is not None:
             document = self._restricted(document, path)
-        return models.shortened(document, self.limits.text)
+        return shortened(document, self.limits.text)
 
-    def _restricted(self, document: models.Json, path: str) -> models.Json:
-        root, known = document["root"]["path"], models.paths(document)
+    def _restricted(self, document: Json, path: str) -> Json:
+        root, known = document["root"]["path"], paths(document)
         for wanted in (path, f"{root}.{path}"):
             if wanted in known:
-                return models.restricted(document, wanted)
+                return restricted(document, wanted)
         short_names = {name.removeprefix(f"{root}."): name for name in known}
         near = [hint for name in nearest(path, short_names) for hint in did_you_mean([short_names[name]])]
         message = f"there is no structure `{path[:200]}` in the model"

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any, Literal, TypeAlias
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common import resources
+from aidl_lang.common.diagnostics import Diagnostic, Fix
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
+from aidl_lang.tools.reference.collect import Entry, search
+from aidl_lang.tools.reference.pages import forms
 
 MOST_FINDINGS = 50
 Status: TypeAlias = Literal["solved", "partial", "failed", "wrong"]
@@ -141,14 +145,10 @@ def _finding(d: Diagnostic) -> Finding:
         _cut(d.message),
         place(d.span) if d.span else None,
         _cut(d.label),
-        [_related(label) for label in d.secondary],
+        [Related(place(label.span), _cut(label.text)) for label in d.secondary],
         [_cut(hint) for hint in d.hints],
         repair(d.fix) if d.fix else None,
     )
-
-
-def _related(label: Label) -> Related:
-    return Related(place(label.span), _cut(label.text))
 
 
 def place(span: Span) -> Place:
@@ -157,11 +157,8 @@ def place(span: Span) -> Place:
 
 
 def repair(fix: Fix) -> Repair:
-    return Repair(_cut(fix.title), [_replacement(edit) for edit in fix.edits])
-
-
-def _replacement(edit: Edit) -> Replacement:
-    return Replacement(place(edit.span), edit.span.text, edit.replacement)
+    made = [Replacement(place(edit.span), edit.span.text, edit.replacement) for edit in fix.edits]
+    return Repair(_cut(fix.title), made)
 
 
 def _cut(text: str) -> str:
@@ -381,3 +378,30 @@ class Hits(Result):
 def _told(hit: Hit) -> str:
     lines = [f"{hit.name} ({hit.kind}): {hit.summary}", *(f"  {form}" for form in hit.forms)]
     return "\n".join([*lines, *(f"    {line}" for line in hit.example.splitlines())])
+
+
+# --- What a search finds, as it is sent: short, with an example.
+
+_MENDED = re.compile(r"^## Mended\n+```aidl[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_MOST_FORMS = 4
+_LONGEST_EXAMPLE = 1_200
+
+
+def hits(query: str, most: int) -> list[Hit]:
+    """Returns the best hits, best first."""
+    return [_of_code(about) if isinstance(about, str) else _of_entry(about) for about in search(query, most)]
+
+
+def _of_entry(entry: Entry) -> Hit:
+    return Hit(entry.name, entry.sort, entry.doc.line, forms(entry)[:_MOST_FORMS], _short(entry.doc.example))
+
+
+def _of_code(code: str) -> Hit:
+    mended = _MENDED.search(resources.page(code))
+    return Hit(code, "diagnostic", resources.title(code), [], _short(mended[1] if mended else ""))
+
+
+def _short(example: str) -> str:
+    if len(example) <= _LONGEST_EXAMPLE:
+        return example
+    return example[:_LONGEST_EXAMPLE].rpartition("\n")[0] + "\n// … `explain` has the rest\n"

@@ -12,7 +12,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Edit, has_errors
 from aidl_lang.common.drawing_time import TooLongError
@@ -22,7 +22,7 @@ from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import OFFERED
 from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.agents import conflicts, drawing, hits, knobs
+from aidl_lang.tools.agents import drawing, results, workspace
 from aidl_lang.tools.agents.results import (
     Checked,
     Conflicts,
@@ -124,7 +124,7 @@ class Tools:
         ] = "full",
     ) -> Page:
         """The AIDL language on a few pages. Read it before you write the first program."""
-        from aidl_lang.tools.reference.guide import guide
+        from aidl_lang.tools.reference.pages import guide
 
         whole = guide(Variant(variant))
         head, *parts = whole.split("\n## ")
@@ -146,7 +146,7 @@ class Tools:
         """Find names of the AIDL library (shapes, constraints, functions, words of the language) and codes of
         diagnostics by what they are about, each with its forms and an example.
         """
-        return Hits(hits.hits(query[:1_000], max(1, min(limit, 50))))
+        return Hits(results.hits(query[:1_000], max(1, min(limit, 50))))
 
     def explain(
         self, name: Annotated[str, "A name of the library, a word of the language, or a code as E0301."]
@@ -222,11 +222,11 @@ class Tools:
         source, before, _ = self._compiled(program, None, files)
         if before.status == "wrong":
             raise RefusalError(*before.errors)
-        edit = knobs.edit_of(knobs.find(before.knobs, name), source, value)
+        edit = workspace.edit_of(workspace.find(before.knobs, name), source, value)
         text = _edited(source, edit)
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
-        knobs.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
+        workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
         replacement = Replacement(place(edit.span), edit.span.text, edit.replacement)
         changes = _changes(before, after)
         lead = f"line {edit.span.line}: `{edit.span.text}` became `{edit.replacement}`; {after.status}"
@@ -249,10 +249,10 @@ class Tools:
         source, world = self.workspace.open(program, files)
         settings = self.workspace.limits.settings
         compiled = world.reader(source).compiled(pipeline.compile(source, world, params, settings))
-        remedies = conflicts.Remedies(source, world, params, settings)
+        remedies = drawing.Remedies(source, world, params, settings)
         found = [remedies.conflict(conflict) for conflict in compiled.conflicts()]
-        others = [d for d in compiled.diagnostics if not (found and d.code in conflicts.CODES)]
-        blocks = [*map(conflicts.in_lines, found), drawing.freedom(compiled), compact(others)]
+        others = [d for d in compiled.diagnostics if not (found and d.code in drawing.CODES)]
+        blocks = [*map(drawing.in_lines, found), drawing.freedom(compiled), compact(others)]
         if not found:
             blocks.insert(0, _WITHOUT_CONFLICT.get(compiled.status, "no conflict could be told apart"))
         return Conflicts(

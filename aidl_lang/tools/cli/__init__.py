@@ -1,4 +1,4 @@
-"""The command `aidl`: one module per verb, and their common entry point.
+"""The command `aidl`: the common entry point of its verbs.
 
 Only the verb that is asked for is loaded, and what costs time to import is imported inside it where it is
 needed, so that `aidl --help` is quick.
@@ -13,14 +13,14 @@ import atexit
 import gc
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from io import BufferedWriter, FileIO, TextIOWrapper
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError
-from aidl_lang.tools.cli import report
+from aidl_lang.tools.cli import files
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
@@ -53,7 +53,16 @@ VERBS = {
     "tool-schema": "print the tools for agents as JSON",
     "eval": "measure how models do, over prompts and runs",
 }
-"""The verbs in the order of the help; the options of a verb are in the module of its name."""
+"""The verbs in the order of the help."""
+_TOGETHER = {
+    "build": ("compile", "watch"),
+    "check": ("fmt", "params"),
+    "doc": ("guide", "grammar", "explain", "new", "tool-schema"),
+    "generate": ("eval",),
+    "serving": ("preview", "lsp", "mcp"),
+}
+"""Modules with the verbs in them; any other verb is in the module of its name."""
+_MODULES = {verb: module for module, verbs in _TOGETHER.items() for verb in verbs}
 _GREETING = f"""\
 AIDL {__version__}: say what the parts are and how they relate, get an exact drawing.
 
@@ -93,12 +102,12 @@ def _ended(argv: Sequence[str] | None) -> int:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
         sys.stdout.flush()
-    except report.UseError as reason:
-        report.show([reason.diagnostic])
+    except files.UseError as reason:
+        files.show([reason.diagnostic])
         return 2
     except TooLongError as reason:
-        report.show([reason.diagnostic])
-        return report.exit_code([reason.diagnostic])
+        files.show([reason.diagnostic])
+        return files.exit_code([reason.diagnostic])
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
@@ -106,7 +115,7 @@ def _ended(argv: Sequence[str] | None) -> int:
         return BROKEN_PIPE
     except _OutputError as reason:
         _forget(sys.stdout.fileno())
-        report.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
+        files.show([Diagnostic("E0904", f"standard output cannot be written: {reason}")])
         return 2
     return code
 
@@ -154,10 +163,18 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     for verb in words[:1] if words and words[0] in VERBS else VERBS:
         own = verbs.add_parser(verb, help=VERBS[verb])
         if verb in words:
-            module = import_module(f"aidl_lang.tools.cli.{verb.replace('-', '_')}")
-            own.description = module.__doc__
-            module.register(own)
+            register = registering(verb)
+            own.description = register.__doc__
+            register(own)
     return parser
+
+
+def registering(verb: str) -> Callable[[argparse.ArgumentParser], None]:
+    """Returns what gives a parser the options of a verb; its docstring describes the verb."""
+    name = verb.replace("-", "_")
+    module = import_module(f"aidl_lang.tools.cli.{_MODULES.get(verb, name)}")
+    register: Callable[[argparse.ArgumentParser], None] = getattr(module, f"register_{name}")
+    return register
 
 
 def _seldom_search() -> None:

@@ -1,18 +1,21 @@
-"""Compiles a program and writes files, once for `compile`, again and again for `watch`."""
+"""`aidl compile` and `aidl watch`: compiles a program and writes files, once or again and again."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.report import UseError, exit_code
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant, flag
 
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from aidl_lang.export.profiles import Profile
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.memory import Memory
+    from aidl_lang.solver.solution import StageReport
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -134,25 +138,11 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
     """Returns the options of an export as the command line says them; timings are those of a compile."""
     from aidl_lang.export import Options
 
-    return Options(
-        show=arguments.show,
-        dimension=arguments.dimension,
-        cut=arguments.cut,
-        pixels=arguments.pixels,
-        thickness=arguments.thickness,
-        timings=compiled.timings if compiled is not None and arguments.timings else None,
-        sheet=arguments.sheet,
-        spacing=arguments.spacing,
-        nest=arguments.nest,
-        kerf=arguments.kerf,
-        tile=arguments.tile,
-        overlap=arguments.overlap,
-        theme=arguments.theme,
-        units=arguments.units,
-        dxf=arguments.dxf,
-        tolerance=arguments.tolerance,
-        profile=_profile(arguments.profile),
-    )
+    said: dict[str, Any] = {
+        each.name: getattr(arguments, each.name) for each in fields(Options) if each.name != "timings"
+    }
+    said["profile"] = _profile(arguments.profile)
+    return Options(timings=compiled.timings if compiled and arguments.timings else None, **said)
 
 
 def _write(
@@ -162,7 +152,7 @@ def _write(
     program read is not overwritten.
     """
     from aidl_lang.export import ExportError
-    from aidl_lang.export.naming import contents
+    from aidl_lang.export.cut_list import contents
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
@@ -201,7 +191,7 @@ def _keep_drawn(made: Iterable[tuple[str, bytes]]) -> None:
 
 def _is_pattern(name: str) -> bool:
     from aidl_lang.export import ExportError
-    from aidl_lang.export.naming import is_pattern
+    from aidl_lang.export.cut_list import is_pattern
 
     try:
         return is_pattern(name)
@@ -255,3 +245,106 @@ def _suffix(name: str, fallback: str | None) -> str:
         return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
+
+
+_MOST_MOTIONS = 6
+"""Most lines about remaining motions."""
+
+
+def register_compile(parser: argparse.ArgumentParser) -> None:
+    """`aidl compile`: a program in, drawings out."""
+    add_program(parser)
+    add_drawing(parser)
+    add_variant(parser)
+    add_strict(parser)
+    flag(parser, "--quiet", "say nothing but errors")
+    flag(parser, "--timings", "tell how long each stage took")
+    flag(parser, "--trace-solve", "tell which structures were solved in which stages")
+    parser.set_defaults(run=run_compile)
+
+
+def run_compile(arguments: argparse.Namespace) -> int:
+    outcome = build(arguments)
+    told = outcome.compiled.errors if arguments.quiet else outcome.compiled.diagnostics
+    show([*told, *outcome.notes], arguments.quiet)
+    if arguments.trace_solve:
+        _show_stages(outcome.compiled.stages)
+    if arguments.timings:
+        _show_timings(outcome.compiled.timings)
+    if not arguments.quiet:
+        say(outcome.line(arguments.file))
+        for sentence in outcome.motions(_MOST_MOTIONS):
+            say(f"  {sentence}")
+    return outcome.code
+
+
+def _show_stages(stages: Sequence[tuple[str, StageReport]]) -> None:
+    """Prints one line for each stage tried, in order: a parent comes after its children."""
+    width = max((len(path) for path, _ in stages), default=0)
+    width = max(width, len("structure"))
+    say(f"{'structure':<{width}}  {'stage':<16}{'unknowns':>9}{'rows':>6}")
+    for path, stage in stages:
+        result = "solved" if stage.succeeded else "not enough"
+        say(f"{path:<{width}}  {stage.stage:<16}{stage.unknowns:>9}{stage.rows:>6}  {result}")
+    if not stages:
+        say("nothing to solve: every constraint holds as written")
+
+
+def _show_timings(timings: Mapping[str, float]) -> None:
+    for stage, seconds in [*timings.items(), ("total", sum(timings.values()))]:
+        say(f"{stage:<12}{1000 * seconds:>9.1f} ms")
+
+
+# --- `aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved.
+
+
+def register_watch(parser: argparse.ArgumentParser) -> None:
+    """`aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved."""
+    parser.epilog = (
+        "All programs in its folder and below are watched, and the drawings (.svg, .dxf) and fonts that it "
+        "reads, so that a change to an import counts too."
+    )
+    add_program(parser)
+    add_drawing(parser)
+    add_variant(parser)
+    add_strict(parser)
+    parser.set_defaults(run=run_watch, timings=False)
+
+
+def run_watch(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    from watchfiles import watch
+
+    if arguments.file == files.STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    files.read(arguments.file)
+    from aidl_lang.solver.memory import Memory
+
+    targets(arguments)
+
+    program, memory = Path(arguments.file).resolve(), Memory()
+    read = _once(arguments, memory)
+    for changes in watch(program.parent, watch_filter=lambda _, path: may_be_read(path)):
+        paths = {Path(path) for _, path in changes}
+        # Programs are few; what is written here may be a drawing itself, and starts nothing.
+        if any(not is_data(path) for path in paths) or paths & read:
+            read = _once(arguments, memory) or read
+    return 0
+
+
+def _once(arguments: argparse.Namespace, memory: Memory) -> frozenset[Path]:
+    """Runs once, with one line of report. A file that is gone for a moment does not end the watch. Returns
+    the files that were read beside the program; none if it could not be run.
+    """
+    from aidl_lang.common.render import one_line
+
+    clock = time.strftime("%H:%M:%S")
+    try:
+        outcome = build(arguments, memory)
+    except UseError as reason:
+        say(f"{clock} {one_line(reason.diagnostic)}")
+        return frozenset()
+    errors = outcome.compiled.errors
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    say(f"{clock} {one_line(errors[0])}{more}" if errors else f"{clock} {outcome.line(arguments.file)}")
+    return outcome.read

@@ -1,21 +1,91 @@
-"""`aidl check`: find what is wrong without writing anything, and mend what can be mended."""
+"""`aidl check`, `aidl fmt` and `aidl params`: what is asked of programs without drawing them."""
 
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.prose import counted, literal
 from aidl_lang.common.records import record
-from aidl_lang.tools.cli import ends, files
-from aidl_lang.tools.cli.options import add_variant
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.options import add_program, add_variant, flag
 
 if TYPE_CHECKING:
-    from aidl_lang.common.source import SourceFile
+    from aidl_lang.building.model import Knob
     from aidl_lang.common.world import World
-    from aidl_lang.pipeline import Settings
+    from aidl_lang.pipeline import Compiled, Settings
     from aidl_lang.tools.ends import Sweep
+
+
+# --- The ends of params, for `aidl check --ends`: tried with progress, and reported.
+
+
+def swept(source: SourceFile, world: World, settings: Settings, compiled: Compiled) -> Sweep:
+    """Tries a working program at the ends of its params, with progress on a terminal."""
+    from aidl_lang.tools.ends import SweepJob, sweep
+
+    job = SweepJob(source.name, source.text, world, settings)
+    try:
+        return sweep(job, compiled.knobs, compiled.diagnostics, _progress)
+    finally:
+        _progress(0, 0)
+
+
+def _progress(done: int, count: int) -> None:
+    """Prints progress over the last line of a terminal; removes it when done."""
+    if sys.stderr.isatty():
+        text = f"{done} of {count} ends tried" if count else ""
+        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def tell(name: str, sweep: Sweep) -> None:
+    """Prints the faults on standard output; then a summary."""
+    from aidl_lang.common.render import escape
+    from aidl_lang.tools.ends import sentence
+
+    for each in sweep.turned:
+        if text := sentence(each, name):
+            print(f"{name}: {'' if each.ok else 'error '}{escape(text)}")
+    say(f"{name}: {_summary(sweep)}")
+
+
+def _summary(sweep: Sweep) -> str:
+    if not sweep.turned and not sweep.left:
+        return "no param has a range, so there is nothing to turn"
+    params = {each.knob.path for each in sweep.turned}
+    failed = sum(not each.ok for each in sweep.turned)
+    parts = [
+        f"{counted(len(sweep.turned), 'end')} of {counted(len(params), 'param')} tried, "
+        f"{failed or 'none'} {'fails' if failed == 1 else 'fail'}, {sweep.seconds:.1f} s"
+    ]
+    if sweep.rangeless:
+        has = "has" if len(sweep.rangeless) == 1 else "have"
+        parts.append(f"{counted(len(sweep.rangeless), 'param')} {has} no range")
+    if sweep.left:
+        parts.append(f"{counted(sweep.left, 'end')} left untried: there are too many, or they take too long")
+    return "; ".join(parts)
+
+
+def data(name: str, sweep: Sweep) -> dict[str, Any]:
+    """Returns the results for JSON."""
+    from aidl_lang.tools.ends import described
+
+    return {
+        "file": name,
+        "ok": sweep.ok,
+        "tried": described(sweep),
+        "without_range": [knob.path for knob in sweep.rangeless],
+        "left": sweep.left,
+        "compiled": sweep.compiled,
+        "seconds": round(sweep.seconds, 3),
+    }
+
+
+# --- `aidl check`: find what is wrong without writing anything, and mend what can be mended.
 
 _WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
 """Why `--fix` leaves a fix that is not sure, and one that is."""
@@ -34,16 +104,15 @@ class _Checked:
     sweep: Sweep | None = None
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_check(parser: argparse.ArgumentParser) -> None:
+    """`aidl check`: find what is wrong without writing anything, and mend what can be mended."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
-    parser.add_argument(
-        "--fix", action="store_true", help="write the program with the fixes applied that are sure"
-    )
+    flag(parser, "--fix", "write the program with the fixes applied that are sure")
     how_far = parser.add_mutually_exclusive_group()
-    how_far.add_argument(
+    flag(
+        how_far,
         "--ends",
-        action="store_true",
-        help="try both ends of the range of each param as well, one at a time, and tell how far each may go",
+        "try both ends of the range of each param as well, one at a time, and tell how far each may go",
     )
     how_far.add_argument(
         "--no-solve",
@@ -51,12 +120,12 @@ def register(parser: argparse.ArgumentParser) -> None:
         action="store_false",
         help="find only what can be found without solving and drawing, which is quick",
     )
-    parser.add_argument("--json", action="store_true", help="print the diagnostics as JSON")
+    flag(parser, "--json", "print the diagnostics as JSON")
     add_variant(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_check)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_check(arguments: argparse.Namespace) -> int:
     found: list[Diagnostic] = []
     fixes: list[dict[str, str]] = []
     is_solved = is_well = True
@@ -68,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
         is_solved = is_solved and checked.status == "solved"
         if checked.sweep is not None:
             is_well = is_well and checked.sweep.ok
-            swept.append(ends.data(name, checked.sweep))
+            swept.append(data(name, checked.sweep))
         if not arguments.json:
             _tell(name, checked, mends=arguments.fix, asks_for_ends=arguments.ends)
     if arguments.json:
@@ -125,7 +194,7 @@ def _found(
         return _Checked(pipeline.check(source, world, settings), fixes)
     compiled = pipeline.compile(source, world, settings=settings)
     status = compiled.status if compiled.model is not None else ""
-    sweep = ends.swept(source, world, settings, compiled) if arguments.ends and compiled.ok else None
+    sweep = swept(source, world, settings, compiled) if arguments.ends and compiled.ok else None
     return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
 
 
@@ -142,4 +211,112 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
         untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""
         say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}{untried}")
     if checked.sweep is not None:
-        ends.tell(name, checked.sweep)
+        tell(name, checked.sweep)
+
+
+# --- `aidl fmt`: put programs into their canonical form.
+
+
+def register_fmt(parser: argparse.ArgumentParser) -> None:
+    """`aidl fmt`: put programs into their canonical form."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
+    flag(parser, "--check", "write nothing; exit with 1 if a file would change")
+    flag(parser, "--diff", "write nothing; print what would change")
+    parser.set_defaults(run=run_fmt)
+
+
+def run_fmt(arguments: argparse.Namespace) -> int:
+    return max(_format(name, arguments.check, arguments.diff) for name in arguments.files)
+
+
+def _format(name: str, check: bool, diff: bool) -> int:
+    """Formats one file and returns its exit code, so that one bad file does not stop the others."""
+    from aidl_lang import pipeline
+
+    try:
+        source = files.read(name)
+        text, diagnostics = pipeline.formatted(source, files.world(name))
+        if text is None:
+            show(diagnostics)
+            return exit_code(diagnostics)
+        return _deliver(name, source, text, check, diff)
+    except UseError as reason:
+        show([reason.diagnostic])
+        return 2
+
+
+def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) -> int:
+    changed = text != source.text
+    if diff:
+        print(_diff(source, text), end="")
+    if check and changed:
+        say(f"{name}: would be reformatted")
+    if not (check or diff) and (changed or name == files.STANDARD):
+        files.rewrite(name, text.encode())
+    return int(check and changed)
+
+
+def _diff(source: SourceFile, text: str) -> str:
+    from difflib import unified_diff
+
+    lines = unified_diff(
+        source.text.splitlines(keepends=True),
+        text.splitlines(keepends=True),
+        source.name,
+        f"{source.name} (formatted)",
+    )
+    unended = "\n\\ No newline at end of file\n"
+    return "".join(line if line.endswith("\n") else line + unended for line in lines)
+
+
+# --- `aidl params`: the knobs of a program, with their ranges and values.
+
+
+def register_params(parser: argparse.ArgumentParser) -> None:
+    """`aidl params`: the knobs of a program, with their ranges and values."""
+    add_program(parser)
+    flag(parser, "--json", "print the list as JSON")
+    parser.set_defaults(run=run_params)
+
+
+def run_params(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+
+    knobs, diagnostics = pipeline.knobs(files.read(arguments.file), files.world(arguments.file))
+    show(diagnostics, quiet=True)
+    if arguments.json:
+        import json
+
+        print(json.dumps([_data(knob) for knob in knobs], indent=2, ensure_ascii=False))
+    else:
+        _print_table(knobs)
+    return exit_code(diagnostics)
+
+
+def _data(knob: Knob) -> dict[str, object]:
+    names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
+    return {name: getattr(knob, name) for name in names}
+
+
+def _print_table(knobs: tuple[Knob, ...]) -> None:
+    rows = [_row(knob) for knob in knobs]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+def _row(knob: Knob) -> tuple[str, ...]:
+    from aidl_lang.common.render import escape
+
+    value = f"= {literal(knob.value)}{knob.unit}"
+    cells = (knob.path, value, _domain(knob), (knob.doc or "").replace("\n", " "))
+    return tuple(map(escape, cells))
+
+
+def _domain(knob: Knob) -> str:
+    if knob.choices:
+        return f"in [{', '.join(map(literal, knob.choices))}]"
+    if knob.low is None or knob.high is None:
+        return ""
+    step = f" step {literal(knob.step)}" if knob.step else ""
+    return f"in {literal(knob.low)}..{literal(knob.high)}{step}"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_params, add_pixels
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.options import add_params, add_pixels, flag, value
 
 if TYPE_CHECKING:
     from aidl_lang.common.source import SourceFile
@@ -21,7 +21,8 @@ LONGEST = 20.0
 """Seconds of the processor's time for the picture of two versions."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_diff(parser: argparse.ArgumentParser) -> None:
+    """`aidl diff`: what moved, turned, grew, appeared and vanished between two versions of a program."""
     parser.add_argument("before", metavar="BEFORE", help="a program; - reads standard input")
     parser.add_argument(
         "after", nargs="?", metavar="AFTER", help="another; without it BEFORE with the params of --to"
@@ -29,20 +30,18 @@ def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", action="append", default=[], metavar="OUT", help="draw both over each other"
     )
-    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
+    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_params(parser)
     add_params(parser, "--from", "params_before", "the same for BEFORE alone")
     add_params(parser, "--to", "params_after", "the same for AFTER alone")
     add_pixels(parser)
-    parser.add_argument("--json", action="store_true", help="print the differences as JSON")
-    parser.add_argument("--exit-code", action="store_true", help="exit with 1 if there is a difference")
-    parser.add_argument(
-        "--best-effort", action="store_true", help="compare how far the solver came even if it did not solve"
-    )
-    parser.set_defaults(run=run)
+    flag(parser, "--json", "print the differences as JSON")
+    flag(parser, "--exit-code", "exit with 1 if there is a difference")
+    flag(parser, "--best-effort", "compare how far the solver came even if it did not solve")
+    parser.set_defaults(run=run_diff)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_diff(arguments: argparse.Namespace) -> int:
     outputs = [(name, _suffix(name, arguments)) for name in arguments.output]
     on_standard = sum(name == files.STANDARD for name, _ in outputs)
     if on_standard + arguments.json > 1:

@@ -1,29 +1,81 @@
-"""`aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
-Other words list the names that speak of them.
-"""
+"""`aidl doc` and other verbs that tell of the language: its guide, grammar, codes, a starter program."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, listed, ticked
-from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.report import UseError, say
+from aidl_lang.tools.cli import files, registering
+from aidl_lang.tools.cli.files import UseError, say
+from aidl_lang.tools.cli.options import add_variant, choice, flag, value
+from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS
 
 if TYPE_CHECKING:
     from aidl_lang.common.render import TerminalStyle
     from aidl_lang.tools.reference.collect import Entry, Reference
 
 
+# --- What `aidl doc` finds of the command itself: its verbs and their options, with the formats.
+
+_PLAIN = {
+    "compile": "export save convert output file",
+    "--output": "export save format svg pdf png dxf step stl stp 3mf json csv",
+    "--kerf": "laser burn width beam",
+    "--nest": "pack arrange layout",
+    "--sheet": "plywood material layout",
+    "--tile": "paper print pages",
+    "--dimension": "measurements sizes",
+}
+"""Words that somebody new asks with, by verb or option."""
+
+
+def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
+    """Returns the verbs and options that have every word of a query, each with its line; those named so
+    first.
+    """
+    from aidl_lang.tools.reference.collect import stems
+
+    wanted = set(stems(query))
+    found = []
+    for name, usage, line in _all(verbs):
+        named = set(stems(f"{name} {_PLAIN.get(name, '')}"))
+        if wanted and wanted <= named | set(stems(line)):
+            found.append((not wanted <= set(stems(name)), not wanted <= named, usage, line))
+    return [(usage, line) for *_, usage, line in sorted(found, key=lambda each: each[:2])]
+
+
+def _all(verbs: dict[str, str]) -> Iterator[tuple[str, str, str]]:
+    """Yields the verbs, and each option once, at the first verb that has it: name, usage and line."""
+    seen: set[str] = set()
+    for verb, line in verbs.items():
+        yield verb, f"aidl {verb}", line
+        parser = argparse.ArgumentParser(add_help=False)
+        registering(verb)(parser)
+        for action in parser._actions:
+            name = action.option_strings[-1] if action.option_strings else ""
+            if name and action.help and name not in seen:
+                seen.add(name)
+                yield name, f"aidl {verb} {name}", " ".join(action.help.split())
+
+
+# --- `aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
+# Other words list the names that speak of them.
+
 _FEW = 3
 """Names that a message lists."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_doc(parser: argparse.ArgumentParser) -> None:
+    """`aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
+    Other words list the names that speak of them.
+    """
     parser.add_argument(
         "name",
         nargs="*",
@@ -31,15 +83,15 @@ def register(parser: argparse.ArgumentParser) -> None:
         help="as rectangle; other words, as finger joint, list the names that speak of them; without it, all "
         "are listed",
     )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
-    parser.add_argument("--picture", metavar="OUT.svg", help="draw the example of NAME; - is standard output")
-    parser.set_defaults(run=run)
+    flag(parser, "--json", "print as JSON")
+    value(parser, "--picture", "OUT.svg", "draw the example of NAME; - is standard output")
+    parser.set_defaults(run=run_doc)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_doc(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.render import TerminalStyle, wants_colour
     from aidl_lang.tools.reference.collect import reference
-    from aidl_lang.tools.reference.data import to_dict
+    from aidl_lang.tools.reference.pages import to_dict
 
     known, words = reference(), " ".join(arguments.name)
     if not words and arguments.picture:
@@ -83,8 +135,7 @@ def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tupl
         return entry, []
     from aidl_lang.common.render import escape
     from aidl_lang.tools.cli import VERBS
-    from aidl_lang.tools.cli.doc_commands import commands_about
-    from aidl_lang.tools.reference.searching import speaking_of
+    from aidl_lang.tools.reference.collect import speaking_of
 
     found, commands = speaking_of(words), commands_about(words, VERBS)
     if found or commands:
@@ -138,4 +189,189 @@ def _draw(entry: Entry, output: str) -> int:
     files.write(output, picture(entry))
     if output != files.STANDARD:
         say(f"{output}: the example of `{entry.name}`")
+    return 0
+
+
+# --- `aidl guide`: the language on a few pages, for a reader or a model that has never seen it.
+
+
+def register_guide(parser: argparse.ArgumentParser) -> None:
+    """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
+    kind = parser.add_mutually_exclusive_group()
+    flag(kind, "--full", "with the whole reference after it")
+    value(
+        kind,
+        "--with",
+        "TOPICS",
+        "with the reference of some topics after it, as joints,hardware",
+        dest="topics",
+    )
+    add_variant(kind)
+    parser.set_defaults(run=run_guide)
+
+
+def run_guide(arguments: argparse.Namespace) -> int:
+    from aidl_lang.tools.reference.pages import full_guide, guide, guide_with
+
+    if arguments.topics is not None:
+        print(guide_with(_topics(arguments.topics)), end="")
+    else:
+        print(full_guide() if arguments.full else guide(arguments.variant), end="")
+    return 0
+
+
+def _topics(written: str) -> list[str]:
+    """Returns the names of the topics that are asked for."""
+    from aidl_lang.tools.reference.collect import reference
+
+    known = [topic.name for topic in reference().topics]
+    topics = [topic.strip() for topic in written.split(",")]
+    for topic in topics:
+        if topic not in known:
+            raise UseError(
+                "E0912",
+                f"the reference has no topic `{topic}`",
+                *did_you_mean(nearest(topic, known, 2)),
+                f"topics: {', '.join(known)}",
+            )
+    return topics
+
+
+# --- `aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers.
+
+
+def register_grammar(parser: argparse.ArgumentParser) -> None:
+    """`aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers."""
+    value(parser, "--format", "FORMAT", f"{', '.join(FORMATS)} (default: lark)", str, "lark")
+    flag(parser, "--fenced", "free text first, then the program in a block opened by ```aidl")
+    parser.add_argument(
+        "-o",
+        "--output",
+        default=files.STANDARD,
+        metavar="OUT",
+        help="where to write (default: standard output)",
+    )
+    parser.set_defaults(run=run_grammar)
+
+
+def run_grammar(arguments: argparse.Namespace) -> int:
+    from aidl_lang.tools.grammars import export
+
+    if arguments.format not in FORMATS:
+        raise UseError(
+            "E0940", f"there is no format `{arguments.format}`", f"the formats: {', '.join(FORMATS)}"
+        )
+    if arguments.fenced and arguments.format not in FENCED_FORMATS:
+        raise UseError(
+            "E0941",
+            f"`{arguments.format}` has no form for free text before a program",
+            f"`--fenced` goes with {' and '.join(f'`--format {f}`' for f in FENCED_FORMATS)}",
+        )
+    files.require_directory(arguments.output)
+    text = export(arguments.format, arguments.fenced)
+    files.write(arguments.output, text.encode())
+    if arguments.output != files.STANDARD:
+        say(f"{arguments.output}: written")
+    return 0
+
+
+# --- `aidl explain`: what a code such as E0301 means, with the mistake and the mended program.
+
+
+def register_explain(parser: argparse.ArgumentParser) -> None:
+    """`aidl explain`: what a code such as E0301 means, with the mistake and the mended program."""
+    parser.add_argument("code", nargs="?", metavar="CODE", help="as E0301; without it, all are listed")
+    parser.set_defaults(run=run_explain)
+
+
+def run_explain(arguments: argparse.Namespace) -> int:
+    from aidl_lang.common import resources
+
+    if arguments.code is None:
+        for code in resources.codes():
+            print(f"{code}  {resources.title(code)}")
+        return 0
+    code = arguments.code.strip("[]").upper()
+    if code not in resources.codes():
+        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(resources.near(code)))
+    print(resources.page(code).rstrip())
+    return 0
+
+
+def _suggestions(codes: list[str]) -> list[str]:
+    listed = "`aidl explain` lists all codes"
+    return [f"did you mean {' or '.join(codes)}?", listed] if codes else [listed]
+
+
+STARTER = """\
+// A plate with two holes. `aidl compile {file}` draws it.
+solid {name} {{
+    param width = 80 in 40..200  // a knob: aidl compile {file} -D width=120
+
+    plate = rounded_rectangle(center: origin, width: width, height: 40, radius: 5)
+
+    hole left {{
+        rim = circle(center: (-30, 0), radius: 4)
+    }}
+    hole right {{
+        rim = circle(center: (30, 0), radius: 4)
+    }}
+
+    constrain {{
+        left.rim.center == plate.center - (width / 2 - 12, 0)
+        right.rim.center == plate.center + (width / 2 - 12, 0)
+        equal(right.rim, left.rim)
+    }}
+}}
+"""
+
+
+def register_new(parser: argparse.ArgumentParser) -> None:
+    """`aidl new`: a starter program to change."""
+    parser.add_argument("name", metavar="NAME", help="what to make: NAME.aidl, never over an existing file")
+    parser.set_defaults(run=run_new)
+
+
+def run_new(arguments: argparse.Namespace) -> int:
+    path = Path(arguments.name)
+    if path.suffix != ".aidl":
+        path = path.with_name(f"{path.name}.aidl")
+    files.require_directory(str(path))
+    files.create(str(path), STARTER.format(name=structure_name(path.stem), file=path.name).encode())
+    say(f"{path}: written. Draw it with: aidl compile {path}")
+    return 0
+
+
+def structure_name(stem: str) -> str:
+    """Returns a valid name, as near to the file's as possible."""
+    from aidl_lang.syntax.tables import load_tables
+
+    name = re.sub(r"\W+", "_", stem.lower(), flags=re.ASCII).strip("_")
+    unfit = not name or name[0].isdigit() or name in load_tables().reserved
+    return f"part_{name}".rstrip("_") if unfit else name
+
+
+# --- `aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model.
+
+_STYLES = ("openai", "anthropic", "mcp")
+
+
+def register_tool_schema(parser: argparse.ArgumentParser) -> None:
+    """`aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model."""
+    choice(
+        parser,
+        "--style",
+        _STYLES,
+        "the API that they are for (default: openai, and servers that speak like it)",
+        _STYLES[0],
+    )
+    parser.set_defaults(run=run_tool_schema)
+
+
+def run_tool_schema(arguments: argparse.Namespace) -> int:
+    import json
+
+    from aidl_lang.tools.agents.schema import STYLES
+
+    print(json.dumps(STYLES[arguments.style](), indent=2, ensure_ascii=False))
     return 0

@@ -1,4 +1,4 @@
-"""`aidl generate`: from a sentence to a program that is right, by a language model."""
+"""`aidl generate` and `aidl eval`: programs by a language model, and how well models do."""
 
 from __future__ import annotations
 
@@ -9,52 +9,47 @@ import re
 import sys
 import time
 from dataclasses import replace
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling
-from aidl_lang.tools.cli.report import UseError, say, show
+from aidl_lang.tools.cli.files import UseError, say, show
+from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
-    from aidl_lang.tools.llm.language import Language
-    from aidl_lang.tools.llm.messages import Provider
+    from aidl_lang.tools.llm.messages import Language, Provider
+
+
+# --- `aidl generate`: from a sentence to a program that is right, by a language model.
 
 _PROGRAM = ".aidl"
 _CODES = 4
 """Most error codes in the line of an attempt."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_generate(parser: argparse.ArgumentParser) -> None:
+    """`aidl generate`: from a sentence to a program that is right, by a language model."""
     parser.add_argument("request", metavar="REQUEST", help="what to draw, or with --edit what to change")
     add_outputs(
         parser,
         "where to write: the program (.aidl) and drawings of it (.svg, .png, …); may be given several "
         "times (default: the program, or with --edit the change, on standard output)",
     )
-    parser.add_argument("--edit", metavar="FILE", help="change this program instead of writing a new one")
-    parser.add_argument("--image", metavar="FILE", help="a picture of what is meant (PNG, JPEG, WebP, GIF)")
-    parser.add_argument(
-        "--attempts",
-        type=count_to(100),
-        default=5,
-        metavar="N",
-        help="replies to ask for at most (default: 5)",
-    )
-    parser.add_argument(
-        "--runs", type=count_to(100), default=1, metavar="N", help="conversations to have; the best is kept"
-    )
-    parser.add_argument(
-        "--transcript", metavar="FILE", help="where to write the conversation (default: beside the program)"
-    )
+    value(parser, "--edit", "FILE", "change this program instead of writing a new one")
+    value(parser, "--image", "FILE", "a picture of what is meant (PNG, JPEG, WebP, GIF)")
+    value(parser, "--attempts", "N", "replies to ask for at most (default: 5)", count_to(100), 5)
+    value(parser, "--runs", "N", "conversations to have; the best is kept", count_to(100), 1)
+    value(parser, "--transcript", "FILE", "where to write the conversation (default: beside the program)")
     add_provider(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_generate)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_generate(arguments: argparse.Namespace) -> int:
     places = _places(arguments)
     task = _task(arguments)
     asked = provider(arguments)
@@ -240,7 +235,7 @@ def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generat
         return 1
     program = verdict.program
     if arguments.edit:
-        from aidl_lang.tools.llm.merging import merge
+        from aidl_lang.tools.llm.aidl import merge
 
         assert generation.task.program is not None
         program = merge(generation.task.program, program)
@@ -301,3 +296,16 @@ def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
 def _beginning(text: str) -> str:
     line = re.sub(r"\s+", " ", text.strip())
     return repr(line if len(line) <= 80 else line[:79] + "…")
+
+
+# --- `aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs.
+
+_PACKAGE = "aidl_eval"
+"""A distribution of its own, which stands on this one; so it is known by its name alone."""
+
+
+def register_eval(parser: argparse.ArgumentParser) -> None:
+    """`aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs."""
+    if find_spec(_PACKAGE) is None:
+        raise UseError("E0913", "`aidl eval` needs a package that is not installed", "pip install aidl-eval")
+    import_module(f"{_PACKAGE}.command").register(parser)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_params, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, show
+from aidl_lang.tools.cli.files import UseError, exit_code, show
+from aidl_lang.tools.cli.options import add_params, add_program, flag, value
 
 if TYPE_CHECKING:
     from aidl_lang.geometry.contacts import Contact
@@ -21,26 +21,28 @@ _MOST_PAIRS = 20
 _NOTHING = "–"
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_measure(parser: argparse.ArgumentParser) -> None:
+    """`aidl measure`: areas, inertia, walls, gaps and masses of what a program draws."""
     add_program(parser)
     parser.add_argument(
         "paths", nargs="*", metavar="PATH", help="a structure or a geometry (default: each body)"
     )
     add_params(parser)
-    parser.add_argument(
+    value(
+        parser,
         "--density",
+        "NAME=KG/M3",
+        "the density of a material; may be given several times",
+        _density,
+        [],
         dest="densities",
         action="append",
-        default=[],
-        type=_density,
-        metavar="NAME=KG/M3",
-        help="the density of a material; may be given several times",
     )
-    parser.add_argument("--json", action="store_true", help="print everything as JSON, with all digits")
-    parser.set_defaults(run=run)
+    flag(parser, "--json", "print everything as JSON, with all digits")
+    parser.set_defaults(run=run_measure)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_measure(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.geometry.survey import NothingThereError
 
@@ -139,8 +141,8 @@ def _block(part: Part) -> Iterator[str]:
         rows.append(("volume", f"{_number(part.volume)} mm³"))
     if part.mass is not None:
         rows.append(("mass", _mass(part.mass)))
-    for name, value in rows:
-        yield f"  {name:<11}{value}"
+    for name, said in rows:
+        yield f"  {name:<11}{said}"
 
 
 def _width(width: Width | None, part: Part, size: float) -> str:

@@ -1,33 +1,66 @@
-"""Options of the command: shared ones, and their values read from words."""
+"""Options of the command: shared ones, their values read from words, and as keywords of Python."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aidl_lang.tools.cli.report import UseError
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.names import nearest
+from aidl_lang.common.prose import did_you_mean, ticked
+from aidl_lang.tools.cli.files import UseError
 
 if TYPE_CHECKING:
-    from aidl_lang.checking.variants import Variant
+    from aidl_lang.checking.subset import Variant
+    from aidl_lang.compiled import Compiled
+    from aidl_lang.export import Options
     from aidl_lang.tools.llm.messages import Sampling
     from aidl_lang.tools.llm.providers import Closable, Price
 
 
+def flag(parser: argparse._ActionsContainer, name: str, help: str) -> None:
+    parser.add_argument(name, action="store_true", help=help)
+
+
+def choice(
+    parser: argparse._ActionsContainer,
+    name: str,
+    choices: Iterable[str],
+    help: str,
+    default: str | None = None,
+) -> None:
+    parser.add_argument(name, choices=choices, default=default, help=help)
+
+
+def value(
+    parser: argparse._ActionsContainer,
+    name: str,
+    metavar: str,
+    help: str,
+    type: Callable[[str], Any] = str,
+    default: object = None,
+    **more: Any,
+) -> None:
+    """Adds an option with a value; `type` reads it from the word."""
+    parser.add_argument(name, type=type, default=default, metavar=metavar, help=help, **more)
+
+
 def size(text: str) -> tuple[float, float]:
-    from aidl_lang.checking import sizes
+    from aidl_lang.checking import units
 
     try:
-        return sizes.size(text)
+        return units.size(text)
     except ValueError as reason:
         raise argparse.ArgumentTypeError(str(reason)) from None
 
 
 def length(text: str) -> float:
-    from aidl_lang.checking import sizes
+    from aidl_lang.checking import units
 
     try:
-        return sizes.length(text)
+        return units.length(text)
     except ValueError as reason:
         raise argparse.ArgumentTypeError(str(reason)) from None
 
@@ -41,21 +74,18 @@ def add_program(parser: argparse.ArgumentParser) -> None:
 
 
 def add_variant(parser: argparse._ActionsContainer) -> None:
-    parser.add_argument(
+    value(
+        parser,
         "--variant",
-        type=_variant,
-        default="full",
-        metavar="NAME",
-        help="the language, or a subset of it: full (the default), no-hierarchy, no-constraints, paper",
+        "NAME",
+        "the language, or a subset of it: full (the default), no-hierarchy, no-constraints, paper",
+        _variant,
+        "full",
     )
 
 
 def add_strict(parser: argparse._ActionsContainer) -> None:
-    parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="refuse what the constraints could only hold by changing what was written",
-    )
+    flag(parser, "--strict", "refuse what the constraints could only hold by changing what was written")
 
 
 def add_params(
@@ -70,34 +100,30 @@ def add_params(
 
 
 def add_pixels(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--pixels", type=_pixels, default=1600, metavar="N", help="larger side of a PNG (default: 1600)"
-    )
+    value(parser, "--pixels", "N", "larger side of a PNG (default: 1600)", _pixels, 1600)
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
     """Adds the options for the contents of a picture."""
-    parser.add_argument(
+    value(
+        parser,
         "--show",
-        type=_layers,
-        default=frozenset(),
-        metavar="LAYERS",
-        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan; "
+        "LAYERS",
+        "draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan; "
         "with --sheet: names, numbers, list",
+        _layers,
+        frozenset(),
     )
-    parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
-    parser.add_argument(
-        "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
-    )
-    parser.add_argument(
+    flag(parser, "--dimension", "draw dimensions of what is sized")
+    flag(parser, "--cut", "the outlines alone, as hairlines: what a cutter follows")
+    choice(
+        parser,
         "--theme",
-        choices=("colour", "blueprint", "ink", "cutter"),
-        default="colour",
-        help="the look of all of it: as coloured (the default), white on blue, black on white, or as --cut",
+        ("colour", "blueprint", "ink", "cutter"),
+        "the look of all of it: as coloured (the default), white on blue, black on white, or as --cut",
+        "colour",
     )
-    parser.add_argument(
-        "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
-    )
+    flag(parser, "--best-effort", "draw how far the solver came even if it did not solve")
 
 
 def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
@@ -118,126 +144,113 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 def add_drawing_options(parser: argparse.ArgumentParser) -> None:
     """Adds the options for how a drawing is written."""
-    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
+    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)
     add_pixels(parser)
-    parser.add_argument(
+    value(
+        parser,
         "--thickness",
-        type=_thickness,
-        metavar="MM",
-        help="thickness of parts without `@thickness`, for STEP, STL and 3MF",
+        "MM",
+        "thickness of parts without `@thickness`, for STEP, STL and 3MF",
+        _thickness,
     )
     _add_cutting(parser)
 
 
 def _add_cutting(parser: argparse.ArgumentParser) -> None:
     """Adds the options for cutters and for printing 1:1."""
-    parser.add_argument(
+    value(
+        parser,
         "--profile",
-        metavar="NAME",
-        help="colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
+        "NAME",
+        "colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
         "file such as shop.toml",
     )
-    parser.add_argument(
+    value(
+        parser,
         "--sheet",
-        type=size,
-        metavar="SIZE",
-        help="lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
+        "SIZE",
+        "lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
+        size,
     )
-    parser.add_argument(
-        "--spacing",
-        type=length,
-        default=3.0,
-        metavar="MM",
-        help="between parts on a sheet, and to its edge (default: 3)",
-    )
-    parser.add_argument(
+    value(parser, "--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
+    value(
+        parser,
         "--nest",
-        type=count_to(LONGEST_NESTING),
+        "SECONDS",
+        "pack parts on sheets by their outlines, not by their boxes, if that saves material "
+        "(default: for 5 seconds)",
+        count_to(LONGEST_NESTING),
         nargs="?",
         const=5,
-        metavar="SECONDS",
-        help="pack parts on sheets by their outlines, not by their boxes, if that saves material "
-        "(default: for 5 seconds)",
     )
-    parser.add_argument(
+    value(
+        parser,
         "--kerf",
-        type=length,
-        default=0.0,
-        metavar="MM",
-        help="width of the cut: outlines grow by half of it, so that parts keep their size",
+        "MM",
+        "width of the cut: outlines grow by half of it, so that parts keep their size",
+        length,
+        0.0,
     )
-    parser.add_argument(
+    choice(
+        parser,
         "--units",
-        choices=("mm", "in"),
-        default="mm",
-        help="of the coordinates in an SVG or a DXF: millimetres (the default) or inches",
+        ("mm", "in"),
+        "of the coordinates in an SVG or a DXF: millimetres (the default) or inches",
+        "mm",
     )
-    parser.add_argument(
+    choice(
+        parser,
         "--dxf",
-        choices=("arcs", "r12", "splines"),
-        default="arcs",
-        help="the kind of a DXF: each outline one polyline of lines and arcs (the default), the same for old "
+        ("arcs", "r12", "splines"),
+        "the kind of a DXF: each outline one polyline of lines and arcs (the default), the same for old "
         "programs, or exact with splines",
+        "arcs",
     )
-    parser.add_argument(
+    value(
+        parser,
         "--tolerance",
-        type=_tolerance,
-        default=0.01,
-        metavar="MM",
-        help="how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
+        "MM",
+        "how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
+        _tolerance,
+        0.01,
     )
-    parser.add_argument(
-        "--tile",
-        type=size,
-        metavar="SIZE",
-        help="print 1:1 over several pages of this size: a4, letter",
-    )
-    parser.add_argument(
-        "--overlap",
-        type=length,
-        default=10.0,
-        metavar="MM",
-        help="of neighbouring pages (default: 10)",
-    )
+    value(parser, "--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
+    value(parser, "--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
     """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
-    group.add_argument(
+    value(
+        group,
         "--provider",
-        default="",
-        metavar="NAME",
-        help="openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
+        "NAME",
+        "openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
         "(default: what the environment says)",
+        str,
+        "",
     )
-    group.add_argument("--model", default="", metavar="NAME", help="the model (default: $AIDL_MODEL)")
-    group.add_argument(
-        "--base-url", default="", metavar="URL", help="of the server, as in http://localhost:11434/v1"
-    )
-    group.add_argument("--seed", type=int, metavar="N", help="of the reply, for servers that have one")
-    group.add_argument("--temperature", type=_temperature, metavar="T", help="0 is the least random")
-    group.add_argument("--max-tokens", type=count_to(1_000_000), metavar="N", help="of one reply")
-    group.add_argument(
+    value(group, "--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
+    value(group, "--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
+    value(group, "--seed", "N", "of the reply, for servers that have one", int)
+    value(group, "--temperature", "T", "0 is the least random", _temperature)
+    value(group, "--max-tokens", "N", "of one reply", count_to(1_000_000))
+    value(
+        group,
         "--constrain",
-        type=_server,
-        metavar="SERVER",
-        help="keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
+        "SERVER",
+        "keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
         "or as in vllm:llguidance where that engine decodes",
+        _server,
     )
-    group.add_argument(
-        "--timeout",
-        type=_seconds,
-        default=600.0,
-        metavar="SECONDS",
-        help="how long the model may be silent (default: 600)",
-    )
-    group.add_argument(
+    value(group, "--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
+    value(
+        group,
         "--price",
-        type=_price,
-        metavar="IN/OUT",
-        help="dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
+        "IN/OUT",
+        "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
+        _price,
     )
 
 
@@ -278,7 +291,7 @@ def _definition(text: str) -> tuple[str, str]:
 
 
 def _variant(text: str) -> Variant:
-    from aidl_lang.checking.variants import Variant
+    from aidl_lang.checking.subset import Variant
 
     try:
         return Variant(text)
@@ -369,3 +382,113 @@ def _price(text: str) -> Price:
         raise argparse.ArgumentTypeError(
             f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`"
         ) from None
+
+
+# --- The options of `aidl compile` as the keywords of Python's `Model.save`.
+
+_NOT_OF_A_FILE = ("file", "output", "params")
+"""What the command says otherwise than by keywords: the program, the file, and the knobs."""
+
+
+class Asked(NamedTuple):
+    """What keywords say of a file to be written."""
+
+    options: Options
+    format: str | None
+    best_effort: bool
+
+
+def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked:
+    """Reads keywords as the command line reads its options: `kerf=0.15`, `kerf="0.15mm"`, `sheet="a3"`,
+    `sheet=(600, 400)`, `dimension=True`.
+
+    Raises AidlError for an unknown option and for a value that it does not take.
+    """
+    from aidl_lang.tools.cli.build import options
+
+    parser, defaults = _parser()
+    known = sorted(defaults)
+    words = [
+        word
+        for name, value in given.items()
+        if value is not None
+        for word in _words(_known(name, known), value, is_flag=defaults[name] is False)
+    ]
+    try:
+        arguments = parser.parse_args(words)
+    except argparse.ArgumentError as reason:
+        name = (reason.argument_name or "").lstrip("-").replace("-", "_")
+        raise _refused(f"`{name}`: {reason.message}") from None
+    try:
+        return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
+    except UseError as reason:
+        raise AidlError(reason.diagnostic) from None
+
+
+def said(arguments: argparse.Namespace) -> list[str]:
+    """Returns the options that say how a drawing is made, as far as they are not the default, as the command
+    line has them.
+    """
+    _, defaults = _parser(add_variant, add_strict)
+    asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}
+    return [
+        word
+        for name, value in asked.items()
+        if value != defaults[name]
+        for word in _words(
+            name, sorted(value) if isinstance(value, frozenset) else value, is_flag=defaults[name] is False
+        )
+    ]
+
+
+def _parser(
+    *more: Callable[[argparse.ArgumentParser], None],
+) -> tuple[argparse.ArgumentParser, dict[str, Any]]:
+    """Returns a parser for the options of a drawing, and their defaults by name."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("file", nargs="?")
+    add_drawing(parser)
+    parser.add_argument("--timings", action="store_true")
+    for add in more:
+        add(parser)
+    defaults = vars(parser.parse_args([]))
+    return parser, {name: value for name, value in defaults.items() if name not in _NOT_OF_A_FILE}
+
+
+def _known(name: str, known: list[str]) -> str:
+    if name in known:
+        return name
+    near = nearest(name, known, 1)
+    hints = did_you_mean(near) or [f"options are {', '.join(ticked(known))}"]
+    raise _refused(f"there is no option `{name}`", *hints)
+
+
+def _refused(message: str, *hints: str) -> AidlError:
+    return AidlError(Diagnostic("E0925", message, hints=hints))
+
+
+def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
+    """Returns an option as the command line has it."""
+    option = f"--{name.replace('_', '-')}"
+    if is_flag != isinstance(value, bool):
+        has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"
+        raise _refused(f"`{name}` {has}")
+    if is_flag:
+        return [option] if value else []
+    return [f"{option}={_text(name, value)}"]
+
+
+def _text(name: str, value: object) -> str:
+    """Returns a value as the command line has it."""
+    if isinstance(value, str | Path):
+        return str(value)
+    if isinstance(value, int | float):
+        from decimal import Decimal
+
+        return f"{Decimal(repr(float(value) if isinstance(value, float) else int(value))):f}"
+    if isinstance(value, Iterable):
+        items = list(value)
+        return ("," if all(isinstance(each, str) for each in items) else "x").join(
+            _text(name, each) for each in items
+        )
+    raise _refused(f"`{name}` takes numbers and texts, not `{type(value).__name__}`")

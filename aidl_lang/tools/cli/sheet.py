@@ -9,37 +9,33 @@ from pathlib import Path
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_outputs, add_params, add_pixels, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.options import add_outputs, add_params, add_pixels, add_program, choice, value
 
 _DEFAULT = ".pdf"
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_sheet(parser: argparse.ArgumentParser) -> None:
+    """`aidl sheet`: a technical drawing on paper, with dimensions, a frame and a title block."""
     add_program(parser)
     add_outputs(
-        parser,
-        "where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)",
+        parser, "where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)"
     )
     add_params(parser)
-    parser.add_argument("--paper", type=_paper, metavar="NAME", help=f"{', '.join(PAPERS)} (default: by fit)")
+    value(parser, "--paper", "NAME", f"{', '.join(PAPERS)} (default: by fit)", _paper)
     way = parser.add_mutually_exclusive_group()
     way.add_argument(
         "--landscape", dest="landscape", action="store_const", const=True, help="lay the paper wide"
     )
     way.add_argument("--portrait", dest="landscape", action="store_const", const=False, help="stand it up")
-    parser.add_argument("--scale", type=_scale, metavar="N:M", help="as in 1:2 (default: by fit)")
-    parser.add_argument(
-        "--date", default="", metavar="TEXT", help="the date in the title block (default: none)"
-    )
-    parser.add_argument(
-        "--standard", choices=("iso", "ansi"), default="iso", help="paper and projection (default: iso)"
-    )
+    value(parser, "--scale", "N:M", "as in 1:2 (default: by fit)", _scale)
+    value(parser, "--date", "TEXT", "the date in the title block (default: none)", str, "")
+    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)", "iso")
     add_pixels(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_sheet)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_sheet(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.export import ExportError, Options, file_names
     from aidl_lang.export.drafting import Draft

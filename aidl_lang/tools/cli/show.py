@@ -9,9 +9,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.options import add_look, add_params, add_program
-from aidl_lang.tools.cli.report import UseError, exit_code, show
-from aidl_lang.tools.terminal.protocols import (
+from aidl_lang.tools.cli.files import UseError, exit_code, show
+from aidl_lang.tools.cli.options import add_look, add_params, add_program, choice, value
+from aidl_lang.tools.terminal import (
     GRAPHICS,
     PROTOCOLS,
     Extent,
@@ -24,7 +24,7 @@ from aidl_lang.tools.terminal.protocols import (
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture, Text
-    from aidl_lang.tools.terminal.characters import Label
+    from aidl_lang.tools.terminal import Label
 
 _PROMPT = 2
 """Rows left free: for the command, and for the prompt after it."""
@@ -33,23 +33,23 @@ _SAMPLES = 4
 """Pixels drawn per shown pixel, across and down."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_show(parser: argparse.ArgumentParser) -> None:
+    """`aidl show`: a preview of the drawing in the terminal."""
     add_program(parser)
     add_params(parser)
     add_look(parser)
-    parser.add_argument(
-        "--width", type=_columns, metavar="COLUMNS", help="columns to fill at most (default: the terminal)"
-    )
-    parser.add_argument(
+    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", _columns)
+    choice(
+        parser,
         "--protocol",
-        choices=("auto", *PROTOCOLS),
-        default="auto",
-        help="how to show it (default: auto, the best that the terminal is known for)",
+        ("auto", *PROTOCOLS),
+        "how to show it (default: auto, the best that the terminal is known for)",
+        "auto",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_show)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_show(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
     from aidl_lang.export import ExportError, Job, Options, require_sheets
     from aidl_lang.export.picture import picture
@@ -99,14 +99,14 @@ def _screen(width: int | None) -> Screen:
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
     """Returns the picture in a protocol."""
-    from aidl_lang.export.scaling import coarse, framed
+    from aidl_lang.export.marks import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)
     across, down = extent.pixels
     picture = framed(picture, across / down)
     if name not in GRAPHICS:
         return _characters(picture, name, extent)
-    from aidl_lang.tools.terminal.protocols import iterm, kitty, sixel
+    from aidl_lang.tools.terminal import iterm, kitty, sixel
 
     png = _png(coarse(picture, picture.width / across), max(across, down))
     if name == "sixel":
@@ -115,8 +115,8 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
 
 
 def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
-    from aidl_lang.export.scaling import coarse, outlined, separated
-    from aidl_lang.tools.terminal.characters import PIXELS, cells, text, written
+    from aidl_lang.export.marks import coarse, outlined, separated
+    from aidl_lang.tools.terminal import PIXELS, cells, text, written
 
     across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
     picture, texts = separated(picture if name == "blocks" else outlined(picture))
@@ -131,7 +131,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
     """Returns a text of the picture in cells. A turned one is written level, about its middle."""
     from aidl_lang.common.colors import rgb
-    from aidl_lang.tools.terminal.characters import Label
+    from aidl_lang.tools.terminal import Label
 
     left, bottom, right, top = mark.box
     edge = {"start": left, "middle": (left + right) / 2, "end": right}

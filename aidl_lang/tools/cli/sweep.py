@@ -4,34 +4,155 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing_options,
     add_outputs,
     add_program,
     add_strict,
     add_variant,
+    choice,
     count_to,
+    flag,
+    value,
 )
-from aidl_lang.tools.cli.report import UseError, exit_code, say, show
 
 if TYPE_CHECKING:
     from aidl_lang.tools.sweeping.outputs import Outputs
     from aidl_lang.tools.sweeping.plan import Plan, Rows
     from aidl_lang.tools.sweeping.rows import Row
-    from aidl_lang.tools.sweeping.session import Job, Session
+    from aidl_lang.tools.sweeping.session import Job, Progress, Session
+
+
+# --- How far a sweep is: a line on a terminal, or JSON lines for programs.
+
+_OFTEN = 1.0
+"""Seconds between two lines of JSON."""
+_REDRAWN = 0.1
+"""Seconds between two drawings of the line."""
+_PATIENCE = 10.0
+"""Seconds without workers after which that is said."""
+_WIDTH = 110
+"""Columns of a terminal that does not know its own."""
+_NOW = 60
+"""Columns for what runs now."""
+
+
+@contextmanager
+def progress(kind: str) -> Iterator[Callable[[Progress], None]]:
+    """Returns what is to be told of a sweep's progress: `auto`, `off` or `json`."""
+    if kind == "json":
+        yield _JsonLines()
+    elif kind == "off" or not sys.stderr.isatty():
+        yield _Quiet()
+    else:
+        bar = _Bar()
+        try:
+            yield bar
+        finally:
+            bar.close()
+
+
+class _Quiet:
+    """Says nothing, but once that there is nobody to do the work."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+        self._was_said = False
+
+    def __call__(self, progress: Progress) -> None:
+        if progress.places:
+            self._since = None
+            return
+        self._since = self._since or time.monotonic()
+        if not self._was_said and time.monotonic() - self._since > _PATIENCE:
+            self._was_said = True
+            say("the cluster has no workers; waiting for some")
+
+
+class _Bar:
+    """A line with what is done, the rate and the time left, what fails, and what runs now."""
+
+    def __init__(self) -> None:
+        from tqdm import tqdm
+
+        self._last = 0.0
+        # a terminal may not know its size, and what is larger than none is not shown
+        width = os.get_terminal_size(sys.stderr.fileno()).columns or _WIDTH
+        self._bar = tqdm(
+            total=None, unit=" variants", file=sys.stderr, ncols=width, nrows=_WIDTH, leave=False
+        )
+
+    def __call__(self, progress: Progress) -> None:
+        from aidl_lang.common.render import escape
+        from aidl_lang.tools.sweeping.plan import labels
+
+        bar = self._bar
+        bar.total, bar.initial = progress.count, progress.kept
+        bar.n = progress.done
+        parts = [f"{progress.failed} failing"] if progress.failed else []
+        if progress.kept:
+            parts.append(f"{progress.kept} known")
+        if not progress.places:
+            parts.append("waiting for workers")
+        elif progress.running:
+            now = escape(labels(progress.running[0].values)).replace("\n", " ")
+            parts.append(f"now {now[:_NOW]}")
+        bar.set_postfix_str(", ".join(parts), refresh=False)
+        if time.monotonic() - self._last > _REDRAWN or progress.done == progress.count:
+            self._last = time.monotonic()
+            bar.refresh()
+
+    def close(self) -> None:
+        self._bar.close()
+
+
+class _JsonLines:
+    """A line of JSON now and then, and one at the end."""
+
+    def __init__(self) -> None:
+        self._start, self._last = time.monotonic(), 0.0
+
+    def __call__(self, progress: Progress) -> None:
+        now = time.monotonic()
+        if now - self._last < _OFTEN and progress.done < progress.count:
+            return
+        self._last = now
+        seconds = now - self._start
+        computed = progress.done - progress.kept
+        rate = computed / seconds if computed and seconds > 0 else None
+        told = {
+            "done": progress.done,
+            "count": progress.count,
+            "failed": progress.failed,
+            "kept": progress.kept,
+            "begun_again": progress.given_again,
+            "places": progress.places,
+            "seconds": round(seconds, 3),
+            "rate": rate and round(rate, 3),
+            "left": rate and round((progress.count - progress.done) / rate, 1),
+            "running": [dict(each.values) for each in progress.running],
+        }
+        say(json.dumps(told, ensure_ascii=False))
+
 
 _MOST_TOLD = 20
 """Most failures that are listed; the table has all."""
 
 
-def register(parser: argparse.ArgumentParser) -> None:
+def register_sweep(parser: argparse.ArgumentParser) -> None:
+    """`aidl sweep`: many variants of a program, their drawings, and a table of what came of each."""
     parser.epilog = (
         "Values: width=60..200/8 (so many of a range), width='60..200 step 20', style=round,square, "
         "style='*' (all choices). Several -D make a grid. Exit codes: 0 all variants are well, "
@@ -47,80 +168,65 @@ def register(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUES",
         help="vary a param",
     )
-    parser.add_argument("--table", metavar="CSV", help="a variant for each row; columns are params")
-    parser.add_argument(
-        "--random",
-        type=count_to(1_000_000),
-        metavar="N",
-        help="draw so many variants within the ranges of params",
-    )
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is drawn (default: 1)")
+    value(parser, "--table", "CSV", "a variant for each row; columns are params")
+    value(parser, "--random", "N", "draw so many variants within the ranges of params", count_to(1_000_000))
+    value(parser, "--seed", "N", "of what is drawn (default: 1)", int, 1)
     add_outputs(
         parser,
         "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
         "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
     )
-    parser.add_argument(
+    flag(
+        parser,
         "--drawing-sheet",
-        action="store_true",
-        help="make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
+        "make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
     )
     add_drawing_options(parser)
     add_variant(parser)
     add_strict(parser)
     running = parser.add_argument_group("running")
-    running.add_argument(
+    value(
+        running,
         "--on",
-        default="local",
-        metavar="ENGINE",
-        help="local (the default), or a scheduler of Dask: tcp://host:8786",
+        "ENGINE",
+        "local (the default), or a scheduler of Dask: tcp://host:8786",
+        str,
+        "local",
     )
-    running.add_argument(
-        "--jobs",
-        type=count_to(1000),
-        metavar="N",
-        help="processes of this machine (default: one for each processor)",
+    value(
+        running, "--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000)
     )
-    running.add_argument(
+    value(
+        running,
         "--time-limit",
-        type=count_to(100_000),
-        metavar="SECONDS",
-        help="for each variant (default: what a compile, its files and measures may take)",
+        "SECONDS",
+        "for each variant (default: what a compile, its files and measures may take)",
+        count_to(100_000),
     )
-    running.add_argument("--stop-on-error", action="store_true", help="stop at the first variant that fails")
-    running.add_argument(
-        "--resume", action="store_true", help="go on with the same sweep that was broken off"
-    )
-    running.add_argument(
-        "--cache", metavar="DIR", help="keep what comes of variants there, and take what is kept"
-    )
-    running.add_argument(
-        "--cache-size",
-        type=count_to(1_000_000),
-        metavar="MB",
-        help="most that the cache keeps (default: 4096)",
-    )
+    flag(running, "--stop-on-error", "stop at the first variant that fails")
+    flag(running, "--resume", "go on with the same sweep that was broken off")
+    value(running, "--cache", "DIR", "keep what comes of variants there, and take what is kept")
+    value(running, "--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
     running.add_argument(
         "--no-timings",
         dest="timings",
         action="store_false",
         help="leave the seconds out of tables, which are the same every time then",
     )
-    running.add_argument(
+    choice(
+        running,
         "--progress",
-        choices=("auto", "off", "json"),
-        default="auto",
-        help="a line on a terminal (the default), nothing, or JSON lines on standard error",
+        ("auto", "off", "json"),
+        "a line on a terminal (the default), nothing, or JSON lines on standard error",
+        "auto",
     )
-    running.add_argument("--json", action="store_true", help="print a summary with all failures as JSON")
-    parser.set_defaults(run=run)
+    flag(running, "--json", "print a summary with all failures as JSON")
+    parser.set_defaults(run=run_sweep)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_sweep(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.processes import prepared
-    from aidl_lang.tools.cli.sweep_progress import progress
-    from aidl_lang.tools.sweeping.session import Session
-    from aidl_lang.tools.sweeping.starting import LOCAL, engine, preloads
+    from aidl_lang.tools.sweeping.session import LOCAL, Session, engine, preloads
 
     if arguments.file == files.STANDARD and arguments.resume:
         raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
@@ -179,10 +285,9 @@ def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
 def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang import pipeline
     from aidl_lang.tools.cli.build import options
-    from aidl_lang.tools.cli.keywords import said
+    from aidl_lang.tools.cli.options import said
     from aidl_lang.tools.sweeping.outputs import outputs
-    from aidl_lang.tools.sweeping.session import Job
-    from aidl_lang.tools.sweeping.starting import opened, reproducing
+    from aidl_lang.tools.sweeping.session import Job, opened, reproducing
     from aidl_lang.tools.sweeping.working import Making
 
     settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
@@ -197,9 +302,7 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
         bundle,
         world,
         Making(
-            options=options(arguments),
-            best_effort=arguments.best_effort,
-            drafted=arguments.drawing_sheet,
+            options=options(arguments), best_effort=arguments.best_effort, drafted=arguments.drawing_sheet
         ),
         wanted,
         lambda variant, name: reproducing(
@@ -215,12 +318,11 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
 
 
 def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
-    from aidl_lang.tools.sweeping.axes import axis
-    from aidl_lang.tools.sweeping.plan import planned
+    from aidl_lang.tools.sweeping.plan import axis, planned
 
     rows: Rows | None = None
     if arguments.table:
-        from aidl_lang.tools.sweeping.orders import read_table
+        from aidl_lang.tools.sweeping.plan import read_table
 
         rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
@@ -268,7 +370,7 @@ def line(session: Session) -> str:
 def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
     """Prints each failure with its messages and the command that reproduces it."""
     from aidl_lang.common.render import escape
-    from aidl_lang.tools.sweeping.axes import labels
+    from aidl_lang.tools.sweeping.plan import labels
 
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")

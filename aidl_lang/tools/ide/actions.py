@@ -26,11 +26,18 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Box, Motion, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.guesses import can_write_back, write_back
-from aidl_lang.tools.ide.meaning import Mention, free_name, mentions
-from aidl_lang.tools.ide.positions import above_comments, applied, between, indent_at, insert, line_start
-from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.references import CannotError, Mention, free_name, mentions
 from aidl_lang.tools.ide.site import around, structures_around
-from aidl_lang.tools.ide.workspace import View, edited
+from aidl_lang.tools.ide.workspace import (
+    View,
+    above_comments,
+    applied,
+    between,
+    edited,
+    indent_at,
+    insert,
+    line_start,
+)
 from aidl_lang.tools.mending import mend
 
 # --- Code actions: fixes, and changes that keep the drawing.

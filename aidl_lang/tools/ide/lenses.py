@@ -16,8 +16,7 @@ from aidl_lang.geometry.solved import ConstraintReport, Motion, Scalar, SolvedMo
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools import ends
-from aidl_lang.tools.ends import Sweep, Turned
-from aidl_lang.tools.ends.wording import valued
+from aidl_lang.tools.ends import Sweep, Turned, valued
 from aidl_lang.tools.ide.guesses import Guess, guesses, number_for
 from aidl_lang.tools.ide.workspace import View
 

@@ -14,7 +14,7 @@ from aidl_lang.common.records import record
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tokens import Token
+from aidl_lang.syntax.tables import Token
 from aidl_lang.tools.ide.site import Where, around, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference

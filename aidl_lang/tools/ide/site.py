@@ -10,11 +10,11 @@ from functools import cached_property
 from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.parser import parse, standing_before
+from aidl_lang.parser import Parsed, parse, standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens
-from aidl_lang.tools.ide.workspace import View, look
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, Tokens
+from aidl_lang.tools.ide.workspace import View, look_at
 
 # --- Finds the nodes and the token at an offset.
 
@@ -72,8 +72,6 @@ def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:
             yield node
 
 
-# --- A place in a text under editing: the nodes around it, and the tokens that the grammar takes there.
-#
 # A text under editing is seldom a program. So a placeholder name is inserted, in the way that leaves the
 # fewest mistakes, and the program is checked with it: the node that it became shows what is wanted.
 
@@ -243,29 +241,28 @@ def site_at(view: View, spot: Spot) -> EditSite:
     site = EditSite(view, spot, automaton, None, ())
     if not (automaton.accepts(["NAME"]) or automaton.accepts(["CALL"]) or site.may_end):
         return site
-    text = _filled(site)
-    if text is None:
+    best = _filled(site)
+    if best is None:
         return site
-    filled = look(view.path, text, view.world)
+    filled = look_at(view.path, best, view.world)
     path = around(filled.module, spot.start + 1)
     return EditSite(view, spot, automaton, filled, tuple(path))
 
 
-def _filled(site: EditSite) -> str | None:
-    """Returns the text with the placeholder, in the way that leaves the fewest mistakes; None if it is lost
-    from the program in all.
+def _filled(site: EditSite) -> Parsed | None:
+    """Returns the text with the placeholder, parsed, in the way that leaves the fewest mistakes; None if it
+    is lost from the program in all.
     """
     text, spot = site.original.source.text, site.spot
     head, tail = text[: spot.start], text[spot.end :]
-    best: tuple[int, str] | None = None
+    best: tuple[int, Parsed] | None = None
     for ending in _endings(site):
-        filled = head + PLACEHOLDER + ending + tail
-        parsed = parse(SourceFile(site.original.source.name, filled))
+        parsed = parse(SourceFile(site.original.path.name, head + PLACEHOLDER + ending + tail))
         if not _has_placeholder(parsed.module, spot.start):
             continue
         mistakes = sum(d.is_error for d in parsed.diagnostics)
         if best is None or mistakes < best[0]:
-            best = (mistakes, filled)
+            best = (mistakes, parsed)
         if not mistakes:
             break
     return best[1] if best is not None else None

@@ -16,17 +16,19 @@ from aidl_lang.geometry.freedom import report
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.llm.intent.placing import CONTACTS
-from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 from aidl_lang.tools.llm.messages import (
+    Conversation,
     ConversationOver,
     Finish,
     Image,
+    Language,
     Message,
     Provider,
     ProviderError,
     Reply,
     Sampling,
     Usage,
+    Verdict,
     find_program,
 )
 
@@ -134,9 +136,6 @@ def _box(structure: SolvedStructure) -> str:
         else "no extent"
     )
     return f"{structure.kind} `{structure.path}`: {where}" + " (empty)" * structure.is_empty
-
-
-# --- The loop from a request to a right program: ask, check, answer, ask again.
 
 
 @record()

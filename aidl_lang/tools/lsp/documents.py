@@ -1,22 +1,25 @@
-"""The open texts of the editor, each with its newest views."""
+"""The open texts of the editor, each with its newest views, and what is said of them in the protocol."""
 
 from __future__ import annotations
 
 import asyncio
 import os
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote, unquote, urlsplit
 
 from lsprotocol import types
 from pygls import uris
 
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Label, Severity
 from aidl_lang.common.records import record
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.solver.memory import Memory
-from aidl_lang.tools.ide.positions import Positions, Unit
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import Positions, Unit, View
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Surrogate halves of characters, which JSON can hold and no text may."""
@@ -154,3 +157,216 @@ def path_of(uri: str) -> Path:
 def _nowhere(scheme: str, name: str) -> Path:
     name = re.sub(r"[\0-\x1f]", "_", name)
     return Path(os.path.normpath(f"{os.path.abspath(os.sep)}{scheme}:/{name}"))
+
+
+# --- Values of the server made those of the protocol, settings read from it, diagnostics published.
+
+# --- Values of the server made those of the protocol, and settings read from it.
+
+LONGEST_DELAY = 5_000
+
+
+@record()
+class Settings:
+    """The settings of a user.
+
+    solved_values  inlay hints for the solved values of first guesses
+    readings       inlay hints for chosen readings of ambiguous constraints
+    lenses         code lenses on structures
+    delay          seconds after a change before the program is run
+    """
+
+    solved_values: bool = True
+    readings: bool = True
+    lenses: bool = True
+    delay: float = 0.0
+
+    @classmethod
+    def read(cls, said: object) -> Settings:
+        """Reads nested objects as `{"inlayHints": {"readings": false}}`; invalid values count as absent."""
+        delay = _value(said, "run.delay")
+        is_number = isinstance(delay, int | float) and not isinstance(delay, bool)
+        return cls(
+            solved_values=_value(said, "inlayHints.solvedValues") is not False,
+            readings=_value(said, "inlayHints.readings") is not False,
+            lenses=_value(said, "codeLens.enabled") is not False,
+            delay=min(max(float(delay), 0.0), LONGEST_DELAY) / 1000 if is_number else 0.0,
+        )
+
+
+def _value(said: object, path: str) -> Any:
+    for name in path.split("."):
+        if not isinstance(said, Mapping):
+            return None
+        said = said.get(name)
+    return said
+
+
+START = types.Range(types.Position(0, 0), types.Position(0, 0))
+
+
+@record(eq=False)
+class Converter:
+    """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
+
+    view: View
+    own: str
+    documents: Documents
+    unit: Unit
+    versions: Mapping[Path, int] = field(default_factory=dict)
+    _positions: dict[SourceFile, Positions] = field(default_factory=dict)
+
+    def _of(self, source: SourceFile) -> Positions:
+        if source not in self._positions:
+            self._positions[source] = Positions(source.text, self.unit)
+        return self._positions[source]
+
+    def position(self, source: SourceFile, offset: int) -> types.Position:
+        return types.Position(*self._of(source).position(offset))
+
+    def range(self, span: Span) -> types.Range:
+        of = self._of(span.source)
+        return types.Range(types.Position(*of.position(span.start)), types.Position(*of.position(span.end)))
+
+    def offset(self, position: types.Position) -> int:
+        """Returns the offset of a position in the text of the view."""
+        return self._of(self.view.source).offset(position.line, position.character)
+
+    def span(self, wanted: types.Range) -> Span:
+        """Returns the span of a range in the text of the view."""
+        start, end = sorted((self.offset(wanted.start), self.offset(wanted.end)))
+        return self.view.span(start, end)
+
+    def uri(self, source: SourceFile) -> str | None:
+        """Returns the URI of a source; None for one without a file."""
+        path = self.view.file(source)
+        return None if path is None else self.uri_of(path)
+
+    def uri_of(self, path: Path) -> str:
+        """Returns the URI of a file; of two that mean the file of the document, its own."""
+        return self.own if path == self.view.path else self.documents.uri_of(path)
+
+    def location(self, span: Span) -> types.Location | None:
+        uri = self.uri(span.source)
+        return None if uri is None else types.Location(uri, self.range(span))
+
+    def edit(self, edit: Edit) -> types.TextEdit:
+        return types.TextEdit(self.range(edit.span), edit.replacement)
+
+    def edits(self, edits: Iterable[Edit]) -> list[types.TextEdit]:
+        return [self.edit(edit) for edit in edits]
+
+    def by_file(self, edits: Iterable[Edit]) -> dict[Path, list[Edit]]:
+        """Groups edits by file; drops those without a file."""
+        found: dict[Path, list[Edit]] = {}
+        for edit in edits:
+            if (path := self.view.file(edit.span.source)) is not None:
+                found.setdefault(path, []).append(edit)
+        return found
+
+    def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
+        """Returns edits by file; for a client that knows of versions, each with the version it was made
+        for.
+        """
+        made = {path: self.edits(each) for path, each in edits.items()}
+        if not with_versions:
+            return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})
+        return types.WorkspaceEdit(
+            document_changes=[
+                types.TextDocumentEdit(
+                    types.OptionalVersionedTextDocumentIdentifier(self.uri_of(path), self.versions.get(path)),
+                    each,
+                )
+                for path, each in made.items()
+            ]
+        )
+
+
+# --- Publishes diagnostics to the client, for each file.
+
+SOURCE = "aidl"
+_SEVERITY = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+    Severity.NOTE: types.DiagnosticSeverity.Information,
+}
+_UNNECESSARY = frozenset({"W0201", "W0202", "W0502", "W0701", "W0703"})
+"""Codes of unnecessary text, which editors show faint."""
+
+
+def converted(
+    found: Iterable[Diagnostic], convert: Converter, own: str
+) -> Iterator[tuple[str, types.Diagnostic]]:
+    """Yields diagnostics with the URI of the file that shows each. Those without a place in a file of the
+    user's appear at the beginning of the program, whose URI is `own`.
+    """
+    for diagnostic in found:
+        span = diagnostic.span
+        if span is None or convert.view.is_library(span.source) or (uri := convert.uri(span.source)) is None:
+            uri, place = own, START
+        else:
+            place = convert.range(span)
+        yield uri, _converted(diagnostic, convert, place)
+
+
+def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -> types.Diagnostic:
+    return types.Diagnostic(
+        range=place,
+        message=worded(diagnostic),
+        severity=_SEVERITY[diagnostic.severity],
+        code=diagnostic.code,
+        code_description=types.CodeDescription(resource(f"docs/diagnostics/{diagnostic.code}.md").as_uri()),
+        source=SOURCE,
+        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
+        related_information=list(_related(diagnostic, convert)) or None,
+    )
+
+
+def worded(diagnostic: Diagnostic) -> str:
+    """Returns the message and the hints, line by line."""
+    said = [diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]
+    return "\n".join(said)
+
+
+def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.DiagnosticRelatedInformation]:
+    own = [Label(diagnostic.span, diagnostic.label)] if diagnostic.span and diagnostic.label else []
+    for label in (*own, *diagnostic.secondary):
+        if (place := convert.location(label.span)) is not None:
+            yield types.DiagnosticRelatedInformation(place, label.text or diagnostic.message)
+
+
+class Publisher:
+    """Publishes for each file the diagnostics of all programs that use it."""
+
+    def __init__(self, send: Callable[[types.PublishDiagnosticsParams], None]) -> None:
+        self._send = send
+        self._told: dict[Document, dict[str, list[types.Diagnostic]]] = {}
+        self._serials: dict[Document, int] = {}
+
+    def publish(
+        self, document: Document, known: VersionedView, found: list[tuple[str, types.Diagnostic]]
+    ) -> None:
+        """Replaces the diagnostics of a program; does nothing if those before were of a newer text."""
+        if known.serial < self._serials.get(document, known.serial):
+            return
+        self._serials[document] = known.serial
+        by_uri: dict[str, list[types.Diagnostic]] = {document.uri: []}
+        for uri, diagnostic in found:
+            by_uri.setdefault(uri, []).append(diagnostic)
+        before = self._told.get(document, {})
+        self._told[document] = by_uri
+        self._tell(document.uri, known.version)
+        for uri in before | by_uri:
+            if uri != document.uri and before.get(uri) != by_uri.get(uri):
+                self._tell(uri)
+
+    def forget(self, document: Document) -> None:
+        """Removes the diagnostics of a program."""
+        self._serials.pop(document, None)
+        for uri in self._told.pop(document, {}):
+            self._tell(uri)
+
+    def _tell(self, uri: str, version: int | None = None) -> None:
+        said = [each for by_uri in self._told.values() for each in by_uri.get(uri, ())]
+        unique = {(repr(each.range), each.code, each.message): each for each in said}
+        self._send(types.PublishDiagnosticsParams(uri, list(unique.values()), version))

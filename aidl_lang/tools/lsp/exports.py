@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from aidl_lang.checking import sizes
+from aidl_lang.checking import units
 from aidl_lang.common.records import record
 from aidl_lang.export import FORMATS, OFFERED, Exported, Format, Options, file_names
 from aidl_lang.export.profiles import PROFILES
@@ -57,13 +57,13 @@ def _is_picture(made: Format) -> bool:
 
 
 OPTIONS = (
-    Option("sheet", "Sheet", "600x400, a3", lambda o, given: replace(o, sheet=sizes.size(given))),
-    Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=sizes.length(given))),
+    Option("sheet", "Sheet", "600x400, a3", lambda o, given: replace(o, sheet=units.size(given))),
+    Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=units.length(given))),
     Option("nest", "Packed by", "boxes", _nested, ("boxes", "outlines")),
-    Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=sizes.length(given))),
+    Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=units.length(given))),
     Option("profile", "Profile", "plain", _profiled, tuple(PROFILES)),
     Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, _is_picture),
-    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=sizes.size(given)), fits=_is_picture),
+    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), fits=_is_picture),
 )
 
 

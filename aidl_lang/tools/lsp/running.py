@@ -1,22 +1,22 @@
-"""Turns texts into views and outcomes: every change is checked, and the newest view is run.
-
-One thread looks, another runs. A run whose text has changed is given up, unless the run before was given up
-as well: under quick typing at least every second run comes to its end, if it is a short one.
-"""
+"""Turns texts into views and outcomes on threads of their own, and collects garbage while nobody waits."""
 
 from __future__ import annotations
 
 import asyncio
+import gc
+import threading
 import time
 from collections.abc import Callable, Hashable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from aidl_lang.common import resources
 from aidl_lang.common.files import is_data
+from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.pipeline import Settings
@@ -26,10 +26,199 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
 from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
 from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
-from aidl_lang.tools.lsp.lane import Job, Lane, gave_up
-from aidl_lang.tools.lsp.tidying import Tidier
+
+# --- Work off the message thread: single threads with queues.
 
 T = TypeVar("T")
+
+_STACK = 64 * 1024 * 1024
+"""Stack of a thread, bytes: programs may be nested, and the interpreter follows them."""
+
+
+def _executor(name: str) -> ThreadPoolExecutor:
+    """Returns an executor of one thread, which starts with the first piece of work."""
+    return ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
+
+
+def give_room() -> None:
+    """Gives threads started from now on room for nested programs."""
+    threading.stack_size(_STACK)
+
+
+@record(frozen=False, eq=False)
+class Job(Generic[T]):
+    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with the result."""
+
+    key: Hashable
+    work: Callable[[], T]
+    done: Callable[[Future[T]], None]
+    dropped: Callable[[], None] = lambda: None
+    """Called instead of `done` if newer work of the same key replaces it before it has begun."""
+
+
+class Lane:
+    """Does one piece of work at a time; of those waiting under one key, only the newest. All methods belong
+    to the loop's thread; `finished` is called there after each piece.
+    """
+
+    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
+        self._executor = _executor(name)
+        self._loop, self._finished = loop, finished
+        self._waiting: dict[Hashable, Job[Any]] = {}
+        self.running: Job[Any] | None = None
+        self._is_closed = False
+
+    @property
+    def is_busy(self) -> bool:
+        return self.running is not None
+
+    def waits(self, key: Hashable) -> bool:
+        return key in self._waiting
+
+    def put(self, job: Job[Any], first: bool = False) -> None:
+        """Queues work, last or as the next."""
+        self.drop(job.key)
+        if self._is_closed:
+            job.dropped()
+            return
+        self._waiting = {job.key: job, **self._waiting} if first else {**self._waiting, job.key: job}
+        self._start()
+
+    def drop(self, key: Hashable) -> None:
+        """Drops the work waiting under a key; running work goes on."""
+        if (older := self._waiting.pop(key, None)) is not None:
+            older.dropped()
+
+    def close(self) -> None:
+        """Drops waiting work and begins nothing more."""
+        self._is_closed = True
+        for key in list(self._waiting):
+            self.drop(key)
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+    def _start(self) -> None:
+        if self.running is None and self._waiting:
+            job = self._waiting.pop(next(iter(self._waiting)))
+            self.running = job
+            self._executor.submit(job.work).add_done_callback(partial(self._hand_over, job))
+
+    def _hand_over(self, job: Job[Any], future: Future[Any]) -> None:
+        """Passes a result to the loop, from the lane's thread or whichever cancels."""
+        with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
+            self._loop.call_soon_threadsafe(self._finish, job, future)
+
+    def _finish(self, job: Job[Any], future: Future[Any]) -> None:
+        self.running = None
+        try:
+            if not future.cancelled():
+                job.done(future)
+        finally:
+            self._start()
+            self._finished()
+
+
+class Answers:
+    """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
+
+    def __init__(self, name: str) -> None:
+        self._executor = _executor(name)
+        self._is_closing = False
+
+    async def ask(self, answer: Callable[[], T]) -> T:
+        """Returns the answer. Raises what `answer` raises."""
+        unwanted = threading.Event()
+
+        def work() -> T:
+            with cancelled_when(lambda: unwanted.is_set() or self._is_closing):
+                return answer()
+
+        if self._is_closing:
+            raise asyncio.CancelledError
+        try:
+            return await asyncio.wrap_future(self._executor.submit(work))
+        except asyncio.CancelledError:
+            unwanted.set()
+            raise
+
+    def close(self) -> None:
+        """Cancels the present answer, and begins nothing more."""
+        self._is_closing = True
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+
+def gave_up(future: Future[Any]) -> bool:
+    """True for a run that was cancelled, by its future or while running."""
+    return future.cancelled() or isinstance(future.exception(), Cancelled)
+
+
+# A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
+# the middle of the next run, and go through the library and everything else each time; here it does so in
+# the pauses, and what stays for good is put out of its sight. What a document stands for now is among that
+# and never stays for good, so this is done seldom, and undone when one is closed.
+
+_PAUSE = 0.05
+"""Seconds without work after which nobody seems to wait."""
+_MOST = 100
+"""Pieces of work after which it collects without a pause."""
+_LONG = 0.03
+"""Seconds of a collection that has gone through many permanent objects."""
+_RELEASED = 0.5
+"""Seconds after which nothing is under way for a document that was closed."""
+_FREEZES = 3
+"""How often objects are put out of sight: after the library and the first questions have come."""
+_ROUNDS = 500
+"""Collections after which seemingly permanent objects are looked through again."""
+
+
+class Tidier:
+    """`is_busy` tells whether anybody waits. All methods belong to the loop's thread."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, is_busy: Callable[[], bool]) -> None:
+        self._loop, self._is_busy = loop, is_busy
+        self._left = 0
+        self._rounds = self._freezes = 0
+        self._planned: asyncio.TimerHandle | None = None
+        gc.disable()
+
+    def note(self) -> None:
+        """Notes that a piece of work was done."""
+        self._left += 1
+        if self._planned is not None:
+            self._planned.cancel()
+        self._planned = self._loop.call_later(0 if self._left >= _MOST else _PAUSE, self._tidy)
+
+    def _tidy(self) -> None:
+        if self._left < _MOST and self._is_busy():
+            return  # there is a note at the end of that
+        self._left = 0
+        self._rounds += 1
+        if self._rounds % _ROUNDS == 0:
+            gc.unfreeze()
+            self._freezes = 0
+        began = time.perf_counter()
+        gc.collect()
+        if time.perf_counter() - began > _LONG and self._freezes < _FREEZES:
+            self._freezes += 1
+            gc.freeze()
+
+    def release(self) -> None:
+        """Has all looked through soon: much is of no use any more once what is under way has ended."""
+        self._loop.call_later(_RELEASED, self._look_through)
+
+    def _look_through(self) -> None:
+        self._rounds = -1
+        self.note()
+
+    def close(self) -> None:
+        if self._planned is not None:
+            self._planned.cancel()
+        gc.enable()
+
+
+# --- Turns texts into views and outcomes: every change is checked, and the newest view is run.
+#
+# One thread looks, another runs. A run whose text has changed is given up, unless the run before was given
+# up as well: under quick typing at least every second run comes to its end, if it is a short one.
 
 LIMITS = replace(
     SETTINGS,

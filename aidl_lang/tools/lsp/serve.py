@@ -5,20 +5,215 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import re
 import socket
 import sys
 import threading
 import time
-from collections.abc import Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
+from queue import SimpleQueue
 
+from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from aidl_lang.common.files import DATA, PROGRAM
 from aidl_lang.pipeline import Settings as Limits
-from aidl_lang.tools.lsp import wire
-from aidl_lang.tools.lsp.lane import give_room
-from aidl_lang.tools.lsp.requests import actions, appearance, hints, lifecycle, navigation, preview, writing
-from aidl_lang.tools.lsp.running import LIMITS
+from aidl_lang.tools.lsp.documents import Settings, path_of
+from aidl_lang.tools.lsp.requests.navigation import register_appearance, register_navigation
+from aidl_lang.tools.lsp.requests.preview import register_preview
+from aidl_lang.tools.lsp.requests.writing import register_actions, register_hints, register_writing
+from aidl_lang.tools.lsp.running import LIMITS, give_room
 from aidl_lang.tools.lsp.server import Server
+
+# --- Notifications of the client: folders, settings, files that have changed.
+
+_SECTION = "aidl"
+log = logging.getLogger(__name__)
+
+
+def register_lifecycle(server: Server) -> None:
+    @server.feature(types.INITIALIZE)
+    def initialize(params: types.InitializeParams) -> None:
+        _take_roots(server)
+        _use(server, Settings.read(params.initialization_options))
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(params: types.InitializedParams) -> None:
+        server.runner.warm_up()
+        await _watch_files(server)
+        await _ask_settings(server)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def folders(params: types.DidChangeWorkspaceFoldersParams) -> None:
+        _take_roots(server)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
+    async def configure(params: types.DidChangeConfigurationParams) -> None:
+        if isinstance(params.settings, dict) and _SECTION in params.settings:
+            _use_settings(server, Settings.read(params.settings[_SECTION]))
+        else:
+            await _ask_settings(server)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def files(params: types.DidChangeWatchedFilesParams) -> None:
+        for path in {path_of(change.uri) for change in params.changes}:
+            if not server.documents.at(path):  # what is open says what the editor says
+                server.runner.renew_dependents(path)
+
+
+def _take_roots(server: Server) -> None:
+    roots = [path_of(folder.uri) for folder in server.workspace.folders.values()]
+    if not roots and server.workspace.root_uri is not None:
+        roots = [path_of(server.workspace.root_uri)]
+    server.open_files.roots = tuple(dict.fromkeys(roots))
+
+
+async def _watch_files(server: Server) -> None:
+    known = server.client_capabilities.workspace
+    watching = known.did_change_watched_files if known is not None else None
+    if watching is None or not watching.dynamic_registration:
+        return
+    suffixes = ",".join(suffix.removeprefix(".") for suffix in (PROGRAM, *DATA))
+    watcher = types.FileSystemWatcher(f"**/*.{{{suffixes}}}")
+    options = types.DidChangeWatchedFilesRegistrationOptions([watcher])
+    method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
+    registration = types.Registration("files", method, options)
+    try:
+        await server.client_register_capability_async(types.RegistrationParams([registration]))
+    except JsonRpcException as reason:
+        log.warning("the client does not watch files: %s", reason)
+
+
+async def _ask_settings(server: Server) -> None:
+    known = server.client_capabilities.workspace
+    if known is None or not known.configuration:
+        return
+    wanted = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
+    try:
+        said = await server.workspace_configuration_async(wanted)
+    except JsonRpcException as reason:
+        log.warning("the client tells no settings: %s", reason)
+        return
+    _use_settings(server, Settings.read(said[0] if said else None))
+
+
+def _use_settings(server: Server, settings: Settings) -> None:
+    if settings != server.settings:
+        _use(server, settings)
+        server.refresh_hints()
+
+
+def _use(server: Server, settings: Settings) -> None:
+    server.settings, server.runner.delay = settings, settings.delay
+
+
+# --- Messages of the protocol on standard input and output, or on a socket.
+#
+# Two threads of their own read and write the pipes: neither a client that is slow to read nor one that
+# writes much keeps the server from working. Whatever else is printed in this process goes to standard error.
+
+MOST_BYTES = 64_000_000
+"""Most bytes of one message; a longer one is skipped."""
+_CHUNK = 1 << 16
+_LENGTH = re.compile(rb"content-length:[ \t]*(\d{1,18})\s*$", re.IGNORECASE)
+
+
+async def bodies(reader: asyncio.StreamReader) -> AsyncIterator[bytes]:
+    """Yields the contents of the messages, until the stream ends. Skips what is no message."""
+    while (length := await _header(reader)) is not None:
+        if length > MOST_BYTES:
+            await _pass_over(reader, length)
+            continue
+        try:
+            yield await reader.readexactly(length)
+        except asyncio.IncompleteReadError:
+            return
+
+
+async def _header(reader: asyncio.StreamReader) -> int | None:
+    """Returns the length of the next message; None at the end of the stream."""
+    length = None
+    while True:
+        try:
+            line = await reader.readline()
+        except ValueError:  # longer than a line of a header can be
+            length = None
+            continue
+        if not line:
+            return None
+        if (found := _LENGTH.search(line)) is not None:
+            length = int(found[1])
+        elif not line.strip() and length is not None:
+            return length
+
+
+async def _pass_over(reader: asyncio.StreamReader, length: int) -> None:
+    while length > 0 and (data := await reader.read(min(length, _CHUNK))):
+        length -= len(data)
+
+
+class Output:
+    """Writes to a pipe, in a thread of its own. `lost` is called there when nobody reads."""
+
+    def __init__(self, descriptor: int, lost: Callable[[], object]) -> None:
+        self._waiting: SimpleQueue[bytes | None] = SimpleQueue()
+        self._descriptor, self._lost = descriptor, lost
+        self._thread = threading.Thread(target=self._run, name="writer", daemon=True)
+        self._thread.start()
+
+    def write(self, data: bytes) -> None:
+        self._waiting.put(data)
+
+    def close(self) -> None:
+        """Waits until everything is written, but not for a reader that has stopped reading."""
+        self._waiting.put(None)
+        self._thread.join(timeout=1.0)
+
+    def _run(self) -> None:
+        try:
+            while (data := self._waiting.get()) is not None:
+                _write(self._descriptor, data)
+        except OSError:
+            self._lost()
+
+
+def _write(descriptor: int, data: bytes) -> None:
+    rest = memoryview(data)
+    while rest:
+        rest = rest[os.write(descriptor, rest) :]
+
+
+def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.AbstractEventLoop) -> None:
+    """Starts a thread that passes on the data of a pipe, and its end."""
+
+    def run() -> None:
+        try:
+            while data := os.read(descriptor, _CHUNK):
+                loop.call_soon_threadsafe(reader.feed_data, data)
+            loop.call_soon_threadsafe(reader.feed_eof)
+        except (OSError, RuntimeError):  # the pipe is gone, or the loop is closed
+            return
+
+    threading.Thread(target=run, name="reader", daemon=True).start()
+
+
+def claim_standard_streams() -> tuple[int, int]:
+    """Returns descriptors of the former standard input and output. A stray `print` then goes to standard
+    error, and nobody else reads what the client writes.
+    """
+    sys.stdout.flush()
+    incoming, outgoing = os.dup(0), os.dup(1)
+    if sys.platform == "win32":
+        import msvcrt
+
+        msvcrt.setmode(incoming, os.O_BINARY)
+        msvcrt.setmode(outgoing, os.O_BINARY)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    return incoming, outgoing
+
 
 _RECURSION = 20_000
 _SWITCH = 0.0005
@@ -31,20 +226,28 @@ _LOST = 1
 def make(limits: Limits = LIMITS) -> Server:
     """Returns a server with all requests."""
     server = Server(limits)
-    for theme in (lifecycle, navigation, appearance, actions, hints, preview, writing):
-        theme.register(server)
+    for register in (
+        register_lifecycle,
+        register_navigation,
+        register_appearance,
+        register_actions,
+        register_hints,
+        register_preview,
+        register_writing,
+    ):
+        register(server)
     return server
 
 
 def serve_standard_streams() -> int:
     """Returns the exit code when the client has ended the session."""
-    incoming, outgoing = wire.claim_standard_streams()
+    incoming, outgoing = claim_standard_streams()
 
     async def main() -> int:
         loop = asyncio.get_running_loop()
         reader = asyncio.StreamReader()
-        output = wire.Output(outgoing, lost=lambda: loop.call_soon_threadsafe(reader.feed_eof))
-        wire.read_into(reader, incoming, loop)
+        output = Output(outgoing, lost=lambda: loop.call_soon_threadsafe(reader.feed_eof))
+        read_into(reader, incoming, loop)
         try:
             return await _serve(reader, output)
         finally:
@@ -69,13 +272,13 @@ def serve_socket(listener: socket.socket) -> int:
     return _run(main())
 
 
-async def _serve(reader: asyncio.StreamReader, writer: wire.Output | asyncio.StreamWriter) -> int:
+async def _serve(reader: asyncio.StreamReader, writer: Output | asyncio.StreamWriter) -> int:
     server = make()
     server.start()
     protocol = server.protocol
     protocol.set_writer(writer)
     try:
-        async for body in wire.bodies(reader):
+        async for body in bodies(reader):
             protocol.receive(body)
             if protocol.exit_code is not None:
                 return protocol.exit_code

@@ -10,8 +10,8 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.files import Reads, may_be_read
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-from aidl_lang.tools.ide.positions import applied
 from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.workspace import applied
 
 # --- Watches for changes of a program, and of the files that it may import.
 

@@ -20,9 +20,8 @@ from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import SETTINGS
+from aidl_lang.tools.ide.workspace import SETTINGS, Positions
 from aidl_lang.tools.lsp.documents import Document
 from aidl_lang.tools.lsp.params import read
 from aidl_lang.tools.lsp.serve import make

@@ -12,8 +12,8 @@ from typing import Any, TypeAlias
 from attrs import field, frozen
 from lsprotocol.types import MessageType
 
-from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.workspace import Positions
 
 # --- One open page: what it has asked for, and what waits to be sent to it.
 

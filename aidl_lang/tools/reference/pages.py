@@ -1,12 +1,55 @@
-"""The entries of the reference as Markdown, and the pictures of their examples."""
+"""The entries of the reference as Markdown and as data, pictures of their examples, and the guide."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import cache
 
 from aidl_lang.checking import library
-from aidl_lang.tools.reference.collect import Entry
+from aidl_lang.checking.subset import Variant
+from aidl_lang.common.resources import resource
+from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.collect import Entry, Overload, reference
 from aidl_lang.tools.reference.signatures import exactness, held, parts
+
+# --- An entry of the reference as plain data, for JSON.
+
+
+def to_dict(entry: Entry) -> dict[str, object]:
+    return {
+        "name": entry.name,
+        "sort": entry.sort,
+        "topic": entry.topic,
+        "line": entry.doc.line,
+        "text": entry.doc.text,
+        "forms": [_form(overload) for overload in entry.overloads],
+        "synonyms": list(entry.synonyms),
+        "example": entry.doc.example,
+        "defined": entry.where,
+    }
+
+
+def _form(overload: Overload) -> dict[str, object]:
+    data: dict[str, object] = {"form": overload.form, "line": overload.doc.line, "defined": overload.where}
+    node = overload.node
+    if node is None or isinstance(node, ast.Let):
+        return data
+    callables = library.load().callables
+    data["arguments"] = [
+        {
+            "name": p.name.text,
+            "type": p.type.text if p.type is not None else "any",
+            "default": p.default.span.one_line if p.default is not None else None,
+        }
+        for p in node.parameters or ()
+    ]
+    if isinstance(node, ast.ShapeDefinition | ast.Structure):
+        data["parts"] = [{"name": part.name, "type": part.type or None} for part in parts(node)]
+    if isinstance(node, ast.ConstraintDefinition):
+        data["held"] = held(node, callables).replace("`", "") or None
+        data["measures"] = exactness(node, callables)
+    return data
+
 
 _MEANT = {"exactly": "met exactly", "at least": "what there is at least", "at most": "what there is at most"}
 
@@ -84,3 +127,31 @@ def held_of(entry: Entry) -> list[str]:
 def exactness_of(entry: Entry) -> dict[str, str]:
     callables = library.load().callables
     return {name: word for node in entry.nodes for name, word in exactness(node, callables).items()}
+
+
+# --- The guide: the language on a few pages, a page for each variant (`docs/guide.md`, `docs/guides`).
+
+
+@cache
+def guide(variant: Variant = Variant.FULL) -> str:
+    """Returns the guide as Markdown."""
+    name = "docs/guide.md" if variant is Variant.FULL else f"docs/guides/{variant}.md"
+    return resource(name).read_text("utf-8")
+
+
+def guide_with(topics: Sequence[str]) -> str:
+    """Returns the guide and, after it, the entries of the reference on some topics, without pictures. Raises
+    KeyError for a topic that does not exist.
+    """
+    known = {topic.name: topic for topic in reference().topics}
+    blocks = [guide().strip(), "# Reference"]
+    for name in topics:
+        blocks.append(f"## {known[name].title}")
+        for entry in reference().of_topic(name):
+            blocks += entry_blocks(entry, "###")
+    return "\n\n".join(blocks) + "\n"
+
+
+def full_guide() -> str:
+    """Returns the guide with the whole reference."""
+    return guide_with([topic.name for topic in reference().topics])

@@ -21,9 +21,8 @@ import diskcache
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.identity import surroundings
-from aidl_lang.tools.sweeping.axes import Value
-from aidl_lang.tools.sweeping.bundle import Bundle
-from aidl_lang.tools.sweeping.outcome import Outcome, from_data, to_data
+from aidl_lang.tools.sweeping.bundle import Bundle, Outcome, from_data, to_data
+from aidl_lang.tools.sweeping.plan import Value
 from aidl_lang.tools.sweeping.working import Making
 
 SIZE = 4 << 30

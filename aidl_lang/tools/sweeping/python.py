@@ -12,14 +12,11 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.export import Options
 from aidl_lang.pipeline import Settings
-from aidl_lang.tools.sweeping.axes import Axis, axis, from_values, knob_named
-from aidl_lang.tools.sweeping.orders import read_table
 from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
-from aidl_lang.tools.sweeping.plan import Variant, planned
+from aidl_lang.tools.sweeping.plan import Axis, Variant, axis, from_values, knob_named, planned, read_table
 from aidl_lang.tools.sweeping.rows import Columns, Row, in_order
-from aidl_lang.tools.sweeping.session import Job, Session
-from aidl_lang.tools.sweeping.starting import engine as engine_named
-from aidl_lang.tools.sweeping.starting import opened, reproducing
+from aidl_lang.tools.sweeping.session import Job, Session, opened, reproducing
+from aidl_lang.tools.sweeping.session import engine as engine_named
 from aidl_lang.tools.sweeping.working import Making
 
 if TYPE_CHECKING:
@@ -141,7 +138,7 @@ class Sweep:
 
     def to_arrow(self) -> pyarrow.Table:
         """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
-        from aidl_lang.tools.sweeping.tables import to_arrow
+        from aidl_lang.tools.sweeping.rows import to_arrow
 
         return to_arrow(Columns(self._job.plan, self._job.timings), self.results)
 

@@ -18,9 +18,7 @@ from aidl_lang.export import Exported, Options
 from aidl_lang.geometry.survey import NothingThereError, Part
 from aidl_lang.pipeline import Front
 from aidl_lang.solver.memory import Memory
-from aidl_lang.tools.sweeping.bundle import Bundle, Carried
-from aidl_lang.tools.sweeping.faults import fault
-from aidl_lang.tools.sweeping.outcome import Change, Measures, Outcome
+from aidl_lang.tools.sweeping.bundle import Bundle, Carried, Change, Measures, Outcome, fault
 
 library.load()  # where processes are forked from one that has loaded this, none of them has to
 _MOST_FAULTS = 30

@@ -22,7 +22,7 @@ from pathlib import Path
 from aidl_dev.reference.short import short_calls
 from aidl_lang.checking.builtins import CUTS
 from aidl_lang.checking.registry import PRIMITIVES, PUBLIC
-from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.subset import Variant
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference

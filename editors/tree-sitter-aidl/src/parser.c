@@ -25531,7 +25531,7 @@ TS_PUBLIC const TSLanguage *tree_sitter_aidl(void) {
     .max_reserved_word_set_size = 27,
     .metadata = {
       .major_version = 0,
-      .minor_version = 1,
+      .minor_version = 2,
       .patch_version = 0,
     },
   };

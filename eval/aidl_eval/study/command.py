@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
-from aidl_lang.tools.cli import files, listening
-from aidl_lang.tools.cli.report import UseError, say, show
+from aidl_lang.tools.cli import files, serving
+from aidl_lang.tools.cli.files import UseError, say, show
 
 if TYPE_CHECKING:
     from aidl_eval.store import Store, StoreError
@@ -31,7 +31,7 @@ def register(parser: argparse.ArgumentParser) -> None:
         help="in the one style of all languages, or each in its own colours, which may tell it "
         "(default: neutral)",
     )
-    listening.add_options(parser)
+    serving.add_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -58,17 +58,17 @@ def _export(store: Store, name: str) -> int:
 
 def _serve(store: Store, arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
-    listening.require("the study", "starlette", "uvicorn")
+    serving.require("the study", "starlette", "uvicorn")
     from aidl_eval.study import session, site
     from aidl_lang.tools.preview.local import Door
 
     served = session.opened(store, arguments.pictures)
     hint = "without `--port` a free one is taken"
-    door = Door(listening.listener(arguments.host, arguments.port, "E0953", hint))
+    door = Door(serving.listen(arguments.host, arguments.port, "E0953", hint))
     count = sum(sheet.is_shown for sheet in served.sheets)
     say(f"{store.folder}: {counted(count, 'sheet')} to rank, {door.url} (stop with Ctrl-C)")
     if not arguments.no_open:
-        listening.open_browser(door.url)
+        serving.open_browser(door.url)
     door.serve(site.site(served, door.token, door.addresses, _tell), site.CONNECTIONS)
     return 0
 

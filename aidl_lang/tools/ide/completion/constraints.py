@@ -27,7 +27,7 @@ from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.context import Context, KnownName
-from aidl_lang.tools.ide.completion.draft import Draft, choice, stop
+from aidl_lang.tools.ide.completion.drafts import Draft, choice, stop
 from aidl_lang.tools.vocabulary import vocabulary
 
 # --- The kinds of things that each constraint takes, from the reference's table of all pairs.
@@ -113,8 +113,6 @@ def _kind(kind: Type, *, is_unknown: bool) -> str:
         case _:
             return ""
 
-
-# --- Completion of constraints: those that fit the things at hand first, with their names filled in.
 
 _FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
 _MOST_NAMES = 8

@@ -7,9 +7,8 @@ from enum import Enum
 from functools import cached_property
 
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
-from aidl_lang.checking.facts import Fact, ReadPlace
+from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
@@ -33,8 +32,6 @@ from aidl_lang.tools.ide.signatures import Reading, readings
 from aidl_lang.tools.ide.site import PLACEHOLDER, EditSite
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.vocabulary import vocabulary
-
-# --- The context of a place: the call around it, and the names visible there.
 
 _ATTRIBUTES: dict[str, Type] = {
     **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
@@ -271,8 +268,6 @@ _STATEMENTS = (
     ast.Parameter,
 )
 
-
-# --- The type wanted at a place, by the nodes around it.
 
 _WHOLE = NumberType(None, whole=True)
 _NUMBER = NumberType(LENGTH)

@@ -6,13 +6,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 
-from aidl_lang.checking import fields
+from aidl_lang.checking import builtins
 from aidl_lang.checking.builtins import EDITS
-from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.facts import Fact, body_of, of_symbol
 from aidl_lang.checking.members import member_of
-from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.standard import body_of
 from aidl_lang.checking.types import (
     AnyType,
     BoxType,
@@ -34,14 +32,11 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
 from aidl_lang.tools.ide.completion.constraints import forms, kind_of
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use
-from aidl_lang.tools.ide.completion.draft import Draft, stop
-from aidl_lang.tools.ide.completion.words import words_of
-from aidl_lang.tools.ide.meaning import parameter_node
+from aidl_lang.tools.ide.completion.drafts import Draft, stop, words_of
+from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, joined, of_parameter
 from aidl_lang.tools.reference.signatures import parts, things
 from aidl_lang.tools.vocabulary import vocabulary
-
-# --- Completion after a dot, and between the brackets of an index.
 
 _OWN, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
 _MOST_INDICES = 12
@@ -99,22 +94,22 @@ def _names(context: Context, fact: Fact) -> _Named:
     match fact.type:
         case StructureType() if fact.of is not None:
             yield from _declared(context.view.resolution.scope_of(fact.of), fact.of)
-            yield from _plain((*fields.BOX, "bb"), _BOX)
-            yield from _plain(fields.STRUCTURE, _BOX + 0.5)
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
+            yield from _plain(builtins.STRUCTURE, _BOX + 0.5)
         case GeometryType(kind):
             if fact.of is not None:
                 yield from _of_shape(context, fact.of)
             else:
-                yield from _plain(fields.PRIMITIVE.get(kind, {}), _FIELDS)
-            yield from _plain((*fields.BOX, "bb"), _BOX)
+                yield from _plain(builtins.PRIMITIVE.get(kind, {}), _FIELDS)
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
         case PointType():
             yield from _plain(("x", "y"), _FIELDS)
         case BoxType() | StructureType():
-            yield from _plain(fields.BOX, _FIELDS)
+            yield from _plain(builtins.BOX, _FIELDS)
         case ListType():
-            yield from _plain(fields.PATTERN.get(fact.pattern, {}), _OWN)
+            yield from _plain(builtins.PATTERN.get(fact.pattern, {}), _OWN)
             yield from _names(context, fact.element())
-            yield from _plain((*fields.BOX, "bb"), _BOX)
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
         case _:
             pass
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import lru_cache, partial
 
-from aidl_lang.checking import fields
+from aidl_lang.checking import builtins
+from aidl_lang.checking.facts import result
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.declare import is_definition
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.standard import result
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -27,14 +27,11 @@ from aidl_lang.common.world import FileError
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
-from aidl_lang.tools.ide.completion.draft import Draft
-from aidl_lang.tools.ide.completion.words import Files, importable
-from aidl_lang.tools.ide.positions import insert
+from aidl_lang.tools.ide.completion.drafts import Draft, Files, importable
 from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_entry
+from aidl_lang.tools.ide.workspace import insert
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import vocabulary
-
-# --- Completion of values and callables by their names.
 
 MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
 """Tiers: makers of geometry if that is wanted; values that fit, that may fit, that have parts which fit;
@@ -167,7 +164,7 @@ def _makes(context: Context, signature: Signature) -> bool:
 def result_type(context: Context, signature: Signature) -> Type:
     """Returns the result type of a callable, as far as it is the same for all arguments."""
     if signature.kind is None:
-        return fields.RESULTS.get(signature.name, ANY)
+        return builtins.RESULTS.get(signature.name, ANY)
     if signature.kind is ast.ShapeDefinition:
         return GeometryType(signature.name)
     if signature.kind is ast.Structure:
@@ -221,7 +218,7 @@ def kind_of(signature: Signature) -> SymbolKind:
             return SymbolKind.CONSTRAINT
         case ast.Structure:
             return SymbolKind.TEMPLATE
-        case None if isinstance(fields.RESULTS.get(signature.name), GeometryType):
+        case None if isinstance(builtins.RESULTS.get(signature.name), GeometryType):
             return SymbolKind.SHAPE
         case _:
             return SymbolKind.FUNCTION

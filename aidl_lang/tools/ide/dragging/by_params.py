@@ -15,8 +15,7 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.prose import shortest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax import ast
-from aidl_lang.tools.agents.knobs import edit_at
-from aidl_lang.tools.agents.workspace import RefusalError
+from aidl_lang.tools.agents.workspace import RefusalError, edit_at
 from aidl_lang.tools.ide.dragging.mobility import Grip, grips, is_somewhere
 from aidl_lang.tools.ide.references import Refusal
 from aidl_lang.tools.ide.workspace import View, hasty, run

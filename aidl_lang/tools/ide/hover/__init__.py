@@ -1,5 +1,362 @@
 """Hover: the meaning of a word, its type, and its solved value."""
 
-from aidl_lang.tools.ide.hover.hover import Hover, hover
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.types import AnyType
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.tables import Token
+from aidl_lang.syntax.words import kind_of
+from aidl_lang.tools.ide.guesses import guesses
+from aidl_lang.tools.ide.hover.solved_values import Solved, solved_of
+from aidl_lang.tools.ide.hover.telling import compared, constraint_lines, lines, number_text
+from aidl_lang.tools.ide.references import Mention, chosen, mention_at, parameter_node
+from aidl_lang.tools.ide.signatures import (
+    fenced,
+    head,
+    joined,
+    label_of,
+    of_callable,
+    of_comment,
+    of_parameter,
+    of_public,
+)
+from aidl_lang.tools.ide.site import Where, around, spot_at, token_at
+from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.reference.collect import Entry, reference
+from aidl_lang.tools.vocabulary import vocabulary
+
+# --- Hover over keywords, attributes, the signs of comparisons, and numbers.
+#
+# Each answer is Markdown with the place that it is about.
+
+_GUIDE = "`aidl guide` tells the language in a few pages."
+Description = tuple[str, Span]
+
+
+def of_word(view: View, offset: int) -> Description | None:
+    """Describes a keyword, a kind, or the sign of a comparison."""
+    token = token_at(view, offset)
+    if token is None:
+        return None
+    span = view.span(token.start, token.end)
+    words = vocabulary()
+    if token.kind in words.comparisons:
+        text = _compared(view, token)
+        return (text, span) if text else None
+    word = token.text.strip("( \t")
+    kind = kind_of(word)
+    entry = reference().entries.get(kind or word)
+    if entry is None or (token.kind == "NAME" and kind is None):
+        return None
+    return (_keyword(entry), view.span(token.start, token.start + len(word)))
+
+
+def _keyword(entry: Entry) -> str:
+    example = fenced(entry.doc.example) if entry.doc.example else ""
+    forms = fenced("\n".join(o.form for o in entry.overloads))
+    return joined([forms, entry.doc.line, entry.doc.text, example, _GUIDE])
+
+
+def _compared(view: View, token: Token) -> str:
+    """Returns both sides of a comparison, and how well it holds."""
+    path = around(view.module, token.start)
+    node = path[-1]
+    if not isinstance(node, ast.Comparison):
+        return ""
+    solved = solved_of(view)
+    if solved is None:
+        return not_solved(view)
+    sides = [(side.span.one_line, solved.values(side, path)) for side in node.operands]
+    return joined([stated_at(view, node, path), listed(compared(solved, sides))])
+
+
+def of_attribute(view: View, offset: int) -> Description | None:
+    """Describes the attribute after an `@`."""
+    path = reversed(around(view.module, offset))
+    stated = (ast.attributes(n) for n in path if isinstance(n, ast.Structure | ast.Assign | ast.Allowing))
+    before = (a for found in stated for a in found)
+    node = next((a for a in before if a.span.start <= offset <= a.name.span.end), None)
+    if node is None:
+        return None
+    name = node.name.text
+    entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")
+    return (_keyword(entry), view.span(node.span.start, node.name.span.end)) if entry is not None else None
+
+
+def of_number(view: View, start: int) -> Description | None:
+    """Describes a number in mm or degrees, with its solved value."""
+    path = around(view.module, start)
+    node = path[-1]
+    if not isinstance(node, ast.Number):
+        return None
+    blocks = list(_converted(node))
+    for guess in guesses(view):
+        if guess.span.start <= start < guess.span.end and guess.solved is not None:
+            what = "kept" if guess.is_kept else "a first guess"
+            became = number_text(guess.solved, None) + guess.behind
+            many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
+            change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
+            blocks.append(f"`{guess.path}`{many}: {what}, {change}")
+    return (joined(blocks), node.span) if blocks else None
+
+
+def _converted(node: ast.Number) -> Iterator[str]:
+    if node.unit is not None:
+        factor, dimension = UNITS[node.unit]
+        worth = number_text(node.value * factor, dimension)
+        yield f"`{node.span.text}` = {worth}" if factor != 1.0 else f"{dimension}: {worth}"
+
+
+# --- The values shown on hovering, as lists in Markdown, or the reason why there are none.
+
+_STATED = ast.ExpressionStatement | ast.Equation | ast.Prefer
+
+
+def listed(told: Sequence[str]) -> str:
+    return "\n".join(f"- `{line}`" for line in told)
+
+
+def not_solved(view: View) -> str:
+    """Returns the reason for a missing value; "" while the text is being worked on for the first time."""
+    if view.outcome is not None:
+        return "*There is no value: the program has errors.*"
+    return "" if view.drawn is None else "*The value is being worked out.*"
+
+
+def failed(solved: Solved) -> str:
+    model = solved.outcome.model
+    if model is None or model.status == "solved":
+        return ""
+    return "*The constraints do not hold together: this is where the solver came nearest.*"
+
+
+def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
+    """Tells how well the constraint holds whose head is a call or a sign."""
+    solved = solved_of(view)
+    if solved is None:
+        return ""
+    for each in reversed(path):
+        may_be_one = isinstance(each, _STATED | ast.Comparison | ast.Call | ast.Membership)
+        if may_be_one and (told := constraint_lines(solved, each.span)):
+            return joined([*told, failed(solved)])
+        if isinstance(each, ast.Block):
+            break
+    return ""
+
+
+_VALUES = frozenset(
+    (
+        SymbolKind.PARAM,
+        SymbolKind.LET,
+        SymbolKind.VAR,
+        SymbolKind.LOOP,
+        SymbolKind.ARGUMENT,
+        SymbolKind.GEOMETRY,
+        SymbolKind.STRUCTURE,
+        SymbolKind.FIELD,
+        SymbolKind.BUILTIN,
+    )
+)
+
+
+@record()
+class Hover:
+    """`text` is Markdown, about what stands at `span`."""
+
+    text: str
+    span: Span
+
+
+def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
+    """Returns the hover for the word at an offset, or for the expression selected from there to `end`; None
+    for anything else.
+    """
+    if end is not None and end > offset:
+        return _of_selection(view, offset, end)
+    spot = spot_at(view, offset)
+    if spot.where in (Where.COMMENT, Where.STRING):
+        return None
+    token = token_at(view, offset)
+    if token is not None and token.kind == "NUMBER":
+        told = of_number(view, token.start)
+    else:
+        told = of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
+    return Hover(*told) if told is not None else None
+
+
+# --- Names -----------------------------------------------------------------------------------------
+
+
+def _of_name_at(view: View, offset: int) -> Description | None:
+    mention = mention_at(view, offset)
+    if mention is None:
+        return None
+    path = around(view.module, mention.span.start)
+    node = mention.node
+    if isinstance(node, ast.Argument):
+        text = _of_named_argument(view, node, path, mention.symbol)
+    elif isinstance(node, ast.Call):
+        text = _of_call(view, node, path, mention.symbol)
+    else:
+        text = _of_name(view, mention, path)
+    return (text, mention.span) if text else None
+
+
+def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
+    symbol = mention.symbol
+    blocks = [_headed(view, mention), _doc(symbol)]
+    if symbol.kind in _VALUES:
+        blocks.append(_values(view, mention, path))
+    elif mention.symbol.node is None:
+        blocks.append(of_public(symbol.name))
+    return joined(blocks)
+
+
+def _headed(view: View, mention: Mention) -> str:
+    """Returns the line that introduces a name: its definition, or its type."""
+    symbol = mention.symbol
+    fact = view.program.inference.facts.get(mention.node)
+    kind = "" if fact is None or isinstance(fact.type, AnyType) else str(fact.type)
+    match symbol.node:
+        case None:
+            return fenced(f"{symbol.name}: {kind}") if kind else ""
+        case ast.For() | ast.ForArguments() | ast.Comprehension():
+            return fenced(f"{symbol.name}  // {symbol.kind} of `{head(symbol.node)}`")
+        case node:
+            note = f"  // {kind}" if kind and not isinstance(node, ast.Structure) else ""
+            return fenced(head(node) + note)
+
+
+def _doc(symbol: Symbol) -> str:
+    comments = [doc for node in symbol.nodes if (doc := getattr(node, "doc", None))]
+    if comments:
+        return of_comment(comments[0])
+    if symbol.node is None:
+        entry = reference().entries.get(symbol.name)
+        return joined([entry.doc.line, entry.doc.text]) if entry is not None and entry.sort == "word" else ""
+    return ""
+
+
+def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
+    """Returns the solved values of a name as a list."""
+    solved = solved_of(view)
+    if solved is None:
+        return not_solved(view)
+    node = _expression(mention)
+    if node is None:
+        return ""
+    found = solved.values(node, _body_path(mention, path))
+    if mention.symbol.kind is SymbolKind.LOOP:
+        found = [replace(each, label="") for each in found]  # it would repeat the value
+    told = lines(solved, _shown_name(node), found)
+    if mention.symbol.kind is SymbolKind.PARAM and isinstance(mention.symbol.node, ast.Param):
+        told = [line.replace(", exact (param)", ", param") for line in told]
+    return joined([listed(told), _range(mention.symbol), failed(solved)])
+
+
+def _shown_name(node: ast.Expression) -> str:
+    return node.span.one_line if isinstance(node, ast.Member | ast.Index) else getattr(node, "text", "value")
+
+
+def _expression(mention: Mention) -> ast.Expression | None:
+    """Returns the expression to evaluate for a name: the name itself, or for a declaration a name like it."""
+    match mention.node:
+        case ast.Name() | ast.Member() as node:
+            return node
+        case ast.Identifier() as node:
+            return ast.Name(node.text, span=node.span)
+        case _:
+            return None
+
+
+def _body_path(mention: Mention, path: Sequence[ast.Node]) -> Sequence[ast.Node]:
+    """Returns the nodes around a name as its readers see them: the members of an array belong outside the
+    loop, and its variable to the turns of it.
+    """
+    symbol = mention.symbol
+    if symbol.is_array and mention.is_declaration:
+        loops = [n for n, node in enumerate(path) if isinstance(node, ast.For)]
+        return path[: loops[0]] if loops else path
+    if isinstance(mention.node, ast.Identifier) and isinstance(symbol.node, ast.For):
+        loop = next((n for n, node in enumerate(path) if node is symbol.node), len(path) - 1)
+        return [*path[: loop + 1], symbol.node.body]
+    return path
+
+
+def _range(symbol: Symbol) -> str:
+    node = symbol.node
+    if not isinstance(node, ast.Param) or node.domain is None:
+        return ""
+    step = f", in steps of {node.step.span.one_line}" if node.step is not None else ""
+    return f"May be set to {node.domain.span.one_line}{step}."
+
+
+# --- Calls -----------------------------------------------------------------------------------------
+
+
+def _of_call(view: View, call: ast.Call, path: Sequence[ast.Node], symbol: Symbol) -> str:
+    """Describes a call: its form first, then the name."""
+    candidates = view.resolution.candidates.get(call, ())
+    if not candidates:
+        return ""
+    meant = chosen(view, call)
+    blocks = [fenced(label_of(meant).text)] if meant is not None and len(candidates) > 1 else []
+    if symbol.kind is SymbolKind.ALIAS and symbol.node is not None:
+        blocks.append(fenced(head(symbol.node)))
+    blocks.append(stated_at(view, call, path))
+    blocks.append(of_callable(symbol.name, candidates))
+    return joined(dict.fromkeys(blocks))
+
+
+def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.Node], symbol: Symbol) -> str:
+    call = next((n for n in reversed(path) if isinstance(n, ast.Call) and argument in n.arguments), None)
+    signature = chosen(view, call) if call is not None else None
+    if signature is None:
+        return ""
+    kind = next((k for name, k, _ in signature.parameters if name == symbol.name), None)
+    node = parameter_node(signature, symbol.name)
+    shown = node.span.one_line if node is not None else f"{symbol.name}: {kind}"
+    head_line = fenced(f"{signature.name}(… {shown} …)")
+    return joined([head_line, of_parameter(signature, symbol.name), _given(view, argument, path)])
+
+
+def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
+    """Describes a parameter's value; for the geometry made of it, the solved one."""
+    solved = solved_of(view)
+    made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
+    if solved is None or made is None or argument.name is None:
+        return ""
+    if made.indices or not (isinstance(made.value, ast.Call) and argument in made.value.arguments):
+        return ""
+    name = ast.Name(made.name.text, span=made.name.span)
+    field = ast.Member(name, argument.name, span=argument.name.span)
+    found = solved.values(field, path[: path.index(made)])
+    told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
+    return joined([listed(told), failed(solved)])
+
+
+# --- Selections -----------------------------------------------------------------------------------
+
+
+def _of_selection(view: View, start: int, end: int) -> Hover | None:
+    """Returns the hover for the selected expression, ignoring blanks around it."""
+    text = view.source.text[start:end]
+    start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
+    path = around(view.module, start)
+    solved = solved_of(view)
+    for number, node in enumerate(path):
+        fits = (node.span.start, node.span.end) == (start, end)
+        if fits and isinstance(node, ast.Expression) and solved is not None:
+            told = lines(solved, node.span.one_line, solved.values(node, path[:number]))
+            return Hover(listed(told), node.span) if told else None
+    return None
+
 
 __all__ = ["Hover", "hover"]

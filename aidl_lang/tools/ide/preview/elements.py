@@ -13,7 +13,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.tools.ide.preview.values import Element
+from aidl_lang.tools.ide.preview.protocol import Element
 from aidl_lang.tools.ide.workspace import View
 
 # --- Converts places in the drawn program to places in the present text: the picture may be of an earlier

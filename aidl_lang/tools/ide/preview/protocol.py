@@ -1,16 +1,146 @@
-"""A preview as the JSON that the pane and its hosts understand (`preview/pane/protocol.d.ts`)."""
+"""The data of a preview, and the JSON that the pane and its hosts understand (`pane/protocol.d.ts`)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from aidl_lang.common.diagnostics import Fix
 from aidl_lang.common.prose import rounded
+from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.tools.ide.positions import Positions
-from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.tools.ide.dragging import Handle
+from aidl_lang.tools.ide.workspace import Positions, View
+
+# --- The data of a preview. Coordinates in mm in the frame of the root, y upwards; places are spans.
+
+FREEDOM = "freedom"
+"""The layer of remaining motions, which are listed beside the picture and not drawn in it."""
+LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
+"""Layers that may be drawn over the picture."""
+
+
+@record()
+class Element:
+    """A drawn thing; its number in the picture is its index.
+
+    kind  `structure` or `geometry`; `type` tells which of them
+    span  its place in the present text; for a thing made by the library, the call. None if an edit removed it
+    hint  a line about it
+    """
+
+    path: str
+    kind: str
+    type: str
+    span: Span | None
+    hint: str
+
+
+@record()
+class Slider:
+    """A `param`: `span` is the place of its value; `editable` says whether that can be written."""
+
+    path: str
+    name: str
+    kind: str
+    """`number`, `choice`, `truth` or `text`"""
+    value: float | str | bool
+    unit: str
+    low: float | None
+    high: float | None
+    step: float | None
+    choices: tuple[float | str | bool, ...]
+    doc: str
+    span: Span | None
+    editable: bool
+
+
+@record()
+class Problem:
+    """A diagnostic with the numbers of its elements, and points of the drawing."""
+
+    severity: str
+    code: str
+    message: str
+    hints: tuple[str, ...]
+    span: Span | None
+    elements: tuple[int, ...]
+    points: tuple[Vec, ...]
+    fixes: tuple[Fix, ...]
+
+
+@record()
+class Party:
+    """A constraint of a conflict; `off` is its residual, None if that has no value."""
+
+    text: str
+    span: Span
+    elements: tuple[int, ...]
+    off: float | None
+
+
+@record()
+class Conflict:
+    headline: str
+    parties: tuple[Party, ...]
+
+
+@record()
+class Arrow:
+    start: Vec
+    end: Vec
+
+
+@record()
+class Turn:
+    """An arc about `center`; angles in degrees, counter-clockwise."""
+
+    center: Vec
+    radius: float
+    first: float
+    sweep: float
+
+
+@record()
+class Way:
+    """A remaining motion of some elements: in words, and drawn."""
+
+    words: str
+    elements: tuple[int, ...]
+    arrows: tuple[Arrow, ...]
+    turns: tuple[Turn, ...]
+
+
+@record()
+class Preview:
+    """A picture of a program with the data beside it.
+
+    status  `solved`, `partial`, `failed` or `wrong`, of the present text, as are knobs and problems
+    stale   True for the picture of an earlier text, since this one does not draw
+    tried   True for a picture with other values than the text has
+    handles the draggable points, as far as known
+    svg     None if nothing was ever drawn, or painting it takes too long
+    box     of the drawing
+    """
+
+    status: str
+    stale: bool
+    tried: bool
+    seconds: float
+    svg: str | None
+    box: Bounds
+    elements: tuple[Element, ...]
+    knobs: tuple[Slider, ...]
+    handles: tuple[Handle, ...]
+    problems: tuple[Problem, ...]
+    conflicts: tuple[Conflict, ...]
+    ways: tuple[Way, ...]
+    degrees: int | None
+
 
 Json: TypeAlias = dict[str, Any]
 
@@ -35,14 +165,11 @@ class Writer:
                 "seconds": preview.seconds,
                 "svg": preview.svg,
                 "box": preview.box,
-                "elements": [self._element(element) for element in preview.elements],
-                "knobs": [self._knob(knob) for knob in preview.knobs],
-                "handles": [
-                    {"id": h.id, "path": h.path, "at": h.at, "moves": h.moves, "hint": h.hint}
-                    for h in preview.handles
-                ],
-                "problems": [self._problem(problem) for problem in preview.problems],
-                "conflicts": [self._conflict(conflict) for conflict in preview.conflicts],
+                "elements": list(map(self._fields, preview.elements)),
+                "knobs": list(map(self._fields, preview.knobs)),
+                "handles": list(map(self._fields, preview.handles)),
+                "problems": list(map(self._problem, preview.problems)),
+                "conflicts": list(map(self._conflict, preview.conflicts)),
                 "motions": [_motion(way) for way in preview.ways],
                 "degrees": preview.degrees,
             }
@@ -75,52 +202,20 @@ class Writer:
             self._uris[source] = None if path is None else self._uri_of(path)
         return self._uris[source]
 
-    def _element(self, element: Element) -> Json:
-        return {
-            "path": element.path,
-            "kind": element.kind,
-            "type": element.type,
-            **self.place(element.span),
-            "hint": element.hint,
-        }
-
-    def _knob(self, knob: Slider) -> Json:
-        return {
-            "path": knob.path,
-            "name": knob.name,
-            "kind": knob.kind,
-            "value": knob.value,
-            "unit": knob.unit,
-            "low": knob.low,
-            "high": knob.high,
-            "step": knob.step,
-            "choices": knob.choices,
-            "doc": knob.doc,
-            **self.place(knob.span),
-            "editable": knob.editable,
-        }
+    def _fields(self, made: Any) -> Json:
+        """Returns what a record says, by the names of its fields; its span as range and file."""
+        said: Json = {}
+        for each in fields(made):
+            value = getattr(made, each.name)
+            said |= self.place(value) if each.name == "span" else {each.name: value}
+        return said
 
     def _problem(self, problem: Problem) -> Json:
-        return {
-            "severity": problem.severity,
-            "code": problem.code,
-            "message": problem.message,
-            "hints": problem.hints,
-            **self.place(problem.span),
-            "elements": problem.elements,
-            "points": problem.points,
-            "fixes": len(problem.fixes),
-            "titles": [fix.title for fix in problem.fixes],
-        }
+        titles = [fix.title for fix in problem.fixes]
+        return {**self._fields(problem), "fixes": len(titles), "titles": titles}
 
     def _conflict(self, conflict: Conflict) -> Json:
-        return {
-            "headline": conflict.headline,
-            "constraints": [
-                {"text": p.text, **self.place(p.span), "elements": p.elements, "off": p.off}
-                for p in conflict.parties
-            ],
-        }
+        return {"headline": conflict.headline, "constraints": list(map(self._fields, conflict.parties))}
 
 
 def _motion(way: Way) -> Json:

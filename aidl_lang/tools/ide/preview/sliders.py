@@ -12,10 +12,10 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.syntax import ast
-from aidl_lang.tools.agents import knobs
+from aidl_lang.tools.agents import workspace
 from aidl_lang.tools.agents.workspace import refusal
 from aidl_lang.tools.ide.preview.elements import Elements, Places
-from aidl_lang.tools.ide.preview.values import Conflict, Party, Problem, Slider
+from aidl_lang.tools.ide.preview.protocol import Conflict, Party, Problem, Slider
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 
 # --- The `param`s of a program as sliders, and edits that set their values in the text.
@@ -66,7 +66,7 @@ def set_knob(view: View, path: str, value: Value) -> list[Edit]:
         written = declared.value.span.one_line
         raise refusal("E0945", f"`{knob.path}` is worked out, as `{written}`; change what it is made of")
     _require_allowed(knob, _worked_out(knob, value))
-    edits = [knobs.edit_at(knob, declared, value)]
+    edits = [workspace.edit_at(knob, declared, value)]
     if _is_typed(knob, value):
         _require_sense(view, edits)
     return edits
@@ -84,7 +84,7 @@ def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def _knob(view: View, path: str) -> Knob:
-    return knobs.find(view.outcome.knobs if view.outcome is not None else (), path)
+    return workspace.find(view.outcome.knobs if view.outcome is not None else (), path)
 
 
 def _is_typed(knob: Knob, value: Value) -> bool:
@@ -93,7 +93,7 @@ def _is_typed(knob: Knob, value: Value) -> bool:
 
 
 def _worked_out(knob: Knob, value: Value) -> Value:
-    return knobs.typed(knob, value).value if isinstance(value, str) and _is_typed(knob, value) else value
+    return workspace.typed(knob, value).value if isinstance(value, str) and _is_typed(knob, value) else value
 
 
 def _require_allowed(knob: Knob, value: Value) -> None:

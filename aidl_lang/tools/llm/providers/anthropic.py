@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import Connection
-from aidl_lang.tools.llm.providers.draft import Draft, count, dig, one_line, words
+from aidl_lang.tools.llm.providers.connection import Connection, Draft, count, dig, one_line, words
 from aidl_lang.tools.llm.providers.server import Server
 
 MAX_TOKENS = 8192

@@ -15,8 +15,18 @@ from contextlib import contextmanager, suppress
 from typing import IO
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, EXEC, Connection
-from aidl_lang.tools.llm.providers.draft import MAX_TEXT, Draft, count, dig, dollars, one_line, too_long
+from aidl_lang.tools.llm.providers.connection import (
+    DEFAULT_URL,
+    EXEC,
+    MAX_TEXT,
+    Connection,
+    Draft,
+    count,
+    dig,
+    dollars,
+    one_line,
+    too_long,
+)
 
 _BLOCK = 65_536
 _TAIL = 2_000

@@ -7,8 +7,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from aidl_lang.tools.llm.messages import Finish, Message, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import Connection
-from aidl_lang.tools.llm.providers.draft import Draft, count, dig, dollars, one_line, words
+from aidl_lang.tools.llm.providers.connection import Connection, Draft, count, dig, dollars, one_line, words
 from aidl_lang.tools.llm.providers.server import Server
 
 _FINISH = {"length": Finish.CUT, "content_filter": Finish.REFUSED}

@@ -13,12 +13,14 @@ from typing import Any, ClassVar
 import httpx2
 
 from aidl_lang.tools.llm.messages import Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, Connection, without_credentials
-from aidl_lang.tools.llm.providers.draft import (
+from aidl_lang.tools.llm.providers.connection import (
+    DEFAULT_URL,
     UNKNOWN,
+    Connection,
     Draft,
     dig,
     one_line,
+    without_credentials,
     words,
 )
 

@@ -1,16 +1,310 @@
-"""Help while writing: completion, signature help and hover."""
+"""Help while writing: completion, signatures, hover, hints, lenses and code actions."""
 
 from __future__ import annotations
 
-from lsprotocol import types
+import asyncio
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+from uuid import uuid4
 
+from lsprotocol import types
+from pygls.capabilities import get_capability
+from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
+
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.running import Cancelled
+from aidl_lang.tools.ends import Sweep, described
+from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.positions import Positions
+from aidl_lang.tools.ide.lenses import Inlay, InlayKind, can_be_tried, end_lenses, inlays, lenses, tried
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
-from aidl_lang.tools.lsp.documents import Document
+from aidl_lang.tools.ide.workspace import Positions
+from aidl_lang.tools.lsp import params as asking
+from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import EntryRequest, read
-from aidl_lang.tools.lsp.server import Asked, Server
+from aidl_lang.tools.lsp.running import LIMITS
+from aidl_lang.tools.lsp.server import FAILED, Asked, Server
+
+# --- Inlay hints, lenses and code actions, with the command that tries the ends of params.
+
+# --- The command that tries the ends of params, and its results for the lenses above them.
+
+CHECK_ENDS = "aidl.checkEnds"
+_LONGEST = 120.0
+"""Most seconds for all ends."""
+_PAUSE = 0.2
+"""Seconds between checks whether the text has changed."""
+_NOTHING = "there is nothing to try: the program must work as written, and have a param with a range"
+_TITLE = "Trying the ends of the params"
+
+
+class Ends:
+    """The results by document, for the version asked about only."""
+
+    def __init__(self, server: Server) -> None:
+        self._server = server
+        self._found: dict[str, tuple[int, Sweep]] = {}
+        server.on_closed.append(lambda document: self._forget(document.uri))
+
+    def of(self, asked: Asked) -> Sweep | None:
+        version, found = self._found.get(asked.uri, (None, None))
+        return found if version == asked.known.version else None
+
+    def _forget(self, uri: str) -> None:
+        self._found.pop(uri, None)
+
+    async def check(self, uri: object) -> dict[str, Any]:
+        """Tries each param of a document at its ends; the document may not change meanwhile."""
+        document = self._server.documents.get(uri) if isinstance(uri, str) else None
+        if document is None:
+            raise JsonRpcInvalidParams("this document is not open")
+        await document.until_solved(document.serial, _LONGEST)
+        known = document.ran
+        if known is None or known.version != document.version:
+            raise JsonRpcContentModified("the text has changed")
+        if not can_be_tried(known.view):
+            raise JsonRpcException(_NOTHING, FAILED)
+        found = await self._swept(document, known)
+        self._found[document.uri] = known.version, found
+        self._server.refresh_hints()
+        return {"ok": found.ok, "tried": described(found), "left": found.left, "seconds": found.seconds}
+
+    async def _swept(self, document: Document, known: VersionedView) -> Sweep:
+        """Returns the results. Raises JsonRpcContentModified if the text changes before."""
+        loop = asyncio.get_running_loop()
+        told = await self._progress()
+
+        def progress(done: int, count: int) -> None:
+            loop.call_soon_threadsafe(told, done, count)
+
+        work = partial(tried, known.view, LIMITS, progress, _LONGEST)
+        task = loop.create_task(self._server.sweeps.ask(work))
+        try:
+            while not task.done():
+                await asyncio.wait([task], timeout=_PAUSE)
+                if document.version != known.version or not document.is_open:
+                    raise JsonRpcContentModified("the text has changed")
+            return task.result()
+        except Cancelled:
+            raise JsonRpcContentModified("the server is closing") from None
+        finally:
+            task.cancel()
+            told(0, 0)
+
+    async def _progress(self) -> Callable[[int, int], None]:
+        """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
+        server = self._server
+        if not get_capability(server.client_capabilities, "window.work_done_progress", False):
+            return lambda done, count: None
+        token = str(uuid4())
+        await server.work_done_progress.create_async(token)
+        server.work_done_progress.begin(token, types.WorkDoneProgressBegin(_TITLE, percentage=0))
+
+        is_over = False
+
+        def told(done: int, count: int) -> None:
+            nonlocal is_over
+            if is_over:
+                return
+            if not count:
+                is_over = True
+                server.work_done_progress.end(token, types.WorkDoneProgressEnd())
+                return
+            message, share = f"{done} of {count}", 100 * done // count
+            report = types.WorkDoneProgressReport(message=message, percentage=share)
+            server.work_done_progress.report(token, report)
+
+        return told
+
+
+# --- Inlay hints and code lenses, which depend on the solution.
+
+_PATIENCE = 0.5
+"""Seconds to wait for the outcome; the client is told to ask again for a later one."""
+_OPEN_PREVIEW = "aidl.openPreview"
+"""A command of the client's; one without it shows the title all the same."""
+
+
+def register_hints(server: Server) -> None:
+    answered, ends = _Answered(server), Ends(server)
+
+    @server.command(CHECK_ENDS)
+    async def check_ends(*arguments: Any) -> dict[str, Any]:
+        """Try the ends of all params of a document, which is the argument."""
+        return await ends.check(arguments[0] if arguments else None)
+
+    @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
+    def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
+        answered.note(asked)
+        if not asked.settings.lenses:
+            return []
+        made = []
+        for each in lenses(asked.view):
+            command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
+            made.append(types.CodeLens(asked.convert.range(each.span), command))
+        for each in end_lenses(asked.view, ends.of(asked)):
+            command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
+            made.append(types.CodeLens(asked.convert.range(each.span), command))
+        return made
+
+    @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
+    def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
+        answered.note(asked)
+        found = inlays(asked.view, asked.convert.span(params.range))
+        return [_hint(each, asked) for each in found if _is_wanted(each, asked)]
+
+
+class _Answered:
+    """The answers given to the client, which asks again when there are more for the same text."""
+
+    def __init__(self, server: Server) -> None:
+        self._server = server
+        self._told: dict[str, tuple[int, int | None]] = {}
+        """By document, the version that was told of, and the serial of its outcome."""
+        server.on_solved.append(self._solved)
+        server.on_closed.append(self._closed)
+
+    def note(self, asked: Asked) -> None:
+        known = asked.known
+        self._told[asked.uri] = known.version, known.serial if known.view.outcome is not None else None
+
+    def _solved(self, document: Document) -> None:
+        told, ran = self._told.get(document.uri), document.ran
+        if told is not None and ran is not None and told[0] == ran.version and told[1] != ran.serial:
+            self._server.refresh_hints()
+
+    def _closed(self, document: Document) -> None:
+        self._told.pop(document.uri, None)
+
+
+def _is_wanted(inlay: Inlay, asked: Asked) -> bool:
+    settings = asked.settings
+    return settings.readings if inlay.kind is InlayKind.READING else settings.solved_values
+
+
+def _hint(inlay: Inlay, asked: Asked) -> types.InlayHint:
+    return types.InlayHint(
+        asked.convert.position(asked.view.source, inlay.offset),
+        inlay.text,
+        text_edits=asked.convert.edits(inlay.edits) or None,
+        tooltip=inlay.tooltip or None,
+        padding_left=True,
+    )
+
+
+# --- Code actions: offered at a place, and worked out when chosen.
+
+_KINDS = (
+    types.CodeActionKind.QuickFix,
+    types.CodeActionKind.RefactorExtract,
+    types.CodeActionKind.RefactorRewrite,
+    types.CodeActionKind.SourceFixAll,
+)
+_VERSIONED = "workspace.workspace_edit.document_changes"
+
+
+def register_actions(server: Server) -> None:
+    options = types.CodeActionOptions(code_action_kinds=_KINDS, resolve_provider=True)
+    server.answers_to(types.TEXT_DOCUMENT_CODE_ACTION, options)(_offer)
+
+    @server.feature(types.CODE_ACTION_RESOLVE)
+    async def resolve(action: types.CodeAction) -> types.CodeAction:
+        if action.data is None:
+            return action
+        given = asking.read(action.data, asking.ActionRequest)
+        document = server.documents.get(given.uri)
+        asked = await server.asked(document) if document is not None else None
+        if asked is None or asked.known.version != given.version:
+            raise JsonRpcContentModified("the text has changed")
+        action.edit = await server.answers.ask(lambda: _worked_out(asked, given, action.title))
+        return action
+
+    @server.command("aidl.applyFixes")
+    async def apply_fixes(*arguments: Any) -> bool:
+        """Applies the fixes of a document, for clients that have commands and no code actions."""
+        document = server.documents.get(arguments[0]) if arguments and isinstance(arguments[0], str) else None
+        asked = await server.asked(document) if document is not None else None
+        if asked is None:
+            raise JsonRpcInvalidParams("this document is not open")
+        changes = await server.answers.ask(lambda: _all_fixes(asked))
+        params = types.ApplyWorkspaceEditParams(changes, "Apply all fixes")
+        return (await server.workspace_apply_edit_async(params)).applied
+
+
+def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
+    whole = len(asked.view.source.text)
+    for action in actions(asked.view, 0, whole):
+        if action.kind == types.CodeActionKind.SourceFixAll.value:
+            return _made(asked, action)
+    raise JsonRpcException("there is nothing to fix", FAILED)
+
+
+def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
+    """Returns the edits of an action. Raises JsonRpcException if it cannot be carried out."""
+    try:
+        return _edit(asked, action.make())
+    except CannotError as reason:
+        raise JsonRpcException(str(reason), FAILED) from None
+
+
+def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeAction]:
+    """Returns the actions at a range, without edits for a client that can ask for these later."""
+    span = asked.convert.span(params.range)
+    resolves = asked.can("text_document.code_action.resolve_support")
+    made = []
+    for action in actions(asked.view, span.start, span.end):
+        if not _is_asked(action.kind, params.context.only):
+            continue
+        offer = types.CodeAction(
+            action.title,
+            kind=action.kind,
+            diagnostics=[d for d in params.context.diagnostics if _is_mended(d, action, asked)] or None,
+            is_preferred=action.is_preferred or None,
+        )
+        if action.mends is not None or not resolves:
+            try:
+                offer.edit = _edit(asked, action.make())
+            except CannotError:
+                continue
+        else:
+            offer.data = {
+                "uri": asked.uri,
+                "version": asked.known.version,
+                "start": span.start,
+                "end": span.end,
+                "kind": action.kind,
+            }
+        made.append(offer)
+    return made
+
+
+def _is_asked(kind: str, only: Sequence[Any] | None) -> bool:
+    """True for a kind asked for, or below one; for all kinds if none is named."""
+    wanted = [str(getattr(each, "value", each)) for each in only or ()]
+    return not wanted or any(kind == each or kind.startswith(f"{each}.") or not each for each in wanted)
+
+
+def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
+    """True if a diagnostic of the client's is the one that an action mends."""
+    mends = action.mends
+    if mends is None or mends.span is None or shown.code != mends.code:
+        return False
+    return shown.range == asked.convert.range(mends.span)
+
+
+def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.WorkspaceEdit:
+    for action in actions(asked.view, given.start, given.end):
+        if (action.title, action.kind) == (title, given.kind):
+            return _made(asked, action)
+    raise JsonRpcContentModified("the text has changed")
+
+
+def _edit(asked: Asked, edits: Sequence[Edit]) -> types.WorkspaceEdit:
+    return asked.convert.changes(asked.convert.by_file(edits), asked.can(_VERSIONED))
+
 
 _KIND = {
     "keyword": types.CompletionItemKind.Keyword,
@@ -41,11 +335,11 @@ _KIND = {
 }
 
 
-_PATIENCE = 0.3
+_HOVER_PATIENCE = 0.3
 """Seconds that a hover waits for solved values."""
 
 
-def register(server: Server) -> None:
+def register_writing(server: Server) -> None:
     lists = _Lists()
     triggers = [".", "@", "(", '"']
     options = types.CompletionOptions(trigger_characters=triggers, resolve_provider=True)
@@ -62,7 +356,7 @@ def register(server: Server) -> None:
                 item.documentation = _markdown(said) if said else None
         return item
 
-    server.answers_to(types.TEXT_DOCUMENT_HOVER, patience=_PATIENCE)(_hover)
+    server.answers_to(types.TEXT_DOCUMENT_HOVER, patience=_HOVER_PATIENCE)(_hover)
     helping = types.SignatureHelpOptions(trigger_characters=["(", ","], retrigger_characters=[")"])
     server.answers_to(types.TEXT_DOCUMENT_SIGNATURE_HELP, helping)(_help)
 

@@ -1,0 +1,253 @@
+"""`aidl preview`, `aidl lsp` and `aidl mcp`: verbs that serve, and their local ports."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import secrets
+import socket
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.common.prose import ticked
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.files import UseError, say
+from aidl_lang.tools.cli.options import add_program, flag, value
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.preview.serving import Served
+
+
+LOCALHOST = "127.0.0.1"
+
+
+def port(text: str) -> int:
+    """Parses the port of an option."""
+    if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
+    return int(text)
+
+
+def address(text: str) -> str:
+    """Parses the address of an option: one that no other machine can reach."""
+    from ipaddress import ip_address
+
+    if text.lower() == "localhost":
+        return LOCALHOST
+    try:
+        is_here = ip_address(text).is_loopback
+    except ValueError:
+        is_here = False
+    if not is_here:
+        raise argparse.ArgumentTypeError(
+            f"expected an address of this machine alone, as {LOCALHOST} or ::1, not `{text}`"
+        )
+    return text
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Adds where a page is served, and whether the browser is opened."""
+    value(parser, "--port", "N", "the port (default: one that is free)", port, 0)
+    value(
+        parser,
+        "--host",
+        "ADDRESS",
+        f"an address of this machine alone (default: {LOCALHOST})",
+        address,
+        LOCALHOST,
+    )
+    flag(parser, "--no-open", "do not open the browser")
+
+
+def require(what: str, *packages: str) -> None:
+    """Raises UseError if what serves pages is not installed."""
+    missing = [name for name in packages if find_spec(name) is None]
+    if missing:
+        message = f"{what} needs {', '.join(ticked(missing))}, not installed here"
+        raise UseError("E0952", message, "pip install 'aidl-lang[editor]'")
+
+
+def open_browser(url: str) -> None:
+    """Opens the browser; some of those for terminals return only when they are closed."""
+    import threading
+    import webbrowser
+
+    threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def listen(host: str, port: int, code: str, hint: str) -> socket.socket:
+    """Returns a socket that accepts connections already. Raises UseError with a code if there can be none."""
+    try:
+        family, kind, protocol, _, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        found = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise _refused(host, port, error, code, hint) from None
+    if os.name == "posix":  # elsewhere this would let two servers have one port
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind(at)
+        found.listen()  # so that who reads the address can connect at once
+    except OSError as error:
+        found.close()
+        raise _refused(host, port, error, code, hint) from None
+    return found
+
+
+def _refused(host: str, port: int, error: OSError, code: str, hint: str) -> UseError:
+    where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
+    return UseError(code, f"{where} cannot be served: {(error.strerror or str(error)).lower()}", hint)
+
+
+# --- `aidl preview`: a program drawn in the browser beside any editor, again on every save.
+
+_NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
+
+
+def register_preview(parser: argparse.ArgumentParser) -> None:
+    """`aidl preview`: a program drawn in the browser beside any editor, again on every save."""
+    parser.epilog = (
+        "Sliders and points that are dragged change the text of the file. Only this machine, and who has the "
+        "address that is printed, can see it."
+    )
+    add_program(parser)
+    add_options(parser)
+    parser.set_defaults(run=run_preview)
+
+
+def run_preview(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    require("the preview", *_NEEDED)
+    if arguments.file == files.STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    files.read(arguments.file)
+    hint = "without `--port` a free one is taken"
+    listener = listen(arguments.host, arguments.port, "E0953", hint)
+
+    from aidl_lang.tools.preview.serving import Served
+
+    served = Served(Path(arguments.file).resolve(), _write, listener)
+    say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")
+    if not arguments.no_open:
+        open_browser(served.url)
+    try:
+        served.run()
+    finally:
+        _rescue(served)
+    return 0
+
+
+def _rescue(served: Served) -> None:
+    """Keeps what was typed and not saved, and tells where."""
+    from aidl_lang.tools.ide.references import CannotError
+
+    try:
+        kept = served.rescue()
+    except CannotError as reason:
+        say(f"what was typed in the preview is not saved: {reason}")
+        return
+    if kept is not None:
+        say(f"what was typed in the preview and not saved is in {kept}")
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        files.rewrite(str(path), data)
+    except UseError as reason:
+        raise OSError(reason.diagnostic.message) from None
+
+
+# --- `aidl lsp`: serve editors over the Language Server Protocol, on standard input and output.
+
+_CODE = "E0954"
+
+
+def register_lsp(parser: argparse.ArgumentParser) -> None:
+    """`aidl lsp`: serve editors over the Language Server Protocol, on standard input and output."""
+    value(
+        parser,
+        "--tcp",
+        "HOST:PORT",
+        "wait for one client at this address instead; port 0 takes one that is free",
+        _address,
+    )
+    parser.set_defaults(run=run_lsp)
+
+
+def run_lsp(arguments: argparse.Namespace) -> int:
+    """Returns the exit code of the protocol: 0 if the client has shut the server down before its exit."""
+    if find_spec("pygls") is None:
+        raise UseError(
+            _CODE, "the server needs `pygls`, not installed here", "pip install 'aidl-lang[editor]'"
+        )
+    listener = None
+    if arguments.tcp is not None:
+        host, port = arguments.tcp
+        listener = listen(host, port, _CODE, "port 0 takes one that is free")
+
+    from aidl_lang.tools.lsp.serve import serve_socket, serve_standard_streams
+
+    if listener is None:
+        return serve_standard_streams()
+    host, port = listener.getsockname()[:2]
+    say(f"{host}:{port}: waiting for a client")
+    return serve_socket(listener)
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, colon, port = text.rpartition(":")
+    if not (host and colon and port.isdecimal() and int(port) <= 65535):
+        raise argparse.ArgumentTypeError(f"expected HOST:PORT, as in 127.0.0.1:0, not `{text}`")
+    return host.strip("[]"), int(port)
+
+
+# --- `aidl mcp`: serve the tools to agents over the Model Context Protocol, on standard input and output.
+
+_TOKEN = "AIDL_MCP_TOKEN"
+
+
+def register_mcp(parser: argparse.ArgumentParser) -> None:
+    """`aidl mcp`: serve the tools to agents over the Model Context Protocol, on standard input and output."""
+    value(parser, "--root", "DIR", "let programs import files below this folder (default: no files at all)")
+    value(
+        parser, "--http", "PORT", "serve over HTTP on this machine instead; 0 takes a port that is free", port
+    )
+    parser.set_defaults(run=run_mcp)
+
+
+def run_mcp(arguments: argparse.Namespace) -> int:
+    _require_packages()
+    root = _root(arguments.root)
+    listener, path = None, f"/{_token()}/mcp"
+    if arguments.http is not None:
+        hint = "`--http 0` takes a port that is free"
+        listener = listen(LOCALHOST, arguments.http, "E0942", hint)
+
+    from aidl_lang.tools.agents.server import serve
+
+    if listener is not None:
+        say(f"serving at http://{LOCALHOST}:{listener.getsockname()[1]}{path} until Ctrl-C")
+    serve(root, listener, path)
+    return 0
+
+
+def _token() -> str:
+    """Returns what stands in the address, so that nobody else on this machine knows it."""
+    given = os.environ.get(_TOKEN)
+    if given is None:
+        return secrets.token_urlsafe(24)
+    if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", given):
+        raise UseError("E0942", f"{_TOKEN} is no token", "it has 16 letters, digits, `-` and `_`, or more")
+    return given
+
+
+def _require_packages() -> None:
+    if find_spec("mcp") is None:
+        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
+
+
+def _root(name: str | None) -> Path | None:
+    if name is not None and not Path(name).is_dir():
+        raise UseError("E0942", f"there is no folder `{name}` to import from")
+    return None if name is None else Path(name).resolve()

@@ -1,0 +1,1 @@
+"""The site: the pages of `docs/` as HTML, with search, and links that open programs in the playground."""

@@ -1,0 +1,121 @@
+"""What only POSIX systems have is taken away: every module loads and every command works without it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.documents import ROOT
+
+ELSEWHERE = '''
+import os
+import signal
+import sys
+
+
+class Missing:
+    """Finds no module that Windows has not, for AIDL; other packages go by the name of the system."""
+
+    def find_spec(self, name, path=None, target=None):
+        frame = sys._getframe(1)
+        while frame and frame.f_code.co_filename.startswith("<frozen importlib"):
+            frame = frame.f_back
+        is_ours = frame and frame.f_globals.get("__name__", "").startswith(("aidl_lang", "__main__"))
+        if is_ours and name in ("fcntl", "grp", "pty", "pwd", "readline", "resource", "termios", "tty"):
+            raise ModuleNotFoundError(f"no module named {name!r}", name=name)
+
+
+for name in ("fcntl", "grp", "pwd", "readline", "resource", "termios"):
+    sys.modules.pop(name, None)
+sys.meta_path.insert(0, Missing())
+for name in ("O_DIRECTORY", "O_NOFOLLOW", "O_NONBLOCK"):
+    delattr(os, name)
+for name in ("fchmod", "fork", "getuid", "killpg", "sched_getaffinity"):
+    delattr(os, name)
+os.supports_dir_fd = set()
+# SIGKILL stays: `multiprocessing` ends processes by it here
+for name in ("SIGHUP", "SIGALRM", "SIGUSR1", "pthread_sigmask"):
+    delattr(signal, name)
+'''
+PLATE = """
+solid plate {
+    param width = 60 in 40..80
+    body = rectangle(width: width, height: 20)
+    hole eye { rim = circle(radius: 4) }
+}
+"""
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path) -> Path:
+    """A folder with a program, beside one that takes modules away from each Python that starts."""
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "sitecustomize.py").write_text(ELSEWHERE)
+    (tmp_path / "work").mkdir()
+    (tmp_path / "work" / "plate.aidl").write_text(PLATE)
+    return tmp_path / "work"
+
+
+def run(folder: Path, *words: str) -> str:
+    """What a command says, which must end well."""
+    path = os.pathsep.join([str(folder.parent / "taken"), str(ROOT)])
+    result = subprocess.run(
+        [sys.executable, *words],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": path, "NO_COLOR": "1"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    said = result.stdout + result.stderr
+    assert result.returncode == 0, said
+    assert "Traceback" not in said, said
+    return said
+
+
+def test_the_modules_are_taken_away(elsewhere: Path) -> None:
+    told = run(
+        elsewhere,
+        "-c",
+        "try:\n import fcntl\nexcept ImportError: print('gone')",
+    )
+    assert told == "gone\n"
+
+
+def test_every_module_loads(elsewhere: Path) -> None:
+    walk = (
+        "import importlib, pkgutil, aidl_lang\n"
+        "for found in pkgutil.walk_packages(aidl_lang.__path__, 'aidl_lang.'):\n"
+        "    found.name.endswith('__main__') or importlib.import_module(found.name)\n"
+        "print('all')"
+    )
+    assert run(elsewhere, "-c", walk).endswith("all\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("compile plate.aidl -o p.svg -o p.dxf -o p.pdf -o p.png -o p.json", "solved"),
+        ("check plate.aidl --ends", "2 ends of 1 param tried"),
+        ("sweep plate.aidl -D width=50,60 -o {n}.svg -o t.csv", "2 variants, 2 well"),
+        ("measure plate.aidl", "area"),
+        ("show plate.aidl --protocol ascii", "___"),
+        ("fmt --check plate.aidl", ""),
+        ("doc slot", "slot("),
+    ],
+    ids=lambda value: value.split()[0] if value else "nothing",
+)
+def test_commands_work(elsewhere: Path, words: str, says: str) -> None:
+    (elsewhere / "plate.aidl").write_text(PLATE.lstrip())
+    assert says in run(elsewhere, "-m", "aidl_lang", *words.split())
+
+
+def test_imports_are_read_without_folders_that_are_held_open(elsewhere: Path) -> None:
+    (elsewhere / "parts").mkdir()
+    (elsewhere / "parts" / "plate.aidl").write_text("solid washer(d) { rim = circle(diameter: d) }")
+    (elsewhere / "all.aidl").write_text('import "parts/plate.aidl"\nassembly a { w = washer(d: 9) }\n')
+    assert "solved" in run(elsewhere, "-m", "aidl_lang", "compile", "all.aidl", "-o", "all.svg")

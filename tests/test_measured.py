@@ -1,0 +1,72 @@
+"""Inverse tasks: outlines that are to have an area, a perimeter or a centroid.
+
+What came out is measured in the drawing, which knows nothing of the formulas.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import aidl_lang
+
+SHAPES = {
+    "circle": "circle(center: (3, 2), radius: guess(6))",
+    "ellipse": "ellipse(center: (3, 2), rx: guess(8), ry: 5)",
+    "turned ellipse": "ellipse(center: (3, 2), rx: guess(8), ry: 5, angle: 30)",
+    "rectangle": "rectangle(center: (3, 2), width: guess(14), height: 8)",
+    "rounded rectangle": "rounded_rectangle(center: (3, 2), width: guess(14), height: 9, radius: 2)",
+    "chamfered rectangle": "chamfered_rectangle(center: (3, 2), width: guess(14), height: 9, chamfer: 2)",
+    "slot": "slot(center: (3, 2), length: guess(16), width: 7)",
+    "ring": "ring(center: (3, 2), outer_radius: guess(8), inner_radius: 3)",
+    "trapezoid": "trapezoid(center: (3, 2), bottom_width: guess(14), top_width: 8, height: 8)",
+    "triangle": "triangle((0, 0), (guess(14), 0), (3, 9))",
+    "polygon": "polygon((0, 0), (guess(12), -1), (11, 9), (5, 12), (-1, 7))",
+    "regular": "regular_polygon(center: (3, 2), sides: 7, radius: guess(7))",
+    "star": "star(center: (3, 2), outer_radius: guess(10), inner_radius: 5)",
+    "sector": "sector(center: (3, 2), radius: guess(9), start_angle: 20, end_angle: 130)",
+    "segment": "segment(center: (3, 2), radius: guess(9), start_angle: 20, end_angle: 130)",
+    "drop": "drop(radius: guess(6), height: 20)",
+    "dome": "dome(width: guess(14), height: 8)",
+}
+AREAS, PERIMETERS = (110.0, 145.0), (46.0, 60.0)
+
+
+def solved(shape: str, asked: str) -> aidl_lang.Model:
+    text = f"solid s {{\n    g = {shape}\n    constrain {asked}\n}}"
+    model = aidl_lang.compile(text)
+    assert model.ok, (text, [str(d) for d in model.diagnostics])
+    return model
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("area", AREAS)
+def test_an_outline_gets_the_area_that_it_is_asked_for(shape: str, area: float) -> None:
+    model = solved(SHAPES[shape], f"area(g) == {area}")
+    assert model.measure().area == pytest.approx(area, rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("perimeter", PERIMETERS)
+def test_an_outline_gets_the_perimeter_that_it_is_asked_for(shape: str, perimeter: float) -> None:
+    model = solved(SHAPES[shape], f"perimeter(g) == {perimeter}")
+    assert model.measure().perimeter == pytest.approx(perimeter, rel=1e-8)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_an_outline_gets_the_centroid_that_it_is_asked_for(shape: str) -> None:
+    moved = re.sub(r"guess\((\d+)\)", r"\1", SHAPES[shape])
+    x, y = solved(moved, "centroid(g) == (21, -13)").measure().centroid
+    assert (x, y) == pytest.approx((21, -13), abs=1e-8)
+
+
+def test_holes_are_taken_from_the_area_and_their_edges_added_to_the_perimeter() -> None:
+    plate = "rectangle(center: (0, 0), width: guess(40), height: 20)"
+    holes = (
+        "hole a { c = circle(center: (5, 0), radius: 4) }\n hole b { c = square(center: (-5, 0), size: 3) }"
+    )
+    model = aidl_lang.compile(f"solid s {{\n g = {plate}\n {holes}\n constrain area(s) == 700\n}}")
+    assert model.measure().area == pytest.approx(700, rel=1e-9)
+    model = aidl_lang.compile(f"solid s {{\n g = {plate}\n {holes}\n constrain perimeter(s) == 150\n}}")
+    assert model.measure().perimeter == pytest.approx(150, rel=1e-9)
