@@ -119,11 +119,11 @@ class _Lowering:
             initial=np.array([u.guess for u in found], dtype=np.float64),
             scale=np.array([self._scale(u) for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
-            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
-            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
-            axis=np.array([_axis(u) for u in found], dtype=np.int64),
+            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.intp),
+            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.intp),
+            axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
-            parent=np.array(parents, dtype=np.int64),
+            parent=np.array(parents, dtype=np.intp),
             **constraint_arrays(constraints),
             named=True,
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
@@ -452,10 +452,10 @@ def _is_spanned(unknown: Unknown) -> bool:
     return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
 
 
-def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
+def _numbered(keys: Iterable[Hashable]) -> NDArray[np.intp]:
     """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
-    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.intp)
 
 
 def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:
