@@ -441,8 +441,12 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
             yield f"{geometry.path}.{name}", (value.x.expression, value.y.expression)
         elif isinstance(value, Num):
             yield f"{geometry.path}.{name}", (value.expression,)
+    # A pattern begins where the outline does that it fills: where what it repeats stands is not seen.
+    recipe = geometry.recipe
+    within = recipe.operands[1] if recipe is not None and recipe.kind == "tiled" else None
     for part in own_geometry(geometry.parts, geometry):
-        yield from _seen_geometry(part)
+        if within is None or part in within:
+            yield from _seen_geometry(part)
 
 
 def _is_spanned(unknown: Unknown) -> bool:
