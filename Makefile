@@ -12,10 +12,10 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours site pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours site pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples site-playground test-playground lock clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(READY) ## set up, then draw examples/telephone.aidl
 	@mkdir -p build
@@ -116,6 +116,13 @@ examples: $(READY) ## draw every example into build/examples, those of the galle
 		$(BIN)/aidl compile $$file -o build/$${file%.aidl}.svg || exit 1; \
 	done
 
+site-playground: $(READY) ## build the playground into build/site/playground, with Pyodide from its CDN or from the folder PYODIDE
+	$(BIN)/python -m aidl_web build/site/playground $(if $(PYODIDE),--pyodide $(PYODIDE))
+
+test-playground: $(READY) ## try the playground in Chromium; installs Pyodide into build/pyodide, once
+	$(BIN)/python web/tests/install.py build/pyodide
+	AIDL_PYODIDE=build/pyodide $(BIN)/python -m pytest -n 0 web/tests
+
 lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools
 	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
@@ -133,10 +140,10 @@ $(SITE)/.ready: requirements-site.lock
 	@touch $@
 
 # Done again only when the lock or the project file is newer than the last time.
-$(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject.toml
+$(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject.toml web/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
 	@echo "Setting up $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable eval --editable dev
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable eval --editable dev --editable web
 	@touch $@

@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = ROOT / "pyproject.toml"
-PACKAGES = ("aidl_lang", "dev/aidl_dev", "dev/aidl_site", "eval/aidl_eval")
+PACKAGES = ("aidl_lang", "dev/aidl_dev", "dev/aidl_site", "eval/aidl_eval", "web/aidl_web")
 
 
 def lines(root: Path) -> dict[str, int]:

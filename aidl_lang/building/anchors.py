@@ -27,9 +27,7 @@ Unknowns = frozenset[Unknown]
 
 
 def anchored(constraints: Sequence[Constraint]) -> list[Constraint]:
-    """Returns the constraints, each over equals with its anchor held: `moved` of its comparisons is without
-    it.
-    """
+    """Returns the constraints, each over equals with its anchor held: `moved` of its comparisons lacks it."""
     over_equals = [c for c in constraints if any(p.parties for p in c.comparisons)]
     if not over_equals:
         return list(constraints)
@@ -217,9 +215,7 @@ class _Senses:
 
 
 def _placer(unknown: Unknown) -> Structure | None:
-    """Returns the structure at whose turn an unknown is placed; the box of an empty one counts as its
-    frame.
-    """
+    """Returns the structure at whose turn an unknown is placed; an empty one's box counts as its frame."""
     return unknown.owner.parent or unknown.owner if unknown.outline else unknown.owner
 
 

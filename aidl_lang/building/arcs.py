@@ -24,9 +24,7 @@ _HINT = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`"
 
 
 def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, Value]) -> None:
-    """Warns of an arc whose unnamed first point is taken as its centre, though it is not as far from both
-    others.
-    """
+    """Warns of an arc whose unnamed first point is taken as its centre, if that is not as far from both."""
     if any(a.name is not None and a.name.text == "center" for a in node.arguments):
         return
     a, b, c = (arguments.get(name) for name in _BY_CENTER)

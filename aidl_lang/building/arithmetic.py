@@ -1,6 +1,4 @@
-"""The comparisons of a statement in numbers, `14 - 11 = 3, which is not >= 4`, and the origin of these
-numbers.
-"""
+"""The comparisons of a statement in numbers, `14 - 11 = 3, which is not >= 4`, and where these come from."""
 
 from __future__ import annotations
 
@@ -49,9 +47,7 @@ def _beyond(wording: Wording, node: ast.Membership, evaluate: Evaluate) -> list[
 
 
 def sides(wording: Wording, evaluate: Evaluate) -> str:
-    """Returns the two sides of a statement, `110 and 120`; empty if it has more than one comparison, or
-    none.
-    """
+    """Returns the two sides of a statement, `110 and 120`; empty unless it has exactly one comparison."""
     pairs = list(_comparisons(wording.node))
     if len(pairs) != 1:
         return ""
@@ -195,7 +191,6 @@ def _substituted(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> 
 
 
 def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
-    """Tells whether a name is built in, as `pi`."""
     symbol = wording.it.program.resolution.uses.get(node)
     return symbol is not None and symbol.kind is SymbolKind.BUILTIN
 

@@ -13,15 +13,7 @@ from aidl_lang.building.motion import STILL, Motion, of_frame
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import instantiate
-from aidl_lang.building.values import (
-    NOTHING,
-    Instantiation,
-    ListVal,
-    Nothing,
-    Pattern,
-    StructureCopy,
-    Value,
-)
+from aidl_lang.building.values import NOTHING, Instantiation, ListVal, Nothing, Pattern, StructureCopy, Value
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -43,9 +35,7 @@ class Assignment:
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
     def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
-        """Returns the value of the assignment, with every structure in it made, and every geometry of a
-        pattern named.
-        """
+        """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
         if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
             self._stands(value)
         return self.value(value, indices)
@@ -109,14 +99,10 @@ class Assignment:
     def _instance(
         self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
     ) -> Structure | Nothing:
-        """Instantiates a template in order to move the instance."""
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
-            self.it.report(
-                "E0334",
-                f"`{template.signature.name}` makes a structure of the sizes that it is given",
-                copy.node,
-                hints=["pass it other sizes, or name the structure first and scale a copy of it"],
-            )
+            message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
+            hint = "pass it other sizes, or name the structure first and scale a copy of it"
+            self.it.report("E0334", message, copy.node, hints=[hint])
             return NOTHING
         own: list[Frame] = []
 

@@ -12,14 +12,7 @@ from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.stacking import StatedOrder, state_order
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import (
-    Nothing,
-    Num,
-    TextVal,
-    Value,
-    holds,
-    members,
-)
+from aidl_lang.building.values import Nothing, Num, TextVal, Value, each_of, holds
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
@@ -50,7 +43,7 @@ def read_own_attributes(
     it: Interpreter, node: ast.Assign, value: Value, container: Structure | Geometry, scope: Scope
 ) -> None:
     """Reads the attributes of a geometry; reports those for structures only."""
-    things = list(_geometry_in(value))
+    things = list(each_of(value, Geometry))
     here = container if isinstance(container, Structure) else container.owner
     for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
         is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
@@ -59,15 +52,6 @@ def read_own_attributes(
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
             for thing in things:
                 thing.attributes = thing.attributes | {name: tuple(values)}
-
-
-def _geometry_in(value: Value) -> Iterator[Geometry]:
-    """Yields the geometry of a value or a list of values; nothing if there is anything else in it."""
-    if isinstance(value, Geometry):
-        yield value
-    elif (items := members(value)) is not None:
-        found = [list(_geometry_in(item)) for item in items]
-        yield from (g for geometry in found for g in geometry if all(found))
 
 
 def _misplaced(
@@ -79,7 +63,7 @@ def _misplaced(
     container: Structure | Geometry,
 ) -> None:
     written, thing = attribute.span.one_line, node.name.text
-    if not any(_geometry_in(value)):
+    if not any(each_of(value, Geometry)):
         what = "there already" if holds(value, Structure) else "no part of the drawing"
         why, hint = f"`{thing}` is {what}", "put it before the definition of what it is about"
     elif isinstance(container, Geometry):
@@ -92,12 +76,7 @@ def _misplaced(
             f"put it before `{container.name}`, or make `{thing}` a part of its own: "
             f"`{written} {kind} {thing} {{ outline = {node.value.span.one_line} }}`"
         )
-    it.report(
-        "E0520",
-        f"`@{attribute.name.text}` is said of a structure, and {why}",
-        attribute,
-        hints=[hint],
-    )
+    it.report("E0520", f"`@{attribute.name.text}` is said of a structure, and {why}", attribute, hints=[hint])
 
 
 def _read(
@@ -154,49 +133,27 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
 
 def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
     """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
-    if (name == "edges" and of.kind in ("drawing", "hole")) or (name == "halo" and of.kind == "hole"):
+    written, is_flat, wrong, hint = attribute.span.one_line, of.kind in ("drawing", "hole"), "", ""
+    if (name == "edges" and is_flat) or (name == "halo" and of.kind == "hole"):
         has = "material or strokes" if name == "halo" else "material"
-        it.report(
-            "E0517",
-            f"`@{attribute.name.text}` is said of what has {has}, and `{of.name}` is a {of.kind}",
-            attribute,
-            hints=[f"leave `{attribute.span.one_line}` out, or put it before a `solid` or an `assembly`"],
-        )
-        return False
-    if name == "quantity" and of.kind in ("drawing", "hole"):
-        it.report(
-            "E0517",
-            f"`@{attribute.name.text}` is said of parts to be made, and `{of.name}` is a {of.kind}",
-            attribute,
-            hints=[f"put `{attribute.span.one_line}` before a `solid` or an `assembly`"],
-        )
-        return False
-    if name == "depth" and of.kind != "hole":
-        it.report(
-            "E0517",
-            f"`@{attribute.name.text}` is said of holes, and `{of.name}` is {with_article(of.kind)}",
-            attribute,
-            hints=["make it a `hole`: what it encloses is taken away down to that depth"],
-        )
-        return False
-    if name != "stroke" or of.kind != "drawing" or values != [NO_OUTLINE]:
-        return True
-    it.report(
-        "E0517",
-        f"`@{attribute.name.text}` of a drawing takes a width: it is nothing but strokes",
-        attribute,
-        hints=[f"give a width, as in `@stroke(0.3mm)`, or leave `{attribute.span.one_line}` out"],
-    )
-    return False
+        wrong = f"is said of what has {has}, and `{of.name}` is a {of.kind}"
+        hint = f"leave `{written}` out, or put it before a `solid` or an `assembly`"
+    elif name == "quantity" and is_flat:
+        wrong = f"is said of parts to be made, and `{of.name}` is a {of.kind}"
+        hint = f"put `{written}` before a `solid` or an `assembly`"
+    elif name == "depth" and of.kind != "hole":
+        wrong = f"is said of holes, and `{of.name}` is {with_article(of.kind)}"
+        hint = "make it a `hole`: what it encloses is taken away down to that depth"
+    elif name == "stroke" and of.kind == "drawing" and values == [NO_OUTLINE]:
+        wrong = "of a drawing takes a width: it is nothing but strokes"
+        hint = f"give a width, as in `@stroke(0.3mm)`, or leave `{written}` out"
+    if wrong:
+        it.report("E0517", f"`@{attribute.name.text}` {wrong}", attribute, hints=[hint])
+    return not wrong
 
 
-def _orientation(values: list[Value]) -> str:
-    is_one = _is_one_of(values, ORIENTATIONS)
-    return "" if is_one else "one of `top`, `front` and `side`, as in `@orientation(front)`"
-
-
-def _edges(values: list[Value]) -> str:
-    return "" if _is_one_of(values, EDGES) else "`seams` or `outline`, as in `@edges(seams)`"
+def _worded(words: Sequence[str], wanted: str) -> Callable[[list[Value]], str]:
+    return lambda values: "" if _is_one_of(values, words) else wanted
 
 
 def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
@@ -209,9 +166,9 @@ def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
 
 
 def _thickness(values: list[Value]) -> str:
-    if (lengths := _numbers(values, units.LENGTH)) is None or len(lengths) != 1:
+    if (length := _one(values, units.LENGTH)) is None:
         return "a length above 0, as in `@thickness(3mm)`"
-    return "" if lengths[0] > 0 else "a thickness above 0"
+    return "" if length > 0 else "a thickness above 0"
 
 
 def _depth(values: list[Value]) -> str:
@@ -223,26 +180,23 @@ def _depth(values: list[Value]) -> str:
 
 
 def _elevation(values: list[Value]) -> str:
-    lengths = _numbers(values, units.LENGTH)
-    is_one = lengths is not None and len(lengths) == 1
+    is_one = _one(values, units.LENGTH) is not None
     return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
 
 
 def _quantity(values: list[Value]) -> str:
-    counts = _numbers(values, units.PLAIN)
-    is_one = (
-        counts is not None and len(counts) == 1 and counts[0] == int(counts[0]) and 1 <= counts[0] <= MOST
-    )
+    count = _one(values, units.PLAIN)
+    is_one = count is not None and count == int(count) and 1 <= count <= MOST
     return "" if is_one else f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`"
 
 
 def _stroke(values: list[Value]) -> str:
-    lengths = _numbers(values, units.LENGTH)
+    length = _one(values, units.LENGTH)
     word = values[0].value if len(values) == 1 and isinstance(values[0], TextVal) else None
-    if lengths == [0] or word == NO_OUTLINE.value:
+    if length == 0 or word == NO_OUTLINE.value:
         values[:] = [NO_OUTLINE]
         return ""
-    is_one = lengths is not None and len(lengths) == 1 and THINNEST <= lengths[0] <= WIDEST
+    is_one = length is not None and THINNEST <= length <= WIDEST
     widths = f"a width of {THINNEST:g} to {WIDEST:g} mm, as in `@stroke(0.3mm)`"
     return "" if is_one else f"{widths}, or `none` for a solid without outline"
 
@@ -258,14 +212,14 @@ def _dash(values: list[Value]) -> str:
 
 
 def _halo(values: list[Value]) -> str:
-    lengths = _numbers(values, units.LENGTH)
-    is_one = lengths is not None and len(lengths) == 1 and 0 <= lengths[0] <= WIDEST
+    width = _one(values, units.LENGTH)
+    is_one = width is not None and 0 <= width <= WIDEST
     return "" if is_one else f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
 
 
 def _opacity(values: list[Value]) -> str:
-    shares = _numbers(values, units.PLAIN)
-    is_one = shares is not None and len(shares) == 1 and 0 < shares[0] <= 1
+    share = _one(values, units.PLAIN)
+    is_one = share is not None and 0 < share <= 1
     return "" if is_one else "a share above 0, and up to 1, as in `@opacity(0.5)`"
 
 
@@ -297,8 +251,13 @@ def _numbers(values: list[Value], dimension: units.Dimension) -> list[float] | N
     return found if len(found) == len(values) else None
 
 
+def _one(values: list[Value], dimension: units.Dimension) -> float | None:
+    found = _numbers(values, dimension)
+    return found[0] if found is not None and len(found) == 1 else None
+
+
 _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
-    "orientation": _orientation,
+    "orientation": _worded(ORIENTATIONS, "one of `top`, `front` and `side`, as in `@orientation(front)`"),
     "thickness": _thickness,
     "depth": _depth,
     "elevation": _elevation,
@@ -312,7 +271,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "dash": _dash,
     "opacity": _opacity,
     "shade": _shade,
-    "edges": _edges,
+    "edges": _worded(EDGES, "`seams` or `outline`, as in `@edges(seams)`"),
     "halo": _halo,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

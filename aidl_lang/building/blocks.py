@@ -62,9 +62,7 @@ def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure)
 
 
 def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
-    """Yields the names that a block gives to geometry and structures, only those with an index if
-    `indexed`.
-    """
+    """Yields the names that a block gives to geometry and structures; if `indexed`, those with an index."""
     for node in block.statements:
         match node:
             case ast.Assign() | ast.Structure(parameters=None):

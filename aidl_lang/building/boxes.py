@@ -13,7 +13,6 @@ from functools import cached_property
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
-from aidl_lang.building.measured import formula
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
 from aidl_lang.building.primitives import defining, view, xy
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
@@ -318,11 +317,6 @@ def foreseen(*roots: Expression) -> tuple[Expression, ...]:
     moved in or out has its sides moved as far.
     """
     return with_measured(_foreseen_side, *roots)
-
-
-def with_formulas(*roots: Expression) -> tuple[Expression, ...]:
-    """Returns expressions with each area and perimeter that has a formula replaced by this."""
-    return with_measured(formula, *roots)
 
 
 def with_measured(

@@ -24,11 +24,8 @@ _MEASURED_ALONE = frozenset({"line", "circle", "arc"})
 
 def is_by_hand(it: Interpreter, node: ast.Call) -> bool:
     """Tells whether a call is that of the library's `dimension`."""
-    resolution = it.program.resolution
-    if resolution.canonical.get(node.callee, node.callee.text) != NAME:
-        return False
-    candidates = resolution.candidates.get(node, ())
-    return all(candidate.standard for candidate in candidates)
+    candidates = it.program.resolution.candidates.get(node, ())
+    return it.spelled(node.callee) == NAME and all(candidate.standard for candidate in candidates)
 
 
 def measured(node: ast.Call) -> list[ast.Expression]:
@@ -61,9 +58,9 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         hint = "`tolerance: 0.1` is written as ±0.1"
         it.report("E0590", "a tolerance is above 0", options(node)["tolerance"], hints=[hint])
     else:
-        span, labels = it.place(node) or node.span, ", ".join(env.scope.labels)
+        text, span, turn = it.said(node, env)
         wording = Wording(node, it, env, evaluate)
-        it.by_hand.append(Constraint(env.here, (), node.span.one_line, span, None, labels, wording))
+        it.by_hand.append(Constraint(env.here, (), text, span, None, turn, wording))
 
 
 def axis_of(node: ast.Expression, value: Value) -> int | None:

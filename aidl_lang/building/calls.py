@@ -18,7 +18,7 @@ from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
 from aidl_lang.building.placing import placing
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Interpreter, Reach
 from aidl_lang.building.turning import ask_to_turn, is_of_directions
 from aidl_lang.building.values import (
     NOTHING,
@@ -93,9 +93,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
 
 
 def _env_of_arguments(site: CallSite, env: Env) -> Env:
-    """Returns the environment of a call's arguments, which may reach further than what is around it, or less
-    far.
-    """
+    """Returns the environment of a call's arguments, which may reach further or less far than around it."""
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         return Env(env.scope, env.here, Reach.SUBTREE)
@@ -130,7 +128,8 @@ def bound(
         value = _as_kind(it, values[indices[0]], kind, at, env)
         if value is None:
             return None
-        if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(signature, name):
+        is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
+        if is_flag and isinstance(value, Condition):  # decides how something is made, so it has to be known
             value = truth(it, value, at)
         if signature.name in COPYING and _follows_measure(it, value, at):
             return None
@@ -138,11 +137,6 @@ def bound(
     if signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
-
-
-def _is_flag(signature: Signature, name: str) -> bool:
-    """Tells whether a condition decides how something is made, and so has to be known then."""
-    return signature.kind is None or name == "rotatable"
 
 
 def _follows_measure(it: Interpreter, value: Value, node: ast.Node) -> bool:
@@ -186,7 +180,7 @@ _CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
 def invoke(
     it: Interpreter,
     candidate: Candidate,
-    arguments: Mapping[str, Value],
+    arguments: Arguments,
     binding: Binding,
     values: Sequence[Value],
     node: ast.Call,
@@ -200,15 +194,16 @@ def invoke(
                 return construct(it, name, arguments, node, env)
             return FUNCTIONS[name](it, arguments, node, env)
         case ast.FunctionDefinition():
-            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            return evaluate(it, definition.value, Env(scope, env.here, env.reach))
+            inner = _inside(it, candidate, arguments, definition.parameters, env)
+            return evaluate(it, definition.value, inner)
         case ast.ConstraintDefinition():
-            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
+            inner = _inside(it, candidate, arguments, definition.parameters, env)
+            condition = run_items(it, definition.body, inner)
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
             condition = placing(condition, definition, binding, values, env)
-            if is_of_directions(candidate.signature) and _constrains(it, node, env):
+            is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
+            if is_of_directions(candidate.signature) and is_stated:
                 ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
             return condition
         case ast.ShapeDefinition():
@@ -217,25 +212,15 @@ def invoke(
             return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
 
 
-def _constrains(it: Interpreter, node: ast.Call, env: Env) -> bool:
-    """Tells whether the author states a constraint by a call, rather than the library within one."""
-    return env.reach is Reach.SUBTREE and it.place(node) is node.span
-
-
-def _body_scope(
-    it: Interpreter,
-    candidate: Candidate,
-    arguments: Mapping[str, Value],
-    parameters: Sequence[ast.Parameter],
-    env: Env,
-) -> Scope:
-    scope = Scope(candidate.scope)
+def _inside(
+    it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
+) -> Env:
+    """Returns the environment of the body of a definition: its parameters, with what they get."""
+    inner = Env(Scope(candidate.scope), env.here, env.reach)
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
-        if value is None:
-            value = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
-        scope.values[name] = value
-    return scope
+        inner.scope.values[name] = default_of(it, parameter, kind, inner) if value is None else value
+    return inner
 
 
 def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) -> Value:
@@ -253,7 +238,7 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    hoist_lets(scope, block)
+    _hoist_lets(scope, block)
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -278,9 +263,8 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
             case ast.Let() | ast.Assign():
                 pass
             case _:
-                it.report(
-                    "E0312", "a constraint's body holds conditions, `let`, `for` and `if` only", statement
-                )
+                message = "a constraint's body holds conditions, `let`, `for` and `if` only"
+                it.report("E0312", message, statement)
     return all_of(found)
 
 
@@ -292,7 +276,7 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         it.report("E0343", message, node, hints=[hint])
 
 
-def hoist_lets(scope: Scope, block: ast.Block) -> None:
+def _hoist_lets(scope: Scope, block: ast.Block) -> None:
     for statement in block.statements:
         if isinstance(statement, ast.Let | ast.Assign):
             scope.values[statement.name.text] = LetBinding(statement.value, scope)
@@ -305,7 +289,7 @@ def _shape(
     it: Interpreter,
     candidate: Candidate,
     definition: ast.ShapeDefinition,
-    arguments: Mapping[str, Value],
+    arguments: Arguments,
     node: ast.Call,
     env: Env,
 ) -> Value:
@@ -314,16 +298,21 @@ def _shape(
     scope = Scope(candidate.scope, geometry)
     geometry.scope = scope
     geometry.arguments = tuple(name for name, _, _ in candidate.signature.parameters)
-    given = _defaults_filled(it, candidate.signature, definition.parameters, arguments, scope, env)
-    if given is None:
-        return NOTHING
+    given = dict(arguments)
+    pairs = zip(definition.parameters, candidate.signature.parameters, strict=True)
+    for parameter, (name, kind, _) in pairs:
+        if name not in given:
+            scope.values.update(given)  # a default may mention the parameters before it
+            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+        if isinstance(given[name], Nothing):
+            return NOTHING
     _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
     run_block(it, definition.body.statements, scope, env.here)
     _bind_above(it, geometry, given, env)
     return geometry
 
 
-def _bind_above(it: Interpreter, geometry: Geometry, given: Mapping[str, Value], env: Env) -> None:
+def _bind_above(it: Interpreter, geometry: Geometry, given: Arguments, env: Env) -> None:
     """Binds a shape, with all its parts, to the structure that holds all that its arguments refer to."""
     if env.reach is not Reach.ABOVE:
         return
@@ -336,35 +325,15 @@ def _bind_above(it: Interpreter, geometry: Geometry, given: Mapping[str, Value],
         it.following.append(g)
 
 
-def _defaults_filled(
-    it: Interpreter,
-    signature: Signature,
-    parameters: Sequence[ast.Parameter],
-    arguments: Mapping[str, Value],
-    scope: Scope,
-    env: Env,
-) -> dict[str, Value] | None:
-    given = dict(arguments)
-    for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
-        if name not in given:
-            scope.values.update(given)  # a default may mention the parameters before it
-            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
-        if isinstance(given[name], Nothing):
-            return None
-    return given
-
-
 def _bind_shape(
     it: Interpreter,
     parameters: Sequence[ast.Parameter],
     signature: Signature,
-    given: Mapping[str, Value],
+    given: Arguments,
     geometry: Geometry,
     scope: Scope,
 ) -> None:
-    """Binds number and point arguments to one unknown each (or to what they refer to); the rest is
-    constant.
-    """
+    """Binds number and point arguments to one unknown each (or what they refer to); the rest is constant."""
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]
@@ -381,13 +350,7 @@ def _bind_shape(
 
 
 def _bind_number(
-    it: Interpreter,
-    value: Num,
-    kind: object,
-    word: str,
-    name: str,
-    given: Mapping[str, Value],
-    geometry: Geometry,
+    it: Interpreter, value: Num, kind: object, word: str, name: str, given: Arguments, geometry: Geometry
 ) -> Num:
     whole = isinstance(kind, NumberType) and kind.whole
     if whole:

@@ -8,7 +8,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import Nothing, TextVal, Value, kind_of, members
+from aidl_lang.building.values import Nothing, TextVal, Value, each_of, kind_of
 from aidl_lang.checking.builtins import CLIP
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -72,7 +72,7 @@ def _outline(
 ) -> Iterator[Geometry]:
     """Yields the geometry that `@clip` names; reports what is no outline."""
     attribute = stated.attribute
-    found = list(_geometry(values[0])) if len(values) == 1 else []
+    found = list(each_of(values[0], Geometry)) if len(values) == 1 else []
     if found and all(g.type != "point" and not g.is_nameless for g in found):
         yield from found
         return
@@ -89,18 +89,5 @@ def _outline(
             hints.append(f"give it a name that is not drawn: `construction outline = {written}`")
         else:
             hints.append(f"`{written}` is {kind_of(values[0])}")
-    it.report(
-        "E0517",
-        f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`",
-        attribute,
-        hints=hints,
-    )
-
-
-def _geometry(value: Value) -> Iterator[Geometry]:
-    """Yields the geometry of a value or of a list; nothing if there is anything else in it."""
-    if isinstance(value, Geometry):
-        yield value
-    elif not isinstance(value, Structure) and (items := members(value)) is not None:
-        found = [list(_geometry(item)) for item in items]
-        yield from (g for group in found for g in group if all(found))
+    message = f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`"
+    it.report("E0517", message, attribute, hints=hints)

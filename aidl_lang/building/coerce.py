@@ -70,9 +70,7 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
 
 
 def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
-    """Yields the structures other than `here` whose unknowns a value (a number, a point, or a holder of such)
-    depends on.
-    """
+    """Yields the structures other than `here` whose unknowns a number, a point or a holder of these needs."""
     match value:
         case Num(expression=e):
             yield from (u.owner for u in ex.unknowns([e]) if u.owner is not here)
@@ -135,14 +133,9 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
             return length(Box((edge.container,), env.here).side(side))
     if axis:
         return length(x if axis == "x" else y)
-    it.report(
-        "E0303",
-        f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",
-        node,
-        label="a slanted edge",
-        fix=_side_of_box(node),
-        hints=["name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"],
-    )
+    message = f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate"
+    hint = "name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"
+    it.report("E0303", message, node, label="a slanted edge", fix=_side_of_box(node), hints=[hint])
     return None
 
 
@@ -209,9 +202,7 @@ def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | Non
 
 
 def _numbered(it: Interpreter, node: ast.Node) -> Fix | None:
-    """Returns the edits that have a loop count its turns, for an index that is its variable; None for another
-    index.
-    """
+    """Returns the edits that have a loop count its turns, for an index that is its variable; else None."""
     symbol = it.program.resolution.uses.get(node)
     loop = symbol.node if symbol is not None else None
     if not isinstance(loop, ast.For) or len(loop.variables) > 1 or isinstance(loop.iterable, ast.Range):

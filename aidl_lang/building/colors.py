@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, ListVal, Num, TextVal, Value, kind_of, number
 from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.colors import css_color, rgb, similar_colors
@@ -14,8 +14,6 @@ from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def color_of(it: Interpreter, values: Sequence[Value], node: ast.Node) -> str | None:
@@ -65,7 +63,6 @@ def _respelt(span: Span | None, written: str, meant: str) -> Fix | None:
 
 
 def _rgb(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the colour of three numbers."""
     color = color_of(it, list(a.values()), node)
     return TextVal(color) if color is not None else NOTHING
 

@@ -47,9 +47,7 @@ def compare(
     left_node: ast.Node,
     right_node: ast.Node,
 ) -> Value:
-    """Returns `left relation right` as a condition, or as a truth if both are constants; of a list it is
-    asked of each member.
-    """
+    """Returns `left relation right`, a truth if both are constants; of a list it is asked of each member."""
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     if isinstance(left, TextVal | bool) or isinstance(right, TextVal | bool):
@@ -116,11 +114,7 @@ def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, no
         it.misfit(rules.no_order(relation), node)
         return NOTHING
     both = conjunction(
-        it,
-        "and",
-        compare_numbers(it, "==", a.x, b.x, node),
-        compare_numbers(it, "==", a.y, b.y, node),
-        node,
+        it, "and", compare_numbers(it, "==", a.x, b.x, node), compare_numbers(it, "==", a.y, b.y, node), node
     )
     return both if relation == "==" else negation(it, both, node)
 
@@ -141,9 +135,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
 def _relates(
     relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
 ) -> bool:
-    """Tells whether a relation holds within a tolerance; `strict` keeps `<` and `>` from holding for
-    equals.
-    """
+    """Tells whether a relation holds within a tolerance; if `strict`, `<` and `>` do not hold for equals."""
     difference = a - b
     if is_angle and relation in ("==", "!="):
         difference = (difference + 180.0) % 360.0 - 180.0

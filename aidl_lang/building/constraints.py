@@ -11,9 +11,7 @@ from aidl_lang.building.impose import impose, record_assertion
 from aidl_lang.building.model import Structure
 from aidl_lang.building.scopes import LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import (
-    Nothing,
-)
+from aidl_lang.building.values import Nothing
 from aidl_lang.syntax import ast
 
 

@@ -19,7 +19,7 @@ from aidl_lang.building.expression import Expression
 from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.tracing import trace_of
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
 from aidl_lang.checking.builtins import SIGNATURES
@@ -29,20 +29,14 @@ from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
-Arguments = Mapping[str, Value]
-
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
-    """Returns a number as the solver sees it; 0 for a measure of what is drawn after solving, which is
-    reported.
-    """
+    """Returns a number as the solver sees it; 0 for a measure of what is drawn later, which is reported."""
     return ex.ZERO if refuses_measure(it, value, span) else value.expression
 
 
 def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
-    """Reports a number that follows from a measure of what is drawn after solving. Returns whether it
-    does.
-    """
+    """Reports a number that follows from a measure of what is drawn after solving. Returns whether it was."""
     if not math.isnan(value.value):
         return False  # a measure has no value before
     found = (n.payload for n in ex.nodes([value.expression]) if isinstance(n.payload, Measurement))
@@ -63,12 +57,9 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
     """Returns a number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
     expression = solvable(it, value, holder.span)
     if dimension in (None, LENGTH) and is_size(name) and expression.is_constant and value.value < 0:
-        it.report(
-            "E0515",
-            f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative",
-            holder.span,
-            hints=[f"write {-value.value:g}; directions belong to angles and positions"],
-        )
+        message = f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative"
+        hint = f"write {-value.value:g}; directions belong to angles and positions"
+        it.report("E0515", message, holder.span, hints=[hint])
     if expression.is_constant and value.status in (Exactness.NUMBER, Exactness.GUESS):
         expression = it.unknown(
             value.value,
@@ -83,9 +74,7 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
 
 
 def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
-    """Returns an angle that stays exactly 0 until something asks for it: `rotatable`, `guess`, another value,
-    a constraint.
-    """
+    """Returns an angle that stays 0 until asked for: by `rotatable`, `guess`, another value, a constraint."""
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
@@ -219,9 +208,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
-    """Returns the named point arguments as positions of one geometry; a missing one is a guess at the
-    origin.
-    """
+    """Returns the named point arguments as positions of one geometry; a missing one is guessed at (0, 0)."""
     found = positions(it, [_written(a, name) for name in names], g, names, g.owner)
     return dict(zip(names, found, strict=True))
 
@@ -313,9 +300,7 @@ def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
 
 
 def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
-    """Makes the centre an unknown tied by two equations: a formula for it would be singular at half a
-    circle.
-    """
+    """Makes the centre an unknown tied by two equations: a formula would be singular at half a circle."""
     g.fields = _points(it, g, a, ("start", "end"))
     g.fields["radius"] = radius = _size(it, g, a, "radius")
     start, end = g.fields["start"], g.fields["end"]

@@ -28,7 +28,7 @@ from aidl_lang.building.motion import (
 )
 from aidl_lang.building.primitives import translate, view, xy
 from aidl_lang.building.scopes import Scope
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -46,8 +46,6 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 _AXES: Mapping[str, tuple[float, float]] = {
     "x": (1.0, 0.0),
@@ -87,32 +85,22 @@ def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: 
             items = [_copied(it, item, copier, node, env) for item in members(value) or ()]
             return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
         case _:
-            it.report(
-                "E0331",
-                f"`{node.callee.text}` copies geometry and structures, and this is {kind_of(value)}",
-                node,
-                hints=["name the thing itself, a list of things, or a call that makes one"],
-            )
+            message = f"`{node.callee.text}` copies geometry and structures, and this is {kind_of(value)}"
+            hint = "name the thing itself, a list of things, or a call that makes one"
+            it.report("E0331", message, node, hints=[hint])
             return NOTHING
 
 
 def _of_structure(it: Interpreter, source: Structure, motion: Motion, node: ast.Call, env: Env) -> Value:
     here = env.here
     if here.is_within(source):
-        it.report(
-            "E0331",
-            f"`{source.name}` would hold a copy of itself",
-            node,
-            hints=["copy it in the structure around it"],
-        )
+        hint = "copy it in the structure around it"
+        it.report("E0331", f"`{source.name}` would hold a copy of itself", node, hints=[hint])
         return NOTHING
     if not source.is_within(here):
-        it.report(
-            "E0331",
-            f"`{source.path}` is copied in a structure that does not hold it",
-            node,
-            hints=[f"copy it in `{source.parent.path}`" if source.parent else "copy a structure of this one"],
-        )
+        message = f"`{source.path}` is copied in a structure that does not hold it"
+        hint = f"copy it in `{source.parent.path}`" if source.parent else "copy a structure of this one"
+        it.report("E0331", message, node, hints=[hint])
         return NOTHING
     return StructureCopy(source, motion, node)
 
@@ -129,9 +117,7 @@ def _geometry_in(value: Value | None) -> Iterator[Geometry]:
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
-    """Returns the place a thing turns and grows about: its centre if it has one, a structure's origin, else
-    the middle of its box.
-    """
+    """Returns where a thing turns and grows about: its centre, a structure's origin, or its box's middle."""
     here = env.here
     match value:
         case PointVal():
@@ -249,7 +235,6 @@ def _is_seen(g: Geometry, here: Structure) -> bool:
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Evaluates `move`, `rotate` and `scale` as expressions."""
     motion = motion_for(it, a, lambda: centre_of(it, a["x"], node, env), node)
     return copied(it, a["x"], motion, node, env) if motion is not None else NOTHING
 
@@ -275,18 +260,14 @@ def _motion(
         motion = turned(angle.expression, about, to)
     if isinstance(scale, Num):
         if not scale.value > 0:
-            it.report(
-                "E0331",
-                f"a scale is more than 0, and this is {scale.value:g}",
-                node,
-                hints=["`mirror(x, about: …)` turns a thing over"],
-            )
+            hint = "`mirror(x, about: …)` turns a thing over"
+            it.report("E0331", f"a scale is more than 0, and this is {scale.value:g}", node, hints=[hint])
             return None
         motion = replace(motion, scale=scale.expression)
     return motion
 
 
-FUNCTIONS: dict[str, Callable[[Interpreter, Arguments, ast.Call, Env], Value]] = {
+FUNCTIONS: dict[str, Function] = {
     "mirror": _mirror,
     "copy": _copy,
     "move": _changed,

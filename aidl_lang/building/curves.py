@@ -82,7 +82,6 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
 
 
 def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
-    """Returns the candidates of lines, cubics and single points."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     found: list[Expression] = []
     for piece in of:
@@ -138,7 +137,6 @@ def _cubic(g: Geometry, here: Structure) -> tuple[Piece]:
 
 
 def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
-    """Returns the extreme of a cubic Bézier curve by one coordinate of its control points."""
     if positive:
         return ex.apply("cubic_max", *controls)
     return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
@@ -197,9 +195,7 @@ def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression
 
 
 def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
-    """Returns the direction in which an arc begins and its sweep, both counter-clockwise, the same for all
-    four sides.
-    """
+    """Returns the direction where an arc begins and its sweep, counter-clockwise, the same for all sides."""
     if (known := arc.turns.get(here)) is None:
         core, is_clockwise = view(arc, here), clockwise(arc, here)
         first = direction(core["center"], core["end" if is_clockwise else "start"])
@@ -216,9 +212,7 @@ def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expressi
     angle = number(core["angle"])
     along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
     half_width = ex.apply(
-        "hypot",
-        ex.mul(number(core["rx"]), along(angle)),
-        ex.mul(number(core["ry"]), across(angle)),
+        "hypot", ex.mul(number(core["rx"]), along(angle)), ex.mul(number(core["ry"]), across(angle))
     )
     yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
 
@@ -227,12 +221,11 @@ def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
 
 def _characters(name: str, g: Geometry, here: Structure) -> Value | None:
-    return ListVal(tuple(_single(g, i) for i in range(len(g.glyphs)))) if name == "glyph" else None
-
-
-def _single(text: Geometry, number: int) -> Geometry:
-    """Returns one character of a text, to be measured: it is drawn with the others."""
-    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
+    """Returns `glyph`: each character of a text, to be measured. It is drawn with the others."""
+    if name != "glyph":
+        return None
+    named = {f"glyph[{i}]": (glyph,) for i, glyph in enumerate(g.glyphs)}
+    return ListVal(tuple(replace(g, glyphs=one, name=n, container=g, views={}) for n, one in named.items()))
 
 
 def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:

@@ -9,12 +9,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import LetBinding, Scope, VarBinding, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import (
-    Array,
-    ListVal,
-    Nothing,
-    Value,
-)
+from aidl_lang.building.values import Array, ListVal, Nothing, Value
 from aidl_lang.syntax import ast
 
 
@@ -32,13 +27,9 @@ def declare(
         return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
-            it.report(
-                "E0208",
-                f"`{name.text}` is declared in every turn of the loop",
-                name,
-                label="the same name again",
-                hints=[f"give it an index: `{name.text}[i] = …`"],
-            )
+            message = f"`{name.text}` is declared in every turn of the loop"
+            hint = f"give it an index: `{name.text}[i] = …`"
+            it.report("E0208", message, name, label="the same name again", hints=[hint])
             return
         target.values[name.text] = value
     else:
@@ -73,11 +64,7 @@ def index_values(
 
 
 def give_name(
-    geometry: Geometry,
-    name: str,
-    indices: tuple[int, ...],
-    container: Geometry | Structure,
-    node: ast.Assign,
+    geometry: Geometry, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
 ) -> None:
     geometry.name = indexed(name, indices)
     geometry.container = container

@@ -94,9 +94,7 @@ class Copier:
         return self.geometry(source) if self.owner or source.owner in self.structures else source
 
     def _place(self, source: Geometry, copy: Geometry) -> None:
-        """Puts a part into the copy of what its source is a part of; a copy that stands alone waits for a
-        name.
-        """
+        """Puts a part into the copy of what its source is part of; a copy standing alone waits for a name."""
         if isinstance(source.container, Geometry) and source.container in self.made:
             names = source.container.scope
             copy.container = self.made[source.container]

@@ -14,14 +14,7 @@ from aidl_lang.building.model import Geometry
 from aidl_lang.building.motion import STILL, Motion, turned
 from aidl_lang.building.primitives import DIRECTIONS, xy
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import (
-    Exactness,
-    ListVal,
-    Num,
-    PointVal,
-    Value,
-    number,
-)
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, Value, number
 from aidl_lang.checking.types import Binding, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.records import record
@@ -133,11 +126,8 @@ class _Editing:
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
         """Turns everything in a shape that its arguments cannot turn."""
         made.known_as = None
-        if (
-            self.placed is not None
-            and self.placed.turn is not None
-            and self.placed.turn.status is Exactness.GUESS
-        ):
+        asked = self.placed.turn if self.placed is not None else None
+        if asked is not None and asked.status is Exactness.GUESS:
             turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
             motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
@@ -145,9 +135,7 @@ class _Editing:
         return turned
 
     def _by_arguments(self, motion: Motion) -> Geometry | None:
-        """Returns the result of the same call with its arguments moved; None if that does not move the
-        shape.
-        """
+        """Returns the same call's result with its arguments moved; None if that does not move the shape."""
         it = self.it
         calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
         before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)

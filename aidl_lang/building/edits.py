@@ -87,9 +87,7 @@ def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.
 
 
 def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[EditCall]:
-    """Returns the edits of a thing that is being made, in text order: those below it in the bodies
-    around it.
-    """
+    """Returns the edits of a thing being made, in text order: those below it in the bodies around it."""
     found: list[EditCall] = []
     for ahead in reversed(it.ahead):
         if ahead.scope.declaring() is not scope.declaring():
@@ -177,9 +175,7 @@ def motion_of(
     here: Structure,
     placed: Motion = STILL,
 ) -> Motion:
-    """Returns all edits together, as one motion after that of `at`; one that fails is reported and changes
-    nothing.
-    """
+    """Returns all edits as one motion after that of `at`; one that fails is reported and changes nothing."""
     motion = placed
     for edit in edits:
         place = motion.place(*centre)
@@ -198,12 +194,9 @@ def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: St
     nodes += [a.value for a in node.arguments]
     target = _target(node)
     if isinstance(thing, Structure) and _mentions(nodes, target, thing.name):
-        it.report(
-            "E0333",
-            f"`{node.callee.text}` needs a point of `{thing.name}` before that is made",
-            node,
-            hints=["write the point in numbers, or leave `about` out: a structure turns about its origin"],
-        )
+        message = f"`{node.callee.text}` needs a point of `{thing.name}` before that is made"
+        hint = "write the point in numbers, or leave `about` out: a structure turns about its origin"
+        it.report("E0333", message, node, hints=[hint])
         return None
     values = [thing if n is target else evaluate(it, n, env) for n in nodes]
     if any(isinstance(v, Nothing) for v in values):
@@ -231,9 +224,7 @@ def _mentions(nodes: Sequence[ast.Expression], target: ast.Node | None, name: st
 
 
 def _seeing(it: Interpreter, edit: EditCall, thing: Value) -> Scope:
-    """Returns the scope of an edit's arguments: the thing's name means it as the edits before have left
-    it.
-    """
+    """Returns the scope of an edit's arguments: the thing's name means it as earlier edits have left it."""
     path = _path(it, _target(edit.call))
     assert path is not None
     scope = Scope(edit.scope, edit.scope.container, turn=True, labels=edit.scope.labels)
@@ -251,12 +242,8 @@ def _seeing(it: Interpreter, edit: EditCall, thing: Value) -> Scope:
 
 def follows(it: Interpreter, cause: ast.Node, name: str, source: str) -> None:
     word, other = _asked(cause, name)
-    it.report(
-        "E0330",
-        f"`{name}` follows from {source}, so `{word}` has nothing to change there",
-        cause,
-        hints=[f"change {source} instead, or make a copy: `other = {other}`"],
-    )
+    message = f"`{name}` follows from {source}, so `{word}` has nothing to change there"
+    it.report("E0330", message, cause, hints=[f"change {source} instead, or make a copy: `other = {other}`"])
 
 
 def _asked(cause: ast.Node, name: str) -> tuple[str, str]:
@@ -281,22 +268,15 @@ def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
     elif isinstance(value, StructureCopy):
         source = value.source
     if isinstance(value, Pattern):
-        it.report(
-            "E0330",
-            f"`{name}` follows from a pattern: its members have no place of their own",
-            cause,
-            hints=[f"change its centre, its pitch or its radius, or make a copy: `other = {other}`"],
-        )
+        message = f"`{name}` follows from a pattern: its members have no place of their own"
+        hint = f"change its centre, its pitch or its radius, or make a copy: `other = {other}`"
+        it.report("E0330", message, cause, hints=[hint])
     elif source is not None:
         named = isinstance(source, Geometry | Structure) and source.name
         follows(it, cause, name, f"`{source.name}`" if named else "what it copies")  # type: ignore[union-attr]
     else:
-        it.report(
-            "E0333",
-            f"`{word}` changes a geometry or a structure, and `{name}` is {kind_of(value)}",
-            cause,
-            hints=["name one thing that is made in this body above the line"],
-        )
+        message = f"`{word}` changes a geometry or a structure, and `{name}` is {kind_of(value)}"
+        it.report("E0333", message, cause, hints=["name one thing that is made in this body above the line"])
 
 
 def referred(value: PointVal | Num) -> str | None:
@@ -319,12 +299,9 @@ def frame_edited(
     assert s.parent is not None
     motion = motion_of(it, edits, s, (at.x.expression, at.y.expression), s.parent)
     if motion.scale.value != 1.0:
-        it.report(
-            "E0334",
-            f"`{s.name}` is a structure, and its contents have the sizes that are written in it",
-            edits[0].call,
-            hints=[f"make a copy of another size: `{s.name}_2 = copy({s.name}, scale: …, at: …)`"],
-        )
+        message = f"`{s.name}` is a structure, and its contents have the sizes that are written in it"
+        hint = f"make a copy of another size: `{s.name}_2 = copy({s.name}, scale: …, at: …)`"
+        it.report("E0334", message, edits[0].call, hints=[hint])
         return at, turn
     source = referred(at)
     if source is not None:

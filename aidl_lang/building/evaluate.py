@@ -75,10 +75,6 @@ def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
     return PointVal(x, y) if x is not None and y is not None else NOTHING
 
 
-def _list(it: Interpreter, node: ast.List, env: Env) -> Value:
-    return _listed([evaluate(it, item, env) for item in node.items])
-
-
 def _listed(found: list[Value]) -> Value:
     return NOTHING if any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
 
@@ -100,10 +96,7 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 
 
 def _of_turns(
-    it: Interpreter,
-    node: ast.Comprehension | ast.ForArguments,
-    env: Env,
-    made: Callable[[Env], list[Value]],
+    it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
     """Returns a list of what is made in all turns, one after the other."""
     turns = iterate(it, node.iterable, env)
@@ -143,11 +136,8 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
     """Returns the values that a `for` runs through; None after an error."""
     value = evaluate(it, node, env)
     items = lists.items_of(it, value, node)
-    if items is None and isinstance(value, RangeVal):
-        return None
-    if items is None and not isinstance(value, Nothing):
+    if items is None and not isinstance(value, RangeVal | Nothing):
         it.misfit(rules.no_run(type_of(value)), node)
-        return None
     return list(items) if items is not None else None
 
 
@@ -165,13 +155,8 @@ def turn_scope(
         items = list(unpacked)
     for variable, value in zip(variables, items, strict=True):
         inner.values[variable.text] = value
-        shown = (
-            f"{value.value:g}"
-            if isinstance(value, Num)
-            else value.value
-            if isinstance(value, TextVal)
-            else "…"
-        )
+        other = value.value if isinstance(value, TextVal) else "…"
+        shown = f"{value.value:g}" if isinstance(value, Num) else other
         inner.labels += (f"{variable.text} = {shown}",)
     return inner
 
@@ -208,11 +193,6 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     if node in it.program.resolution.uses or node.span.source in it.library_sources:
         it.report("E0201", f"there is no `{node.text}` here yet", node, label="made further on")
     return NOTHING  # else reported by the checker, or its file could not be imported
-
-
-def _member(it: Interpreter, node: ast.Member, env: Env) -> Value:
-    value = evaluate(it, node.value, env)
-    return member(it, value, node.name.text, node, env)
 
 
 def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
@@ -352,9 +332,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
     """Reports why an operation on constants has no value."""
     if op == "^" and a.value < 0 and not b.value.is_integer():
-        text = node.span.one_line
-        it.report("E0504", f"`{text}` has no value: it takes the root of a negative number", node)
-        return NOTHING
+        return _no_value(it, node, "it takes the root of a negative number")
     divisor = {"/": b, "^": a}.get(op)
     if divisor is not None and divisor.is_constant and divisor.value == 0:
         return _divided_by_zero(it, node)
@@ -363,17 +341,16 @@ def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression,
 
 def _divided_by_zero(it: Interpreter, node: ast.Node) -> Nothing:
     hint = "let an `if … then … else` choose another value where the divisor is zero"
-    it.report("E0504", f"`{node.span.one_line}` has no value: it divides by zero", node, hints=[hint])
-    return NOTHING
+    return _no_value(it, node, "it divides by zero", hint)
 
 
 def _out_of_range(it: Interpreter, node: ast.Node) -> Nothing:
-    it.report(
-        "E0504",
-        f"`{node.span.one_line}` has no value: it leaves the range of numbers",
-        node,
-        hints=[f"numbers reach to {ex.LARGEST:g} in either direction"],
-    )
+    hint = f"numbers reach to {ex.LARGEST:g} in either direction"
+    return _no_value(it, node, "it leaves the range of numbers", hint)
+
+
+def _no_value(it: Interpreter, node: ast.Node, why: str, *hints: str) -> Nothing:
+    it.report("E0504", f"`{node.span.one_line}` has no value: {why}", node, hints=hints)
     return NOTHING
 
 
@@ -439,11 +416,11 @@ _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.String: lambda it, node, env: TextVal(node.value),
     ast.Boolean: lambda it, node, env: node.value,
     ast.Name: _name,
-    ast.Member: _member,
+    ast.Member: lambda it, node, env: member(it, evaluate(it, node.value, env), node.name.text, node, env),
     ast.Index: _index,
     ast.Call: lambda it, node, env: it.caller(it, node, env),
     ast.Point: _point,
-    ast.List: _list,
+    ast.List: lambda it, node, env: _listed([evaluate(it, item, env) for item in node.items]),
     ast.Comprehension: _comprehension,
     ast.ForArguments: _for_arguments,
     ast.IfArguments: _if_arguments,

@@ -29,12 +29,7 @@ def is_number(value: float) -> bool:
     return abs(value) <= LARGEST
 
 
-_WAYS = {
-    "length": "distance",
-    "angle": "direction",
-    "dx": "horizontal distance",
-    "dy": "vertical distance",
-}
+_WAYS = {"length": "distance", "angle": "direction", "dx": "horizontal distance", "dy": "vertical distance"}
 
 
 @record(frozen=False, eq=False)

@@ -12,7 +12,6 @@ from aidl_lang.common import lettering
 from aidl_lang.common.font_files import SUFFIXES, FontError
 from aidl_lang.common.lettering import Font
 from aidl_lang.common.world import FileError, ReadFailure, relative_to
-from aidl_lang.syntax import ast
 
 PLAIN, SINGLE_LINE = "DejaVu Sans", "single line"
 """The names of the fonts that ship with the package."""
@@ -83,13 +82,8 @@ def _of_file(it: Interpreter, name: str) -> Font:
 
 def _writer(it: Interpreter) -> str:
     """Returns the path of the file in which the text is written."""
-    source = _innermost(it).span.source
+    authored = (node for node in reversed(it.call_sites) if node.span.source not in it.library_sources)
+    source = next(authored, it.program.main).span.source
     if source is it.program.main.source:
         return PurePosixPath(source.name.replace("\\", "/")).name
     return source.name
-
-
-def _innermost(it: Interpreter) -> ast.Node:
-    """Returns the call under way that stands in no library."""
-    authored = (node for node in reversed(it.call_sites) if node.span.source not in it.library_sources)
-    return next(authored, it.program.main)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 from aidl_lang.building import colors, copies, lists, patterns, shapes, tracing
 from aidl_lang.building import expression as ex
@@ -16,7 +16,7 @@ from aidl_lang.building.letters_along import lettered
 from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -35,9 +35,6 @@ from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.names import find, nearest
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
-Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 
 
 def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
@@ -63,10 +60,6 @@ def _of_angle(op: Callable[[Expression], Expression]) -> Function:
     return function
 
 
-def _tan(angle: Expression) -> Expression:
-    return ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))
-
-
 def _to_angle(op: str) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         value = _num(it, a, "value", node, env)
@@ -86,10 +79,6 @@ def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if x is None or y is None:
         return NOTHING
     return Num(ex.atan2(y.expression, x.expression), ANGLE, max(x.status, y.status))
-
-
-def _halved(dimension: MaybeDimension) -> MaybeDimension:
-    return units.power(dimension, 0.5)
 
 
 def _of_one(op: str, dimension: Callable[[MaybeDimension], MaybeDimension]) -> Function:
@@ -187,10 +176,6 @@ def _rounded(function: Callable[[float], float]) -> Function:
     return rounded
 
 
-def _half_up(value: float) -> float:
-    return math.floor(value + 0.5)
-
-
 def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     items: Sequence[Value] | None
     match values := a["values"]:
@@ -248,19 +233,12 @@ def _mark(status: Exactness) -> Function:
         value = as_point(it, value, node, env) or value if isinstance(value, Geometry) else value
         if isinstance(value, Num | PointVal | ListVal):
             return mark(as_written(value) if status is Exactness.GUESS else value)
-        it.report(
-            "E0310",
-            f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}",
-            node,
-            hints=["to hold a geometry where it was written: `constrain fixed(…)`"],
-        )
+        message = f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}"
+        hint = "to hold a geometry where it was written: `constrain fixed(…)`"
+        it.report("E0310", message, node, hints=[hint])
         return NOTHING
 
     return function
-
-
-def _written(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    return as_written(a["value"])
 
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -302,9 +280,7 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns a measure that is negative in an overlap, for the solver to get out of it; for a reader, 0:
-    there is no room.
-    """
+    """Returns a measure, negative in an overlap for the solver to get out of it; for a reader 0: no room."""
     value = _num(it, a, "value", node, env)
     if value is None or env.reach is not Reach.READ:
         return value if value is not None else NOTHING
@@ -328,7 +304,6 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the centroid of a closed geometry, which has one by a formula."""
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):
@@ -345,20 +320,16 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return point(*found)
 
 
-def _keep(dimension: MaybeDimension) -> MaybeDimension:
-    return dimension
-
-
 FUNCTIONS: dict[str, Function] = {
     "sin": _of_angle(ex.sin),
     "cos": _of_angle(ex.cos),
-    "tan": _of_angle(_tan),
+    "tan": _of_angle(lambda angle: ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))),
     "asin": _to_angle("asin"),
     "acos": _to_angle("acos"),
     "atan": _to_angle("atan"),
     "atan2": _atan2,
-    "sqrt": _of_one("sqrt", _halved),
-    "abs": _of_one("abs", _keep),
+    "sqrt": _of_one("sqrt", lambda d: units.power(d, 0.5)),
+    "abs": _of_one("abs", lambda d: d),
     "square": _of_one("square", lambda d: units.multiply(d, d)),
     "hypot": _hypot,
     "min": _extreme("minimum"),
@@ -366,7 +337,7 @@ FUNCTIONS: dict[str, Function] = {
     "sum": _sum,
     "floor": _rounded(math.floor),
     "ceil": _rounded(math.ceil),
-    "round": _rounded(_half_up),
+    "round": _rounded(lambda value: math.floor(value + 0.5)),
     "len": _len,
     **lists.FUNCTIONS,
     "choice": _choice,
@@ -376,7 +347,7 @@ FUNCTIONS: dict[str, Function] = {
     "traced_part": tracing.part,
     "fixed": _mark(Exactness.FIXED),
     "guess": _mark(Exactness.GUESS),
-    "written": _written,
+    "written": lambda it, a, node, env: as_written(a["value"]),
     "nearest": _nearest,
     "where": _where,
     "shown": _shown,

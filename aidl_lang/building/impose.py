@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
-from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_formulas
+from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
 from aidl_lang.building.by_hand import is_by_hand, record_dimension
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
-from aidl_lang.building.measured import FORMULAS, OTHERWISE
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -47,9 +47,7 @@ from aidl_lang.syntax import ast
 
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
-    """Adds `constrain EXPR` or, with a weight, `prefer EXPR` to the model; checks constant conditions on the
-    spot.
-    """
+    """Adds `constrain EXPR` or, with a weight, `prefer EXPR`; checks constant conditions on the spot."""
     if isinstance(node, ast.Call) and is_by_hand(it, node):
         record_dimension(it, node, env)
         return
@@ -75,26 +73,22 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         case Condition():
             _impose_condition(it, value, node, env, weight)
         case Geometry():
-            it.report(
-                "E0323",
-                f"this {value.type} has no name, so it is not part of the model",
-                node,
-                hints=[f"give it one: `{value.type}_1 = {node.span.text}`"],
-            )
+            message = f"this {value.type} has no name, so it is not part of the model"
+            it.report("E0323", message, node, hints=[f"give it one: `{value.type}_1 = {node.span.text}`"])
         case _:
             it.misfit(rules.no_condition(shown(node), type_of(value)), node)
 
 
 def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
-    return isinstance(node, ast.Call) and _named(it, node) == "fixed"
+    return isinstance(node, ast.Call) and it.spelled(node.callee) == "fixed"
 
 
 def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
     """Returns the items of `AddConstraint(…)`, of which `fixed(p)` is no condition by itself."""
-    if not isinstance(node, ast.Call) or node.receiver is not None or _named(it, node) != "add_constraint":
-        return []
-    values = [a.value for a in node.arguments]
-    return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
+    if isinstance(node, ast.Call) and node.receiver is None and it.spelled(node.callee) == "add_constraint":
+        values = [a.value for a in node.arguments]
+        return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
+    return []
 
 
 def _as_relation(node: ast.Expression) -> ast.Expression:
@@ -117,7 +111,6 @@ _BOUNDS = {"<=": "at_most", "<": "at_most", ">=": "at_least", ">": "at_least"}
 
 
 def _turn(env: Env) -> str:
-    """Returns the turn of the loops around, for messages."""
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
@@ -153,13 +146,11 @@ def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read
     found = compared(wording) if _library_shape(it, node, env) is None else ()
     if not found or _measurements(found):
         return
-    turn = ", ".join(env.scope.labels)
-    span = it.place(node) or node.span
-    it.add_constraint(Constraint(env.here, found, node.span.one_line, span, None, turn, wording))
+    text, span, turn = it.said(node, env)
+    it.add_constraint(Constraint(env.here, found, text, span, None, turn, wording))
 
 
 def _measurements(comparisons: Iterable[Comparison]) -> list[Measurement]:
-    """Returns what comparisons take from the drawing."""
     sides = (e for c in comparisons for e in (c.left, c.right) if e.is_open)
     return [n.payload for n in ex.nodes(sides, only_open=True) if isinstance(n.payload, Measurement)]
 
@@ -219,17 +210,8 @@ def _impose_condition(
         _box_follows(it, follower, node, env)
     elif comparisons:
         comparisons = _placed_in_call(it, node, comparisons, env)
-        it.add_constraint(
-            Constraint(
-                env.here,
-                tuple(comparisons),
-                node.span.one_line,
-                it.place(node) or node.span,
-                weight,
-                ", ".join(env.scope.labels),
-                Wording(node, it, env, _read),
-            )
-        )
+        (text, span, turn), wording = it.said(node, env), Wording(node, it, env, _read)
+        it.add_constraint(Constraint(env.here, tuple(comparisons), text, span, weight, turn, wording))
 
 
 def _with_foreseen_boxes(
@@ -244,27 +226,22 @@ def _with_foreseen_boxes(
     foreseen; they are looked at again in the drawing, but for a wish.
     """
     if weight is None:
-        _check_when_drawn(it, comparisons, box, node, env)
+        (outline,) = box.of
+        assert isinstance(outline, Geometry)
+        _look_again(it, comparisons, None, node, env, outline)
     return [_foreseen(comparison) for comparison in comparisons]
 
 
 def _by_formulas(
     it: Interpreter, comparisons: list[Comparison], node: ast.Expression, env: Env, weight: float | None
 ) -> list[Comparison]:
-    """Returns comparisons with the areas and perimeters that have formulas by these; what is drawn is
-    measured again.
-    """
+    """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
-    sides = (with_formulas(c.left, c.right) for c in comparisons)
+    sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):
-        wording = Wording(node, it, env, _read)
-        where, turn = it.place(node) or node.span, ", ".join(env.scope.labels)
-        both = Condition("and", tuple(comparisons))
-        it.assertions.append(
-            Assertion(env.here, both, OTHERWISE, node.span.one_line, where, turn, wording=wording)
-        )
+        _look_again(it, comparisons, OTHERWISE, node, env)
     return found
 
 
@@ -276,24 +253,18 @@ def _foreseen(comparison: Comparison) -> Comparison:
     return replace(changed, moved=moved) if moved else changed
 
 
-def _check_when_drawn(
-    it: Interpreter, comparisons: list[Comparison], box: Measurement, node: ast.Expression, env: Env
+def _look_again(
+    it: Interpreter,
+    comparisons: list[Comparison],
+    message: str | None,
+    node: ast.Expression,
+    env: Env,
+    outline: Geometry | None = None,
 ) -> None:
-    """Keeps a constraint on the box of an outline that was foreseen, to be looked at again in the drawing."""
-    (outline,) = box.of
-    assert isinstance(outline, Geometry)
-    it.assertions.append(
-        Assertion(
-            env.here,
-            Condition("and", tuple(comparisons)),
-            None,
-            node.span.one_line,
-            it.place(node) or node.span,
-            ", ".join(env.scope.labels),
-            wording=Wording(node, it, env, _read),
-            outline=outline,
-        )
-    )
+    """Keeps a constraint to be looked at in the drawing; with an `outline`, one on its box as foreseen."""
+    both, wording = Condition("and", tuple(comparisons)), Wording(node, it, env, _read)
+    said = it.said(node, env)
+    it.assertions.append(Assertion(env.here, both, message, *said, wording=wording, outline=outline))
 
 
 def _is_angle(node: ast.Node) -> bool:
@@ -305,9 +276,7 @@ def _is_angle(node: ast.Node) -> bool:
 
 
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
-    """Returns a geometry in the boxes of some comparisons that is derived of geometry outside of their
-    structure.
-    """
+    """Returns a geometry in the boxes of comparisons that is derived of some outside of their structure."""
     spoken_of = {s for c in comparisons for s in c.boxes}
     return next(
         (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
@@ -325,9 +294,7 @@ def _boxes_of(g: Geometry) -> set[Structure]:
 
 
 def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
-    """Reports a constraint on a box with geometry in it that follows something outside of the holder of the
-    constraint.
-    """
+    """Reports a constraint on a box with geometry in it that follows something outside of its holder."""
     span = it.place(node) or node.span
     it.report(
         "E0402",
@@ -341,9 +308,7 @@ def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env:
 def _impose_within(
     it: Interpreter, shape: Geometry, comparisons: tuple[Comparison, ...], node: ast.Expression, env: Env
 ) -> None:
-    """Adds a constraint that a shape of the library holds for itself, named after the shape, at its author's
-    line.
-    """
+    """Adds a constraint that a library's shape holds for itself, named after it, at its author's line."""
     if shape.name is not None and shape.span is not None:
         text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
         turn = ", ".join(env.scope.labels)
@@ -370,9 +335,7 @@ def _placed_in_call(
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:
-    """Keeps an `assert` to be checked on the solved model. Those of a shape on constant arguments are checked
-    now.
-    """
+    """Keeps an `assert` to be checked once solved; those of a shape on constants are checked now."""
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
         return
@@ -389,32 +352,16 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
     if isinstance(value, bool) and it.states_constants and not shape:
         _state_constants(it, node.test, env, evaluate)
         return
-    it.assertions.append(
-        Assertion(
-            env.here,
-            value,
-            message.value if isinstance(message, TextVal) else None,
-            node.test.span.one_line,
-            it.place(node.test) or node.span,
-            ", ".join(env.scope.labels),
-            shape,
-            Wording(node.test, it, env, evaluate),
-        )
-    )
-
-
-def _named(it: Interpreter, node: ast.Call) -> str:
-    """Returns the name that is called, with aliases resolved."""
-    return it.program.resolution.canonical.get(node.callee, node.callee.text)
+    said, told = it.said(node.test, env), message.value if isinstance(message, TextVal) else None
+    wording = Wording(node.test, it, env, evaluate)
+    it.assertions.append(Assertion(env.here, value, told, *said, shape, wording))
 
 
 # --- constrain fixed(x) ----------------------------------------------------------------------------
 
 
 def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
-    """Returns the condition of `constrain fixed(x)`: x stays where it was written, in the frame of the
-    holder.
-    """
+    """Returns the condition of `constrain fixed(x)`: x stays as written, in the frame of the holder."""
     arguments = [node.receiver] if node.receiver is not None else []
     arguments += [a.value for a in node.arguments]
     found: list[Value] = []

@@ -6,20 +6,18 @@ is read out. Dozens of letters then cost the solver no more than one circle.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
 from aidl_lang.common.font_files import FontError
-from aidl_lang.common.lettering import Font, Glyph
+from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.prose import first_few
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
@@ -32,13 +30,8 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     apart = constant(it, spacing, node, "the spacing of lines")
     if align.value not in lettering.ALIGNMENTS:
         allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
-        report_once(
-            it,
-            "E0516",
-            f'"{align.value}" is not one of the words that are meant here',
-            node,
-            [f"it is one of {allowed}"],
-        )
+        message = f'"{align.value}" is not one of the words that are meant here'
+        report_once(it, "E0516", message, node, [f"it is one of {allowed}"])
         return ()
     if apart is None:
         return ()
@@ -51,7 +44,10 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         if unknown := lettering.unknown_characters(text.value, font):
             _report_unknown(it, unknown, node, name)
             return ()
-        glyphs = _set(name, text.value, align.value, apart, font)
+        try:
+            glyphs = lettering.typeset(text.value, align.value, apart, font)
+        except FontError as reason:
+            raise fonts.broken(name, reason) from None
     except fonts.NoFontError as lack:
         report_once(it, lack.code, lack.message, node, lack.hints)
         return ()
@@ -59,14 +55,6 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         hint = "write what is to be drawn, or leave the text out"
         report_once(it, "E0351", "there is nothing to draw in this text", node, [hint])
     return glyphs
-
-
-def _set(name: str, text: str, align: str, apart: float, font: Font) -> tuple[Glyph, ...]:
-    """Returns the characters of a text. Raises NoFontError."""
-    try:
-        return lettering.typeset(text, align, apart, font)
-    except FontError as reason:
-        raise fonts.broken(name, reason) from None
 
 
 def is_filled(a: Arguments, glyphs: Sequence[Glyph]) -> bool:

@@ -10,9 +10,9 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.along import KINDS, reading_way
 from aidl_lang.building.construct import size
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import Arguments, bridge, is_filled, report_once, typeset
+from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, reach_of
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,

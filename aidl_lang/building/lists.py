@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -23,8 +23,6 @@ from aidl_lang.building.values import (
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 
 def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
@@ -73,9 +71,7 @@ def joined(left: Value, right: Value) -> Value | None:
 
 
 def shown(value: Value) -> str | None:
-    """Returns a number, text or truth as a reader writes it: lengths in mm and angles in degrees, without a
-    unit.
-    """
+    """Returns a number, text or truth as a reader writes it: in mm and degrees, without a unit."""
     match value:
         case Num():
             return f"{value.value:.10g}"
@@ -85,10 +81,6 @@ def shown(value: Value) -> str | None:
             return "true" if value else "false"
         case _:
             return None
-
-
-def _record(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    return RecordVal(a)
 
 
 def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -118,9 +110,7 @@ def _enumerate(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value
 
 
 def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns pairs of members with the same place; reports lists of different lengths, rather than cut them
-    off.
-    """
+    """Returns pairs of members with the same place; reports lists of different lengths."""
     lists = [members(value) or () for value in a.values()]
     lengths = [len(items) for items in lists]
     if len(set(lengths)) > 1:
@@ -130,15 +120,11 @@ def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return ListVal(tuple(ListVal(pair) for pair in zip(*lists, strict=True)))
 
 
-def _reversed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    return ListVal(tuple(reversed(members(a["values"]) or ())))
-
-
-FUNCTIONS: dict[str, Callable[[Interpreter, Arguments, ast.Call, Env], Value]] = {
-    "record": _record,
+FUNCTIONS: dict[str, Function] = {
+    "record": lambda it, a, node, env: RecordVal(a),
     "str": _str,
     "range": _range,
     "enumerate": _enumerate,
     "zip": _zip,
-    "reversed": _reversed,
+    "reversed": lambda it, a, node, env: ListVal(tuple(reversed(members(a["values"]) or ()))),
 }

@@ -66,9 +66,7 @@ def lower(model: Model) -> Lowered:
 
 
 def preference(lowered: Lowered) -> list[int]:
-    """Returns the constraints in the order in which conflicts take them for granted: unwritten ones, then as
-    written.
-    """
+    """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
 
     def place(index: int) -> tuple[bool, str, int, int]:
         stated = lowered.stated[index]
@@ -121,11 +119,11 @@ class _Lowering:
             initial=np.array([u.guess for u in found], dtype=np.float64),
             scale=np.array([self._scale(u) for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
-            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
-            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
-            axis=np.array([_axis(u) for u in found], dtype=np.int64),
+            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.intp),
+            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.intp),
+            axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
-            parent=np.array(parents, dtype=np.int64),
+            parent=np.array(parents, dtype=np.intp),
             **constraint_arrays(constraints),
             named=True,
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
@@ -228,9 +226,7 @@ class _Lowering:
                     self._name_thing(constraint.holder, unknown.owner, thing)
 
     def _name_thing(self, holder: Structure, s: Structure, thing: Hashable) -> None:
-        """Notes a thing of `s` in it, and in each structure from there up to the holder the one that it is
-        in.
-        """
+        """Notes a thing of `s` in it, and in each structure up to the holder the one that it is in."""
         for structure in chain(s):
             if structure is holder:
                 return
@@ -280,9 +276,7 @@ class _Lowering:
                     yield from (frame.x, frame.y, frame.rotation)
 
     def _observables(self, s: Structure) -> Iterator[int]:
-        """Yields the numbers of a structure that a reader of the drawing could see move, and its
-        variables.
-        """
+        """Yields the numbers of a structure that a reader could see move, and its variables."""
         node = self._node
         for at in self.seen[s]:
             if len(at) == 2:
@@ -396,19 +390,12 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
     """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
     drawings beside parts; but none that stands still, as its place was given in the frame of the root.
     """
-    children = [c for c in parent.children if parent.parent is not None or not _is_placed(c)]
+    frames = [(c, c.frame) for c in parent.children]
+    children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
     if parent.plan or any(not geometry.construction for geometry in parent.own()):
         return children
-    without = [child for child in children if child.kind in _NO_BODY]
+    without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()
-
-
-_NO_BODY = ("hole", "drawing")
-
-
-def _is_placed(structure: Structure) -> bool:
-    """Tells whether a frame is exact in the one around it."""
-    return structure.frame.x.is_constant and structure.frame.y.is_constant
 
 
 def _is_variable(unknown: Unknown) -> bool:
@@ -454,8 +441,12 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
             yield f"{geometry.path}.{name}", (value.x.expression, value.y.expression)
         elif isinstance(value, Num):
             yield f"{geometry.path}.{name}", (value.expression,)
+    # A pattern begins where the outline does that it fills: where what it repeats stands is not seen.
+    recipe = geometry.recipe
+    within = recipe.operands[1] if recipe is not None and recipe.kind == "tiled" else None
     for part in own_geometry(geometry.parts, geometry):
-        yield from _seen_geometry(part)
+        if within is None or part in within:
+            yield from _seen_geometry(part)
 
 
 def _is_spanned(unknown: Unknown) -> bool:
@@ -465,10 +456,10 @@ def _is_spanned(unknown: Unknown) -> bool:
     return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
 
 
-def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
+def _numbered(keys: Iterable[Hashable]) -> NDArray[np.intp]:
     """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
-    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.intp)
 
 
 def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:

@@ -47,9 +47,7 @@ class _Side:
 
 
 def formula(of: Measurement) -> Expression | None:
-    """Returns the area or the perimeter of a closed geometry, or of a structure of one with holes; None if no
-    formula tells.
-    """
+    """Returns the area or perimeter of a closed geometry or of a structure of one with holes; else None."""
     if of.kind not in ("area", "perimeter") or len(of.of) != 1:
         return None
     thing = of.of[0]
@@ -110,9 +108,7 @@ def _loops(geometry: Geometry, here: Structure) -> list[tuple[int, list[_Side]]]
 
 
 def _chained(sides: Sequence[_Side]) -> Iterator[list[tuple[_Side, bool]]]:
-    """Yields the closed outlines of some pieces, each with whether it is run from its start; an empty one
-    for what stays open.
-    """
+    """Yields the closed outlines of pieces, each with whether it runs from its start; [] for an open one."""
     left = list(sides)
     extent = max(max(map(abs, p)) for side in sides for p in side.sampled)
     while left:

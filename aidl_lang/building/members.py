@@ -246,9 +246,7 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
 
 
 def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
-    """Returns a part, argument or let of a compound shape: read in the frame of its owner, then seen from
-    here.
-    """
+    """Returns a part, argument or let of a compound shape: read in its owner's frame, seen from here."""
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
     value = primitives.translate(key, value, g.owner, env.here)

@@ -36,9 +36,7 @@ KINDS = ("assembly", "solid", "hole", "drawing")
 
 
 def is_size(name: str) -> bool:
-    """Tells whether a field or an argument is a size by its last word: `radius`, `inner_radius`,
-    `top_width`.
-    """
+    """Tells whether a name is a size by its last word: `radius`, `inner_radius`, `top_width`."""
     return name.rpartition("_")[2] in _SIZE_WORDS
 
 
@@ -162,9 +160,7 @@ class Geometry:
         return self.recipe is not None and self.recipe.kind == self.type
 
     def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
-        """Yields the primitives that are drawn, in order of writing; of construction geometry only on
-        request.
-        """
+        """Yields the primitives that are drawn, in order of writing; construction geometry only if asked."""
         if self.construction and not even_construction:
             return
         if not self.is_compound:
@@ -362,19 +358,12 @@ def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
 def convert(
     x: Expression, y: Expression, source: Structure, target: Structure
 ) -> tuple[Expression, Expression]:
-    """Converts coordinates in the frame of `source` to that of `target`; equal ones give the same
-    expressions.
-    """
+    """Converts coordinates in the frame of `source` to `target`'s; equal ones to the same expressions."""
     if source is target:
         return x, y
-    if (known := source.converted.get((x, y, target))) is None:
-        known = source.converted[x, y, target] = _convert(x, y, source, target)
-    return known
-
-
-def _convert(
-    x: Expression, y: Expression, source: Structure, target: Structure
-) -> tuple[Expression, Expression]:
+    key = x, y, target
+    if (known := source.converted.get(key)) is not None:
+        return known
     meeting = common_ancestor(source, target)
     here = source
     while here is not meeting:
@@ -384,6 +373,7 @@ def _convert(
     below = chain(target)
     for structure in reversed(below[: below.index(meeting)]):
         x, y = structure.frame.inward(x, y)
+    source.converted[key] = x, y
     return x, y
 
 

@@ -12,9 +12,7 @@ from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import build_structure, finish, own_names
-from aidl_lang.building.values import (
-    Namespace,
-)
+from aidl_lang.building.values import Namespace
 from aidl_lang.common.drawings import WHOLE
 from aidl_lang.syntax import ast
 
@@ -42,12 +40,8 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
         run_block(it, statements, scope, root)
         finish(it, root)
         if not roots and not loose and not it.diagnostics:
-            it.report(
-                "W0501",
-                "this file draws nothing",
-                None,
-                hints=["a drawing needs a structure, as in `solid plate { … }`"],
-            )
+            hint = "a drawing needs a structure, as in `solid plate { … }`"
+            it.report("W0501", "this file draws nothing", None, hints=[hint])
     report_unused(it)
     for constraint in hidden_constraints(it):
         it.add_constraint(constraint)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     reach_of,
 )
 from aidl_lang.building.scopes import Candidate
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -39,9 +39,6 @@ from aidl_lang.common.names import find, fold
 from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
-Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 
 CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "corners": ("sharp", "round"),
@@ -132,7 +129,6 @@ def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[G
 
 
 def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:
-    """Returns a point as geometry, which an outline may be made of."""
     reach = reach_of(owners_of(p, env.here), env.here)
     return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
 
@@ -332,19 +328,14 @@ def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) 
         if base is None:
             return _Target(env.here, (), "", value, text)
         return _Target(base.owner, (base,), key, convert_point(value, env.here, base.owner), text)
-    it.report(
-        "E0337",
-        f"`{text}` is {kind_of(value)}, and only corners and outlines are rounded or cut off",
-        node,
-        hints=["name a corner (`plate.top_left`), a list of corners, or the outline itself"],
-    )
+    message = f"`{text}` is {kind_of(value)}, and only corners and outlines are rounded or cut off"
+    hint = "name a corner (`plate.top_left`), a list of corners, or the outline itself"
+    it.report("E0337", message, node, hints=[hint])
     return None
 
 
 def _base(it: Interpreter, node: ast.Node, env: Env) -> tuple[Geometry | None, str]:
-    """Returns the geometry that a point was named as a field of, and the field, if the geometry has a
-    name.
-    """
+    """Returns the geometry with a name that a point was named as a field of, and the field."""
     key = node.name.text if isinstance(node, ast.Member) else ""
     while isinstance(node, ast.Index):
         node = node.value
@@ -359,9 +350,7 @@ def _outermost(geometry: Geometry) -> Geometry:
 
 
 def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
-    """Returns the size of a finish, `plate.top_left.fillet`, by its corner or by the outline that it is part
-    of.
-    """
+    """Returns the size of a finish, `plate.top_left.fillet`, by its corner or an outline around it."""
     key, kind = "", find(name, dict.fromkeys(FINISHES))
     if isinstance(value, PointVal):
         value, key = _base(it, node.value, env)  # type: ignore[assignment]
@@ -369,12 +358,9 @@ def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env:
         if (found := value.finishes.get(_named(key, kind))) is not None:
             return found if may_read(it, value.owner, node, env) else as_written(found)
         if any(f.kind == kind and not f.sizes and value in f.of for f in value.owner.finishes):
-            it.report(
-                "E0526",
-                f"`{node.span.one_line}` is the largest that fits, which only the drawing knows",
-                node,
-                hints=["give it a number to refer to it: of one that is too large the most is told"],
-            )
+            message = f"`{node.span.one_line}` is the largest that fits, which only the drawing knows"
+            hint = "give it a number to refer to it: of one that is too large the most is told"
+            it.report("E0526", message, node, hints=[hint])
             return NOTHING
         value, key = value.container, ""  # type: ignore[assignment]
     return None

@@ -92,9 +92,7 @@ def _is_declared(symbol: Symbol | None) -> bool:
 
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> CallSite:
-    """Returns the site of a call for these overloads of its name; a body that runs again defines them
-    anew.
-    """
+    """Returns the site of a call for overloads of its name; a body that runs again defines them anew."""
     before, known = it.sites.get(node, (None, None))
     if known is not None and before is candidates:
         return known

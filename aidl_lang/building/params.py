@@ -33,6 +33,7 @@ from aidl_lang.syntax import ast
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)\s*")
 _RANGE_SLACK = 1e-9
+_UNITS: dict[units.MaybeDimension, str] = {units.ANGLE: "deg", units.LENGTH: "mm"}
 
 
 def knob_path(structure: Structure, name: str) -> str:
@@ -72,24 +73,15 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     value = _from_outside(it, path, written, choices)
     counts = node in it.program.counts and _is_whole(written)
     if counts and not _is_whole(value):
-        it.report(
-            "E0909",
-            f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something",
-            node.name,
-            label="a whole number",
-            hints=["give a whole number"],
-        )
+        message = f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something"
+        it.report("E0909", message, node.name, label="a whole number", hints=["give a whole number"])
         value = written
     if counts and low is not None and high is not None:
         low, high = math.ceil(low), math.floor(high)
     where = "written" if value is written else "set from outside"
-    fits = _is_allowed(value, low, high, choices)
-    if not fits:
-        allowed = (
-            f"{low:g}..{high:g}"
-            if low is not None and high is not None
-            else " or ".join(map(literal, choices))
-        )
+    if not _is_allowed(value, low, high, choices):
+        words = " or ".join(map(literal, choices))
+        allowed = words if low is None or high is None else f"{low:g}..{high:g}"
         code = "E0505" if value is written else "E0909"
         it.report(
             code,
@@ -99,24 +91,9 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
             hints=[f"give a value in {allowed}, or widen the range of the `param`"],
             fix=_unit_of_range(node) if value is written else None,
         )
-    unit = (
-        "deg"
-        if isinstance(value, Num) and value.dimension == units.ANGLE
-        else ("mm" if isinstance(value, Num) and value.dimension == units.LENGTH else "")
-    )
-    it.knobs.append(
-        Knob(
-            path,
-            _plain(value),
-            low,
-            high,
-            choices,
-            step.value if isinstance(step, Num) else 1.0 if counts and not choices else None,
-            unit,
-            node.doc,
-            node.span,
-        )
-    )
+    unit = _UNITS.get(value.dimension, "") if isinstance(value, Num) else ""
+    pace = step.value if isinstance(step, Num) else 1.0 if counts and not choices else None
+    it.knobs.append(Knob(path, _plain(value), low, high, choices, pace, unit, node.doc, node.span))
     if isinstance(value, Num):
         return Num(value.expression, value.dimension, Exactness.PARAM)
     return TextVal(value.value, is_param=True) if isinstance(value, TextVal) else value
@@ -127,9 +104,7 @@ def _is_whole(value: Value) -> bool:
 
 
 def _unit_of_range(node: ast.Param) -> Fix | None:
-    """Returns the fix that writes `8m in 6..14` as `8m in 6m..14m`; None if that would not make the range
-    hold.
-    """
+    """Returns the fix that writes `8m in 6..14` as `8m in 6m..14m`; None if the range would not hold."""
     match node.value, node.domain:
         case ast.Number(unit=str() as unit), ast.Range(
             ast.Number(unit=None) as low, ast.Number(unit=None) as high
@@ -142,9 +117,7 @@ def _unit_of_range(node: ast.Param) -> Fix | None:
 
 def _plain(value: Value) -> float | str | bool:
     match value:
-        case Num():
-            return value.value
-        case TextVal():
+        case Num() | TextVal():
             return value.value
         case bool():
             return value
@@ -182,29 +155,19 @@ def _from_outside(
     it: Interpreter, path: str, written: Value, choices: tuple[float | str | bool, ...]
 ) -> Value:
     """Returns the value set for a path with `-D path=value` or `compile(params=…)`, else the written one."""
-    key = _override(it, path)
+    names = {fold(path), fold(f"{it.root.name if it.root else ''}.{path}")}
+    key = next((key for key in it.overrides if fold(key.strip()) in names), None)
     if key is None:
         return written
     it.used_overrides.add(key)
     given = it.overrides[key]
     value = _parse(given, written)
     if value is None:
-        kind = (
-            "a text"
-            if isinstance(written, TextVal)
-            else "true or false"
-            if isinstance(written, bool)
-            else "a number"
-        )
+        other = "true or false" if isinstance(written, bool) else "a number"
+        kind = "a text" if isinstance(written, TextVal) else other
         it.report("E0910", f"`{key}={given}` does not fit: `{path}` is {kind}", None)
         return written
     return value
-
-
-def _override(it: Interpreter, path: str) -> str | None:
-    root = it.root.name if it.root else ""
-    names = {fold(path), fold(f"{root}.{path}")}
-    return next((key for key in it.overrides if fold(key.strip()) in names), None)
 
 
 def _parse(given: str | float | bool, written: Value) -> Value | None:
@@ -245,9 +208,5 @@ def report_unused(it: Interpreter) -> None:
             like = nearest(key, paths)
             hints = did_you_mean(like[:1])
             known = first_few(ticked(paths), 12, "") or "none"
-            it.report(
-                "E0911",
-                f"there is no param `{key}`",
-                None,
-                hints=[*hints, f"params of this program: {known}"],
-            )
+            hints.append(f"params of this program: {known}")
+            it.report("E0911", f"there is no param `{key}`", None, hints=hints)

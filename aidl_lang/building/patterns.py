@@ -7,7 +7,7 @@ instantiated once; the other members are copies over the same unknowns.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import product
 
 from aidl_lang.building import expression as ex
@@ -19,7 +19,7 @@ from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.primitives import defining, xy
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Instantiation,
@@ -39,7 +39,6 @@ from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
-Arguments = Mapping[str, Value]
 Index = tuple[int, ...]
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
@@ -77,17 +76,9 @@ class _Call:
     def check_followed(self, off: Sequence[Expression]) -> None:
         """Has it looked at in the drawing that these are 0, as they are at the first guesses."""
         parts = tuple(Comparison("==", e, ex.ZERO, LENGTH) for e in off)
-        self.it.assertions.append(
-            Assertion(
-                self.env.here,
-                Condition("and", parts),
-                None,
-                self.node.span.one_line,
-                self.it.place(self.node) or self.node.span,
-                ", ".join(self.env.scope.labels),
-                is_followed=True,
-            )
-        )
+        said = self.it.said(self.node, self.env)
+        followed = Assertion(self.env.here, Condition("and", parts), None, *said, is_followed=True)
+        self.it.assertions.append(followed)
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""
@@ -143,16 +134,12 @@ class _Call:
         return made
 
 
-def _pattern(lay_out: Callable[[_Call], Value]) -> Callable[[Interpreter, Arguments, ast.Call, Env], Value]:
+def _pattern(lay_out: Callable[[_Call], Value]) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         thing = a["x"]
         if not isinstance(thing, Geometry | Structure | Instantiation):
-            it.report(
-                "E0331",
-                f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}",
-                node,
-                hints=["put several things into a template, and repeat that"],
-            )
+            message = f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}"
+            it.report("E0331", message, node, hints=["put several things into a template, and repeat that"])
             return NOTHING
         settings = Geometry(node.callee.text, env.here, it.place(node))
         return lay_out(_Call(it, a, node, env, settings))
@@ -255,9 +242,7 @@ def _polar_array(call: _Call) -> Value:
 
 
 def _step(call: _Call, n: int) -> Expression:
-    """Returns the angle from one member to the next: a full turn has no last member on its first, a part of
-    one has ends.
-    """
+    """Returns the angle between members: a full turn has no last one on its first, a part of one has ends."""
     sweep = call.a.get("sweep", number(360.0, ANGLE))
     assert isinstance(sweep, Num)
     is_full = abs(abs(sweep.value) - 360.0) < 1e-9
@@ -324,7 +309,6 @@ _MOST_ALONG = 20_000
 
 
 def _way(call: _Call) -> Way | None:
-    """Returns the way along what a pattern follows."""
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]

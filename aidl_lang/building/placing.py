@@ -49,9 +49,7 @@ def placing(
 
 
 def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
-    """Returns the things of one rank in a call, in the order of its arguments; none if it holds one of
-    them.
-    """
+    """Returns the things of one rank in a call, in the order of its arguments; none if it holds one."""
     given = binding.arguments
     declared = [
         values[i]

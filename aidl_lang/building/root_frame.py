@@ -43,9 +43,7 @@ FLOATS: Arithmetic[float] = _Floats()
 
 
 class _Step(NamedTuple, Generic[N]):
-    """The frame of a structure in that of its parent; `turn` is its cosine and sine, None if it is exactly
-    level.
-    """
+    """The frame of a structure in its parent's; `turn` is its cosine and sine, None if exactly level."""
 
     x: N
     y: N

@@ -1,29 +1,23 @@
-"""Questions about shapes that the library cannot answer in AIDL: their sizes, their corners, a way to
-refuse.
-"""
+"""Questions about shapes that the library cannot answer in AIDL: sizes, corners, a way to refuse."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from aidl_lang.building.coerce import look
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.scopes import Scope
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
-
-Arguments = Mapping[str, Value]
 
 _NONE = ListVal(())
 
 
 def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the lengths among the parameters of a compound shape, in their order; none for anything
-    else.
-    """
+    """Returns the lengths among a compound shape's parameters, in their order; none for anything else."""
     shape = a["of"]
     if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
         return _NONE
@@ -53,7 +47,6 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
 
 
 def _at(point: Value) -> tuple[float, float]:
-    """Returns the place where a point was written."""
     assert isinstance(point, PointVal)
     return point.x.value, point.y.value
 

@@ -8,7 +8,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import Nothing, TextVal, Value, members
+from aidl_lang.building.values import Nothing, TextVal, each_of
 from aidl_lang.checking.builtins import BEHIND, IN_FRONT, STACKING
 from aidl_lang.common.diagnostics import Label
 from aidl_lang.common.prose import listed
@@ -28,20 +28,15 @@ class StatedOrder:
 def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
     """Keeps what is said of the order of a structure until all beside it are there."""
     if s.parent is None:
-        it.report(
-            "E0521",
-            f"`{s.name}` is the whole drawing: nothing is beside it",
-            stated.attribute,
-            hints=[f"`{stated.attribute.span.one_line}` stands before a structure in `{s.name}`"],
-        )
+        message = f"`{s.name}` is the whole drawing: nothing is beside it"
+        hint = f"`{stated.attribute.span.one_line}` stands before a structure in `{s.name}`"
+        it.report("E0521", message, stated.attribute, hints=[hint])
     else:
         it.orders.setdefault(s, []).append(stated)
 
 
 def settle_order(it: Interpreter, parent: Structure) -> None:
-    """Gives the structures in one whose body has been run the names of those that they are behind or in
-    front of.
-    """
+    """Gives the structures in one that was run the names of those that they are behind or in front of."""
     stated: dict[Structure, dict[Structure, ast.Attribute]] = {}
     for s in parent.children:
         if s.source is not None:
@@ -65,14 +60,10 @@ def _read(
         values = [evaluate(it, a.value, Env(order.scope, parent, Reach.READ)) for a in attribute.arguments]
         if any(isinstance(value, Nothing) for value in values):
             continue
-        others = [list(_structures(value)) for value in values]
+        others = [list(each_of(value, Structure)) for value in values]
         if not others or not all(others):
-            example = f"`@{order.name}(wall)`"
-            it.report(
-                "E0517",
-                f"`@{attribute.name.text}` takes the names of structures beside it, as in {example}",
-                attribute,
-            )
+            taken = f"takes the names of structures beside it, as in `@{order.name}(wall)`"
+            it.report("E0517", f"`@{attribute.name.text}` {taken}", attribute)
             continue
         for other in (o for group in others for o in group if o is not s or len(group) == 1):
             if other.parent is not parent or other is s:
@@ -83,15 +74,6 @@ def _read(
             stated.setdefault(back, {})[front] = attribute
     for name, found in names.items():
         s.attributes[name] = tuple(map(TextVal, dict.fromkeys(found)))
-
-
-def _structures(value: Value) -> Iterator[Structure]:
-    """Yields the structures of a value or of a list; nothing if there is anything else in it."""
-    if isinstance(value, Structure):
-        yield value
-    elif (items := members(value)) is not None:
-        found = [list(_structures(item)) for item in items]
-        yield from (s for group in found for s in group if all(found))
 
 
 def _misplaced(
@@ -148,9 +130,7 @@ def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
 
 
 def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:
-    """Returns structures each of which is behind the next, and the last behind the first; none if there are
-    no such.
-    """
+    """Returns structures each behind the next, and the last behind the first; none if there are none."""
     done: set[Structure] = set()
     for start in stated:
         way: dict[Structure, Iterator[Structure]] = {} if start in done else {start: iter(stated[start])}
@@ -169,9 +149,7 @@ def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> lis
 
 
 def _report_cycle(
-    it: Interpreter,
-    cycle: list[Structure],
-    stated: Mapping[Structure, Mapping[Structure, ast.Attribute]],
+    it: Interpreter, cycle: list[Structure], stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]
 ) -> None:
     rest = [*cycle[1:], cycle[0]]
     attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]

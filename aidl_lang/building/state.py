@@ -162,6 +162,10 @@ class Interpreter:
             return next((s.span for s in self.call_sites if s.span.source not in self.library_sources), span)
         return span
 
+    def said(self, node: ast.Node, env: Env) -> tuple[str, Span, str]:
+        """Returns the text of a statement, its place for the author, and the turn of the loops around."""
+        return node.span.one_line, self.place(node) or node.span, ", ".join(env.scope.labels)
+
     def report(
         self,
         code: str,
@@ -216,9 +220,8 @@ class Interpreter:
     def count_entity(self, node: ast.Node | Span | None, count: int = 1) -> None:
         self.entities += count
         if self.entities > self.limits.entities:
-            self._stop(
-                node, f"this program builds more than {self.limits.entities} structures and geometries"
-            )
+            most = self.limits.entities
+            self._stop(node, f"this program builds more than {most} structures and geometries")
 
     def check_time(self, node: ast.Node) -> None:
         """Ends building if it takes too long; called wherever a program may go on for long."""
@@ -276,16 +279,10 @@ class Interpreter:
         raise Stop
 
     def too_deep(self, node: ast.Node) -> NoReturn:
-        """Reports a statement whose value depends on so many others that the stack is full, and ends
-        building.
-        """
+        """Reports a value that depends on so many others that the stack is full, and ends building."""
         hint = "values that are worked out from each other one by one are made by a loop, or by `sum`"
-        self.report(
-            "E0806",
-            "what this says hangs on too many other values, one by way of the next",
-            node,
-            hints=[hint],
-        )
+        message = "what this says hangs on too many other values, one by way of the next"
+        self.report("E0806", message, node, hints=[hint])
         raise Stop
 
     # --- Unknowns ------------------------------------------------------------------------------
@@ -317,12 +314,9 @@ class Interpreter:
         """Reports a first guess at which the solver could not begin. Returns another."""
         if math.isnan(guess):
             return guess
-        self.report(
-            "E0504",
-            f"`{name}` begins at {guess:g} here, which no drawing reaches",
-            holder.span,
-            hints=[f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"],
-        )
+        message = f"`{name}` begins at {guess:g} here, which no drawing reaches"
+        hint = f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"
+        self.report("E0504", message, holder.span, hints=[hint])
         return 0.0
 
     def became(
@@ -355,3 +349,8 @@ class Interpreter:
             self.written[node] = value.value
         elif isinstance(value, PointVal):
             self.written[node] = (value.x.value, value.y.value)
+
+
+Arguments = Mapping[str, Value]
+Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
+"""A function that is built in: (interpreter, arguments by parameter, call, environment)."""

@@ -74,22 +74,13 @@ def _made(
         if isinstance(value, Geometry | PointVal):
             placed = GeometryPlacement(*place_of(it, node.placement, env))
         elif not isinstance(value, StructureCopy | Pattern):
-            it.report(
-                "E0509",
-                f"`at` and `rotated` place one structure or geometry, not {kind_of(value)}",
-                node.placement,
-                hints=["place each thing where it is made"],
-            )
+            message = f"`at` and `rotated` place one structure or geometry, not {kind_of(value)}"
+            it.report("E0509", message, node.placement, hints=["place each thing where it is made"])
     return edited(it, node, value, edits_on(it, node.name.text, indices, scope), env, placed)
 
 
 def _named(
-    it: Interpreter,
-    node: ast.Assign,
-    value: Value,
-    scope: Scope,
-    here: Structure,
-    indices: tuple[int, ...],
+    it: Interpreter, node: ast.Assign, value: Value, scope: Scope, here: Structure, indices: tuple[int, ...]
 ) -> Value:
     """Returns the value under its new name: a literal point becomes geometry."""
     container = scope.declaring().container or here
@@ -129,12 +120,9 @@ def _structure(it: Interpreter, node: ast.Structure, scope: Scope, here: Structu
 def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> None:
     binding = scope.values.get(node.name.text)
     if scope.turn:
-        it.report(
-            "E0208",
-            f"`param {node.name.text}` would be made in every turn of the loop",
-            node.name,
-            hints=["put the `param` before the loop, or use a `let` of the loop variable"],
-        )
+        message = f"`param {node.name.text}` would be made in every turn of the loop"
+        hint = "put the `param` before the loop, or use a `let` of the loop variable"
+        it.report("E0208", message, node.name, hints=[hint])
     elif isinstance(binding, ParamBinding):
         read_param(it, binding, node)
 
@@ -194,9 +182,7 @@ def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) 
 
 
 def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
-    """Checks an assertion in a shape, which is about its arguments, where the shape is made; defers any
-    other.
-    """
+    """Checks an assertion on the arguments of a shape where that is made; defers any other."""
     if isinstance(container := scope.declaring().container, Geometry):
         record_assertion(it, node, Env(scope, here, Reach.READ), container.type)
     else:

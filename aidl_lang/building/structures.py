@@ -72,9 +72,7 @@ def instantiate(
     indices: tuple[int, ...],
     framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
-    """Builds an instance of a template under the name it is assigned to; `framed` moves its frame
-    elsewhere.
-    """
+    """Builds an instance of a template under its assigned name; `framed` moves its frame elsewhere."""
     definition = template.definition
     name = indexed(node.name.text, indices)
     if not it.enter(template.node, definition):
@@ -94,8 +92,8 @@ def instantiate(
             value = template.arguments.get(key)
             if value is None:
                 value = default_of(it, parameter, kind, Env(body, structure, Reach.OWN))
-            where = _argument_node(template.node, key) or parameter
-            body.values[key] = passed(it, key, value, structure, here, where)
+            given = (a.value for a in template.node.arguments if a.name is not None and a.name.text == key)
+            body.values[key] = passed(it, key, value, structure, here, next(given, parameter))
         read_attributes(it, structure, definition.attributes, body)
         read_attributes(it, structure, node.attributes, scope)  # in the scope outside the template
         if definition.placement is not None:
@@ -109,10 +107,6 @@ def instantiate(
     finally:
         it.leave()
     return structure
-
-
-def _argument_node(node: ast.Call, name: str) -> ast.Node | None:
-    return next((a.value for a in node.arguments if a.name is not None and a.name.text == name), None)
 
 
 def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: ast.Node) -> Structure:
@@ -153,9 +147,8 @@ def _place(
     """Sets the frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
         if placement is not None:
-            it.report(
-                "W0502", "the root's frame is fixed, so `at` and `rotated` change nothing here", placement
-            )
+            message = "the root's frame is fixed, so `at` and `rotated` change nothing here"
+            it.report("W0502", message, placement)
         return
     at, turn = place_of(it, placement, Env(scope, s.parent, Reach.OWN))
     if edits:
@@ -217,10 +210,9 @@ def finish(it: Interpreter, structure: Structure) -> None:
 
 
 def _finishes(it: Interpreter, node: ast.Statement) -> bool:
-    """Tells whether a statement rounds corners or cuts them off."""
     if not isinstance(node, ast.ExpressionStatement) or not isinstance(call := node.value, ast.Call):
         return False
-    return it.program.resolution.canonical.get(call.callee, call.callee.text) in FINISHES
+    return it.spelled(call.callee) in FINISHES
 
 
 def _plan(it: Interpreter, s: Structure) -> None:

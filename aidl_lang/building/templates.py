@@ -22,12 +22,9 @@ def passed(
 ) -> Value | PassedBinding:
     """Returns the binding of an instance's parameter."""
     if (thing := _drawn(value)) is not None:
-        it.report(
-            "E0313",
-            f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}",
-            node,
-            hints=[f"pass one of its points or sizes, or constrain `{instance.name}` from outside"],
-        )
+        message = f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}"
+        hint = f"pass one of its points or sizes, or constrain `{instance.name}` from outside"
+        it.report("E0313", message, node, hints=[hint])
     if isinstance(value, Num | PointVal):
         return PassedBinding(name, value, instance, holder, node)
     return value
@@ -81,9 +78,7 @@ def _refers(point: PointVal) -> bool:
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
-    """Makes a point of the instance at the place, in its frame, that the argument has at the first
-    guesses.
-    """
+    """Makes a point of the instance where, in its frame, the argument is at the first guesses."""
     if _refers(point):
         numbers = as_written(point)
         assert isinstance(numbers, PointVal)

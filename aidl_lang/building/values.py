@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression
@@ -33,6 +33,8 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.model import Condition, Geometry, Structure
+
+T = TypeVar("T")
 
 
 class Exactness(IntEnum):
@@ -260,6 +262,15 @@ def spliced(value: Value) -> Sequence[Value]:
     return items if items is not None else [value]
 
 
+def each_of(value: Value, kind: type[T]) -> Iterator[T]:
+    """Yields the things of a kind in a value or a list of values; nothing if there is anything else in it."""
+    if isinstance(value, kind):
+        yield value
+    elif (items := members(value)) is not None:
+        found = [list(each_of(item, kind)) for item in items]
+        yield from (thing for things in found for thing in things if all(found))
+
+
 def holds(value: Value, kind: type) -> bool:
     """Tells whether a value is of a kind, or a list with something of it."""
     if isinstance(value, kind):
@@ -294,13 +305,9 @@ def _types() -> Mapping[type, Callable[[Any], Type]]:
         RangeVal: always(RangeType()),
         RecordVal: always(RecordType()),
         Namespace: always(ModuleType()),
-        ListVal: _type_of_list,
+        ListVal: lambda v: v.kind or v.is_of(_list_type(v.items)),
         **dict.fromkeys((Array, Pattern), lambda v: _list_type(v.items())),
     }
-
-
-def _type_of_list(value: ListVal) -> Type:
-    return value.kind or value.is_of(_list_type(value.items))
 
 
 def _list_type(items: Sequence[Value]) -> Type:

@@ -25,9 +25,7 @@ Read = Callable[[Interpreter, ast.Expression, Env], Value]
 
 @record(eq=False)
 class Wording:
-    """A statement that can be read again: `node` is the statement as written; `read` evaluates one in its
-    stead.
-    """
+    """A statement that can be read again: `node` as it was written; `read` evaluates one in its stead."""
 
     node: ast.Expression
     it: Interpreter
@@ -35,9 +33,7 @@ class Wording:
     read: Read
 
     def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
-        """Returns the comparisons that `node` would state here; none if it makes no sense or is decided
-        already.
-        """
+        """Returns the comparisons that `node` would state here; none if senseless or decided already."""
         value = self.value(node)
         return tuple(value.comparisons()) if isinstance(value, Condition) else ()
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def each_once(values: NDArray[np.int64]) -> NDArray[np.int64]:
+def each_once(values: NDArray[np.intp]) -> NDArray[np.intp]:
     """Returns the distinct numbers (k,) of an array, in order."""
     found = np.sort(values, axis=None)
     if len(found) > 1:
@@ -19,10 +19,10 @@ def each_once(values: NDArray[np.int64]) -> NDArray[np.int64]:
     return found
 
 
-def others(count: int, left_out: Iterable[int]) -> NDArray[np.int64]:
+def others(count: int, left_out: Iterable[int]) -> NDArray[np.intp]:
     """Returns the numbers (k,) from 0 to `count` that are not left out, in order."""
     kept = np.ones(count, dtype=np.bool_)
-    kept[np.fromiter(left_out, dtype=np.int64)] = False
+    kept[np.fromiter(left_out, dtype=np.intp)] = False
     return np.flatnonzero(kept)
 
 

@@ -157,7 +157,7 @@ def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
     boxes = [union_bounds([bounds(piece) for o in area for piece in o.pieces]) for area in areas]
     colors = [profile.color(first) for first, *_ in areas]
     pairs = [pair for pair in near_pairs(boxes, 0.0) if colors[pair[0]] == colors[pair[1]]]
-    one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    one, other = np.array(pairs, dtype=np.intp).reshape(-1, 2).T
     first_of = connected(one, other, len(areas))
     yield from (outline for outline in found if not outline.area)
     for k, area in enumerate(areas):

@@ -84,7 +84,7 @@ def _by_place(boxes: Floats, reach: float) -> tuple[Ints, Ints, Ints]:
     extent = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
     along = int(extent[1] > extent[0])
     order = np.argsort(boxes[:, along], kind="stable")
-    begin = np.empty(len(order), dtype=np.int64)
+    begin = np.empty(len(order), dtype=np.intp)
     begin[order] = np.arange(len(order))
     end = np.searchsorted(boxes[order, along], boxes[:, along + 2] + reach, side="right")
     return order, begin, np.maximum(end - begin, 1)
@@ -132,7 +132,7 @@ def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
     b = o.start[j] + o.way[j] * (t * o.length[j])[:, None]
     height = u[:, 0] * (b - a)[:, 1] - u[:, 1] * (b - a)[:, 0]
     found = Chords(
-        np.abs(height), a, b, i, j, middle / o.length[i], t, np.where(height > 0, 1, -1).astype(np.int64)
+        np.abs(height), a, b, i, j, middle / o.length[i], t, np.where(height > 0, 1, -1).astype(np.intp)
     )
     return found.where((high > low) & (np.abs(height) > least))
 
@@ -151,7 +151,7 @@ def _line_to_round(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
     a = o.start[i] + u * along[:, None]
     b = o.start[j] + toward * o.radius[k][:, None]
     s = np.clip(along / o.length[i], 0.0, 1.0)
-    kind = np.where(reached > 0, 1, -1).astype(np.int64)
+    kind = np.where(reached > 0, 1, -1).astype(np.intp)
     return Chords(np.abs(reached), a, b, i, j, s, _share(o, k, toward), kind).where(keep)
 
 
@@ -191,7 +191,7 @@ def _on_centers(
     a = o.start[i] + unit * start[:, None]
     b = o.start[j] + unit * (other * o.radius[q])[:, None]
     s, t = _share(o, p, unit * one[:, None]), _share(o, q, unit * other[:, None])
-    kind = np.where(way * (end - start) > 0, 1, -1).astype(np.int64)
+    kind = np.where(way * (end - start) > 0, 1, -1).astype(np.intp)
     length = np.abs(end - start)
     return Chords(length, a, b, i, j, s, t, kind).where(length > least)
 

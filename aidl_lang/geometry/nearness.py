@@ -17,7 +17,7 @@ _AT_ONCE = 1 << 20
 _MOST_PAIRS = 2_000_000
 """Pairs of boxes that meet, beyond which no drawing is worked out in time."""
 
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 Floats = NDArray[np.float64]
 
 
@@ -31,7 +31,7 @@ def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, in
 def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
     """Returns the pairs of `near_pairs` as a table of two columns."""
     if len(boxes) < 2:
-        return np.zeros((0, 2), dtype=np.int64)
+        return np.zeros((0, 2), dtype=np.intp)
     b = np.array(boxes, dtype=np.float64)
     order = np.argsort(b[:, 0], kind="stable")
     b = b[order]
@@ -100,7 +100,7 @@ class Sides:
 
     def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
         """Returns all sides that pass a spot at most at the given distance: spot, side and distance."""
-        found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
+        found = [(np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), np.zeros(0))]
         for spot, side in self.beside(spots[:, 0], reach):
             away = self._distance(spots[spot], side)
             kept = away <= reach
@@ -110,7 +110,7 @@ class Sides:
 
     def nearest(self, spots: Floats, reach: float) -> Ints:
         """Returns the side nearest to each spot, the first of several; sought within a reach that grows."""
-        result = np.full(len(spots), -1, dtype=np.int64)
+        result = np.full(len(spots), -1, dtype=np.intp)
         while len(left := np.flatnonzero(result < 0)):
             spot, side, away = self.near(spots[left], reach)
             order = np.lexsort((side, away, spot))
@@ -129,7 +129,7 @@ class Sides:
 
 def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
     """Returns the mask of points inside an odd number of polygons, by the crossings of rays to the right."""
-    crossings = np.zeros(len(spots), dtype=np.int64)
+    crossings = np.zeros(len(spots), dtype=np.intp)
     if polygons and len(spots):
         start = np.concatenate(polygons)
         end = np.concatenate([np.concatenate((p[1:], p[:1])) for p in polygons])

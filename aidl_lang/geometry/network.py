@@ -41,7 +41,7 @@ GRID = 1e-8
 NODE, UNKNOWN = -1, -2
 
 T = TypeVar("T")
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
@@ -156,7 +156,7 @@ class Network:
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
-        own_nodes = np.array(own_ends, dtype=np.int64).reshape(-1, 2)
+        own_nodes = np.array(own_ends, dtype=np.intp).reshape(-1, 2)
         places = np.array(self.nodes).reshape(-1, 2)
         hulls = Hulls(self._table, self.tolerance)
         pairs = hulls.meeting(near_rows(self.boxes, self.tolerance), own_nodes, places)
@@ -233,15 +233,15 @@ class Network:
         counts = [
             _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
         ]
-        inner = self._sizes = np.array(counts, dtype=np.int64) - 1
+        inner = self._sizes = np.array(counts, dtype=np.intp) - 1
         begins = np.cumsum(inner) - inner
         number = np.repeat(np.arange(len(edges)), inner)
         share = (np.arange(1, len(number) + 1) - begins[number]) / (inner[number] + 1)
         parts = np.array([(e.curve, e.t0, e.t1 - e.t0) for e in edges]).reshape(-1, 3)[number]
-        spots = self._table.at(parts[:, 0].astype(np.int64), parts[:, 1] + parts[:, 2] * share)[0]
+        spots = self._table.at(parts[:, 0].astype(np.intp), parts[:, 1] + parts[:, 2] * share)[0]
         nodes = np.array(self.nodes, dtype=float).reshape(-1, 2)
         self._grid = self.to_grid(np.concatenate((nodes, spots)))
-        self._offset = begins + len(nodes) if edges else np.zeros(1, dtype=np.int64)
+        self._offset = begins + len(nodes) if edges else np.zeros(1, dtype=np.intp)
         self.node_grid = self._grid[: len(nodes)]
         keys, owner = pack(self._grid), np.concatenate((np.full(len(nodes), -1), number))
         order = np.lexsort((owner, keys))
@@ -288,10 +288,10 @@ class Network:
 
     def midpoints(self, numbers: Sequence[int]) -> NDArray[np.float64]:
         """Returns a point about halfway along each of some edges, in grid units."""
-        edges = np.array(numbers, dtype=np.int64)
+        edges = np.array(numbers, dtype=np.intp)
         count = self._sizes[edges]
         nodes = [(self.edges[k].start, self.edges[k].end) for k in numbers]
-        straight = self.node_grid[np.array(nodes, dtype=np.int64).reshape(-1, 2)].sum(axis=1) * (GRID / 2)
+        straight = self.node_grid[np.array(nodes, dtype=np.intp).reshape(-1, 2)].sum(axis=1) * (GRID / 2)
         inner = self._grid[np.where(count, self._offset[edges] + count // 2, 0)] * GRID
         halfway: NDArray[np.float64] = np.where(count[:, None] > 0, inner, straight)
         return halfway

@@ -30,7 +30,7 @@ _REACHES = (PARTS, PARTS // 2, 1)
 """Numbers of parts beside a shared end that a line through it separates."""
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 

@@ -24,7 +24,7 @@ _CUSP = 1e-6
 """Radians short of a half turn within which a corner is a cusp."""
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 
 
 @record(slots=True)
@@ -68,7 +68,7 @@ class Skeleton:
             bits += self._of_loop(loop)
         bits.sort(key=lambda bit: bit.is_round)
         self.straight = sum(not bit.is_round for bit in bits)
-        self.piece = np.array([b.piece for b in bits], dtype=np.int64)
+        self.piece = np.array([b.piece for b in bits], dtype=np.intp)
         self.first, self.last = np.array([b.first for b in bits]), np.array([b.last for b in bits])
         lines, rounds = bits[: self.straight], bits[self.straight :]
         self.start = np.array([b.start for b in bits]).reshape(-1, 2)

@@ -12,7 +12,7 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece
 from aidl_lang.geometry.evaluate import is_closed, round_range
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 _POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
 """Coefficients of 1, t, t² and t³ of a cubic, from its control points."""
 

@@ -61,9 +61,9 @@ class Sides:
 
     vertices: NDArray[np.float64]
     bounds: list[int]
-    owner: NDArray[np.int64]
-    place: NDArray[np.int64]
-    edges: NDArray[np.int64]
+    owner: NDArray[np.intp]
+    place: NDArray[np.intp]
+    edges: NDArray[np.intp]
     starts: list[list[int]]
 
 

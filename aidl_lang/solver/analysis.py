@@ -75,7 +75,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
     hard = np.isnan(problem.weight)
     satisfied = np.array(solution.satisfied, dtype=np.bool_)
     equal = _equal_rows(problem, hard & satisfied, order)
-    observed = np.array([node for _, node in problem.observables], dtype=np.int64)
+    observed = np.array([node for _, node in problem.observables], dtype=np.intp)
     nodes, node_of = np.unique(observed, return_inverse=True)
     riding = groups_riding(problem)
     with np.errstate(all="ignore"):
@@ -106,8 +106,8 @@ def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -
     equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
     if order is None:
         return equal
-    rank = np.empty(len(problem.holder), dtype=np.int64)
-    rank[np.array(order, dtype=np.int64)] = np.arange(len(order))
+    rank = np.empty(len(problem.holder), dtype=np.intp)
+    rank[np.array(order, dtype=np.intp)] = np.arange(len(order))
     return equal[np.argsort(rank[rows.constraint[equal]], kind="stable")]
 
 
@@ -145,7 +145,7 @@ def _mobility(
     jacobian = rows.only(movable[rows.columns])
     known = clear & (np.diff(jacobian.starts) == np.diff(rows.starts))
     pins = riding.pins(problem, jacobian)
-    observables, watch = matrix.take(distinct), Watch(group, row_seen)
+    observables, watch = matrix.take(distinct), Watch(group.astype(np.intp), row_seen.astype(np.intp))
     motions = Motions(problem.scale, places, row, riding.anchor[groups] if len(groups) else groups)
     known = np.concatenate((known, np.ones(len(pins), dtype=np.bool_)))
     return mobility(jacobian.above(pins), known, observables, watch, len(problem.parent), motions)
@@ -166,7 +166,7 @@ def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:
         if place == len(firsts):
             firsts.append(row)
         places.append(place)
-    return np.array(firsts, dtype=np.int64), np.array(places, dtype=np.int64)
+    return np.array(firsts, dtype=np.intp), np.array(places, dtype=np.intp)
 
 
 def _states(

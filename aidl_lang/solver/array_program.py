@@ -163,12 +163,12 @@ def _batches(
     ops: NDArray[np.int8], operands: NDArray[np.int32], levels: NDArray[np.int32], nodes: Ints
 ) -> list[Batch]:
     """Returns some nodes (k,) of a tape as batches in an order in which they can be evaluated."""
-    key = levels[nodes].astype(np.int64) * 64 + ops[nodes]
+    key = levels[nodes].astype(np.intp) * 64 + ops[nodes]
     order = np.argsort(key, kind="stable")
     nodes, key = nodes[order], key[order]
     found = []
     for low, high in pairwise(np.flatnonzero(np.diff(key, prepend=-1, append=-1)).tolist()):
-        columns = operands[nodes[low:high]].astype(np.int64).T
+        columns = operands[nodes[low:high]].astype(np.intp).T
         arity = int(np.count_nonzero(columns[:, 0] >= 0))
         found.append(Batch(int(key[low]) % 64, nodes[low:high], tuple(columns[:arity])))
     return found
@@ -181,7 +181,7 @@ class Schedule:
         self.tape = tape
         self.inputs = np.flatnonzero(tape.ops == Op.UNKNOWN)
         """The nodes that are unknowns."""
-        self.unknowns = tape.operands[self.inputs, 0].astype(np.int64)
+        self.unknowns = tape.operands[self.inputs, 0].astype(np.intp)
         """The index of the unknown at each of these nodes."""
 
     @cached_property
@@ -259,7 +259,7 @@ class ArrayFreezing:
         self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
         self._values = values.copy()
         self._branching = np.flatnonzero(_BRANCHES[tape.ops])
-        self.choices = np.zeros(len(self._branching), dtype=np.int64)
+        self.choices = np.zeros(len(self._branching), dtype=np.intp)
         if choosing and len(self._branching):
             self._choose(flipped)
         if differences:
@@ -294,12 +294,12 @@ class ArrayFreezing:
     def _choose(self, flipped: Collection[int]) -> None:
         nodes, values = self._branching, self._values
         ops = self._ops[nodes]
-        operands = self._operands[nodes].astype(np.int64)
+        operands = self._operands[nodes].astype(np.intp)
         first, second = values[operands[:, 0]], values[operands[:, 1]]
         second[ops == Op.ABS] = 0.0
         with np.errstate(all="ignore"):
             ahead = np.where(ops == Op.MINIMUM, first - second, second - first)
-            choice = (ahead > TIE * (1.0 + np.abs(first))).astype(np.int64)
+            choice = (ahead > TIE * (1.0 + np.abs(first))).astype(np.intp)
             choice[ops == Op.SELECT] = ~(first[ops == Op.SELECT] >= 0.0)
         if flipped:
             choice ^= np.isin(nodes, list(flipped))
@@ -363,13 +363,13 @@ class ArrayFreezing:
         count, width = len(self._values), len(self._free)
         nodes = _distinct(layout.nodes, count)
         columns = _distinct(layout.unknown, width)
-        indptr = np.zeros(len(roots) + 1, dtype=np.int64)
+        indptr = np.zeros(len(roots) + 1, dtype=np.intp)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
         affine = np.ones(len(roots), dtype=np.bool_)
         affine[layout.rows[self._curved(layout.nodes)]] = False
-        place = np.empty(width, dtype=np.int64)
+        place = np.empty(width, dtype=np.intp)
         place[columns] = np.arange(len(columns))
-        input_of = np.empty(width, dtype=np.int64)
+        input_of = np.empty(width, dtype=np.intp)
         input_of[self._schedule.unknowns] = self._schedule.inputs
         return ArrayProgram(
             roots,
@@ -410,7 +410,7 @@ class ArrayFreezing:
         row, second = rows[:0], roots[:0]
         for level in above.descending():
             row, node, parent, slope = above.take(level)
-            second = node if level else self._operands[node, 0].astype(np.int64)
+            second = node if level else self._operands[node, 0].astype(np.intp)
             key = row * max(count, width) + second
             order = np.argsort(key, kind="stable")
             key = key[order]
@@ -431,7 +431,7 @@ class ArrayFreezing:
         """Adds the pairs below those of one level, which are numbered from `low` on."""
         children = self._operands[node]
         at, k = np.nonzero((children >= 0) & self._varies[children])
-        child = children[at, k].astype(np.int64)
+        child = children[at, k].astype(np.intp)
         above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
 
     def _curved(self, nodes: Ints) -> Bools:

@@ -301,7 +301,7 @@ class _ImplicationTest:
 
     def _is_sum(self, row: int, relation: Relation) -> bool:
         """Tells whether the row is the same combination of others everywhere, as between affine rows."""
-        rows = np.array([*relation, row], dtype=np.int64)
+        rows = np.array([*relation, row], dtype=np.intp)
         columns = self._unknowns(rows)
         gradient = linearise(self.problem.tape, self.values, self.expressions[rows])[1]
         lengths = gradient.scaled(np.ones(len(rows)), self.problem.scale).lengths()
@@ -318,10 +318,10 @@ class _ImplicationTest:
     def _unknowns(self, rows: Sequence[int] | Ints) -> Ints:
         """Returns the unknowns that rows mention, whether or not they have a slope here."""
         found = mentioned(self.problem.tape, self.expressions[rows].tolist())
-        return each_once(np.array(found, dtype=np.int64))
+        return each_once(np.array(found, dtype=np.intp))
 
     def _follows(self, row: int, others: Sequence[int]) -> bool:
-        rows = np.array([*others, row], dtype=np.int64)
+        rows = np.array([*others, row], dtype=np.intp)
         columns = self._unknowns(rows)
         if max(len(rows), len(columns)) > TRIED:
             return False

@@ -130,7 +130,7 @@ def _freeze_to_arrays(
     movable[list(free)] = True
     differences = [root for root in roots if not isinstance(root, int)]
     further = itertools.count(len(values.nodes))
-    nodes = np.array([root if isinstance(root, int) else next(further) for root in roots], dtype=np.int64)
+    nodes = np.array([root if isinstance(root, int) else next(further) for root in roots], dtype=np.intp)
     freezing = ArrayFreezing(values.schedule, np.array(values.nodes), movable, flipped, differences)
     varying = freezing.varies(nodes)
     rows = np.flatnonzero(varying)

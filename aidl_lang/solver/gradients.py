@@ -104,7 +104,7 @@ class Sparse:
 
 
 def _starts(counts: NDArray[np.intp]) -> Ints:
-    return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts, dtype=np.int64)))
+    return np.concatenate((np.zeros(1, dtype=np.intp), np.cumsum(counts, dtype=np.intp)))
 
 
 def gradients(
@@ -176,8 +176,8 @@ def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -
 
 
 def _sparse(rows: Sequence[Gradient]) -> Sparse:
-    starts = np.cumsum([0, *(len(row) for row in rows)], dtype=np.int64)
-    columns = np.array([unknown for row in rows for unknown in row], dtype=np.int64)
+    starts = np.cumsum([0, *(len(row) for row in rows)], dtype=np.intp)
+    columns = np.array([unknown for row in rows for unknown in row], dtype=np.intp)
     return Sparse(starts, columns, np.array([slope for row in rows for slope in row.values()]))
 
 
@@ -192,7 +192,7 @@ def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tu
     values = schedule.evaluate(at)
     free = np.ones(len(at), dtype=np.bool_) if among is None else among
     freezing = ArrayFreezing(schedule, values, free)
-    counts = np.zeros(len(roots), dtype=np.int64)
+    counts = np.zeros(len(roots), dtype=np.intp)
     varying = np.flatnonzero(freezing.varies(roots))
     program = freezing.program(roots[varying])
     counts[varying] = np.diff(program.indptr)
@@ -228,7 +228,7 @@ class Sorted:
         self.of = np.argsort(part, kind="stable")
         self.count = np.bincount(part[part >= 0], minlength=parts)
         self.first = np.cumsum(self.count) - self.count + np.count_nonzero(part < 0)
-        self.place = np.empty(len(part), dtype=np.int64)
+        self.place = np.empty(len(part), dtype=np.intp)
         """The number of each within its part."""
         self.place[self.of] = np.arange(len(part)) - np.append(self.first, 0)[part][self.of]
 

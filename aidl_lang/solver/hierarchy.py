@@ -100,7 +100,7 @@ class Hierarchy:
         return list(map(int, self._group_depths[self.problem.group]))
 
     @cached_property
-    def _group_depths(self) -> NDArray[np.int64]:
+    def _group_depths(self) -> NDArray[np.intp]:
         return depths(self.problem.parent)
 
     @cached_property

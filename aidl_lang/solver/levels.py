@@ -77,7 +77,7 @@ class Levels:
         self.binding = self._hard.copy()
         """The hard constraints that have not been given up."""
         self._pairs = self._incidence()
-        self.constraints, self.unknowns = np.divmod(self._pairs, len(x))
+        self.constraints, self.unknowns = (n.astype(np.intp) for n in np.divmod(self._pairs, len(x)))
         """Pairs of a constraint and an unknown in it, by constraint."""
         self._evaluated: tuple[Floats, Floats] | None = None
 
@@ -92,7 +92,7 @@ class Levels:
         """The rows with all unknowns free, for stages that free all; None if values have a part in it."""
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
-        key = problem.rows.constraint[rows[row]] * len(everything) + unknown
+        key = problem.rows.constraint[rows[row]].astype(np.int64) * len(everything) + unknown
         key.sort()
         pairs: Ints = key[np.diff(key, prepend=-1) > 0]
         return pairs
@@ -120,9 +120,9 @@ class Levels:
         tier = self._tiers(depth, held)
         mentioned = np.zeros(len(problem.initial), dtype=np.bool_)
         mentioned[self.unknowns[active[self.constraints] & left[of_constraint[self.constraints]]]] = True
-        group_of = np.zeros(len(left), dtype=np.int64)
+        group_of = np.zeros(len(left), dtype=np.intp)
         group_of[of_constraint[held]] = problem.holder[held]
-        tried = np.zeros(len(left), dtype=np.int64)
+        tried = np.zeros(len(left), dtype=np.intp)
         for code in sorted(set(tier[mentioned & (tier < STANDING)].tolist())):
             hopeful = left & self._promising(violated, of_constraint, tier <= code, len(left))
             scope, free = self._scope(active, held & hopeful[of_constraint], tier <= code)
@@ -178,7 +178,7 @@ class Levels:
         width = len(self.x)
         placed = np.zeros(width, dtype=np.bool_)
         if pairs.size and len(self._pairs):
-            wanted = pairs[0] * width + pairs[1]
+            wanted = pairs[0].astype(np.int64) * width + pairs[1]
             nearest = np.minimum(np.searchsorted(self._pairs, wanted), len(self._pairs) - 1)
             placed[pairs[1, self._pairs[nearest] == wanted]] = True
         kind = np.where(problem.frame_of >= 0, KINDS["translations"], KINDS["positions"])

@@ -245,7 +245,7 @@ class _Loosening:
         hierarchy = self.hierarchy
         hierarchy.refresh(constraints)
         owned = hierarchy.rows(constraints)
-        owner = np.array(hierarchy.owners(constraints), dtype=np.int64)
+        owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
         place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
         matrix = np.zeros((len(owned), len(place)))
         ends = None if any(map(hierarchy.is_kept, place)) else hierarchy.values.still()

@@ -129,7 +129,7 @@ def mobility(
     observables rows over the same, in units of a typical motion, none of them zero
     """
     unknowns = len(motions.scale)
-    found = Mobility(np.zeros(groups, dtype=np.int64), np.zeros(unknowns, dtype=np.bool_), motions)
+    found = Mobility(np.zeros(groups, dtype=np.intp), np.zeros(unknowns, dtype=np.bool_), motions)
     if not len(observables):
         return found
     parts = _Parts(equations, known, observables, watch, unknowns)
@@ -214,11 +214,11 @@ def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tup
     pairs = np.flatnonzero(slot[part] >= 0)
     owner, group, row = slot[part[pairs]], parts.watch.groups[pairs], parts.watch.rows[pairs]
     count = int(parts.watch.groups.max()) + 1
-    keys, key = np.unique(owner * count + group, return_inverse=True)
+    keys, key = np.unique(owner.astype(np.int64) * count + group, return_inverse=True)
     if len(keys) == len(total):
-        return keys % count, total[keys // count]
+        return (keys % count).astype(np.intp), total[keys // count]
     seen = velocities[owner, parts.seen.place[row]]
-    return keys % count, _ranks(seen, key, len(keys), SEEN)
+    return (keys % count).astype(np.intp), _ranks(seen, key, len(keys), SEEN)
 
 
 # --- Large parts ---------------------------------------------------------------------------------
@@ -257,7 +257,7 @@ def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools
 
     total = degrees_of(observed)
     if not total:
-        return None, np.zeros(width, dtype=np.bool_), np.zeros(len(groups), dtype=np.int64), 0
+        return None, np.zeros(width, dtype=np.bool_), np.zeros(len(groups), dtype=np.intp), 0
     samples = null_space.sample(_unit(observed), SAMPLES)
     samples /= np.abs(samples).max()
     moving = np.abs(samples).max(axis=1) > RANK
@@ -295,7 +295,7 @@ def _times(matrix: Sparse, dense: Floats) -> Floats:
 def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
     """Returns the rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
-    found = np.zeros(keys, dtype=np.int64)
+    found = np.zeros(keys, dtype=np.intp)
     for members in _lots(order.count):
         slot = np.full(keys, -1)
         slot[members] = np.arange(len(members))
@@ -309,7 +309,7 @@ def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
 
 def _lots(*sizes: Ints) -> list[Ints]:
     """Groups parts by their sizes, each rounded up to a power of two."""
-    exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
+    exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.intp)
     found: dict[tuple[int, ...], list[int]] = defaultdict(list)
     for part, size in enumerate(zip(*exponents.tolist(), strict=True)):
         found[size].append(part)

@@ -70,10 +70,10 @@ class Rows:
     constraint (r,) the constraint that each row belongs to, ascending
     """
 
-    expression: NDArray[np.int64]
+    expression: NDArray[np.intp]
     at_most: NDArray[np.bool_]
     scale: Floats
-    constraint: NDArray[np.int64]
+    constraint: NDArray[np.intp]
 
 
 @record()
@@ -116,22 +116,22 @@ class Problem:
     initial: Floats
     scale: Floats
     kept: NDArray[np.bool_]
-    group: NDArray[np.int64]
-    frame_of: NDArray[np.int64]
-    parent: NDArray[np.int64]
+    group: NDArray[np.intp]
+    frame_of: NDArray[np.intp]
+    parent: NDArray[np.intp]
     rows: Rows
-    holder: NDArray[np.int64]
+    holder: NDArray[np.intp]
     weight: Floats
-    placed: NDArray[np.int64]
-    whole: NDArray[np.int64]
-    inside: NDArray[np.int64]
+    placed: NDArray[np.intp]
+    whole: NDArray[np.intp]
+    inside: NDArray[np.intp]
     named: bool = False
-    axis: NDArray[np.int64] | None = None
+    axis: NDArray[np.intp] | None = None
     longest: Floats | None = None
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     rigid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
-    thing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    thing: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     clinging: frozenset[int] | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
@@ -143,7 +143,7 @@ class Problem:
             ("standing", np.zeros(count, dtype=np.bool_)),
             ("spanned", np.zeros(count, dtype=np.bool_)),
             ("rigid", np.zeros(groups, dtype=np.bool_)),
-            ("thing", np.zeros(count, dtype=np.int64)),
+            ("thing", np.zeros(count, dtype=np.intp)),
         ):
             if len(getattr(self, name)) != len(usual):
                 object.__setattr__(self, name, usual)
@@ -181,28 +181,28 @@ class Problem:
         return replace(self, **constraint_arrays(constraints))
 
 
-def _by_constraint(pairs: NDArray[np.int64], count: int) -> list[frozenset[int]]:
+def _by_constraint(pairs: NDArray[np.intp], count: int) -> list[frozenset[int]]:
     found: list[set[int]] = [set() for _ in range(count)]
     for constraint, number in pairs.T.tolist():
         found[constraint].add(number)
     return list(map(frozenset, found))
 
 
-def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.int64]:
+def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.intp]:
     """Returns the pairs (2, k) of the index of each set of numbers and each number in it."""
     found = [(index, number) for index, numbers in enumerate(listed) for number in sorted(numbers)]
-    return np.array(found, dtype=np.int64).reshape(-1, 2).T
+    return np.array(found, dtype=np.intp).reshape(-1, 2).T
 
 
 class ConstraintArrays(TypedDict):
     """The fields of `Problem` that hold its constraints."""
 
     rows: Rows
-    holder: NDArray[np.int64]
+    holder: NDArray[np.intp]
     weight: Floats
-    placed: NDArray[np.int64]
-    whole: NDArray[np.int64]
-    inside: NDArray[np.int64]
+    placed: NDArray[np.intp]
+    whole: NDArray[np.intp]
+    inside: NDArray[np.intp]
 
 
 def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
@@ -210,12 +210,12 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
     rows = [(row, index) for index, constraint in enumerate(constraints) for row in constraint.rows]
     return {
         "rows": Rows(
-            np.array([row.expression for row, _ in rows], dtype=np.int64),
+            np.array([row.expression for row, _ in rows], dtype=np.intp),
             np.array([row.relation is Relation.AT_MOST for row, _ in rows], dtype=np.bool_),
             np.array([row.scale for row, _ in rows], dtype=np.float64),
-            np.array([index for _, index in rows], dtype=np.int64),
+            np.array([index for _, index in rows], dtype=np.intp),
         ),
-        "holder": np.array([c.group for c in constraints], dtype=np.int64),
+        "holder": np.array([c.group for c in constraints], dtype=np.intp),
         "weight": np.array([np.nan if c.weight is None else c.weight for c in constraints]),
         "placed": _pairs(c.placed for c in constraints),
         "whole": _pairs(c.whole for c in constraints),
@@ -223,12 +223,12 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
     }
 
 
-def depths(parent: NDArray[np.int64]) -> NDArray[np.int64]:
+def depths(parent: NDArray[np.intp]) -> NDArray[np.intp]:
     """Returns the depth (g,) of each group, 0 for the root; parents (g,) come before children."""
     found: list[int] = []
     for above in parent.tolist():
         found.append(0 if above < 0 else found[above] + 1)
-    return np.array(found, dtype=np.int64)
+    return np.array(found, dtype=np.intp)
 
 
 def violations(problem: Problem, nodes: Floats) -> Floats:

@@ -49,13 +49,13 @@ class Riding:
             home = np.where(self.movable & self.carried[problem.group], problem.group, -1)
             for axis in (0, 1):
                 held += _pinned(np.where(problem.axis == axis, home, -1), jacobian, len(self.carried))
-        return Sparse(np.arange(len(held) + 1), np.array(held, dtype=np.int64), np.ones(len(held)))
+        return Sparse(np.arange(len(held) + 1), np.array(held, dtype=np.intp), np.ones(len(held)))
 
 
 def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
     """Returns a coordinate of each group whose coordinates, those at `home` in it, can all shift alike."""
     entries = np.flatnonzero(home[jacobian.columns] >= 0)
-    key = jacobian.rows[entries] * groups + home[jacobian.columns[entries]]
+    key = jacobian.rows[entries].astype(np.int64) * groups + home[jacobian.columns[entries]]
     pairs, place = np.unique(key, return_inverse=True)
     slope = np.asarray(np.bincount(place, jacobian.entries[entries], len(pairs)), dtype=np.float64)
     held = each_once(pairs[np.abs(slope) > UNMOVED] % groups)
@@ -93,7 +93,7 @@ def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
 
 def _anchors(problem: Problem, carried: Bools) -> Ints:
     clinging = problem.clinging or frozenset()
-    anchor = np.zeros(len(carried), dtype=np.int64)
+    anchor = np.zeros(len(carried), dtype=np.intp)
     for group, parent in enumerate(problem.parent.tolist()):
         if group:
             anchor[group] = group if carried[group] and group in clinging else anchor[parent]
@@ -142,7 +142,7 @@ def riding_depths(problem: Problem, depths: Ints) -> Ints:
     it places, that is rigid or that no constraint around that group names; 0 if there is none. Above that
     depth it rides along with that group, or its parent.
     """
-    found = np.zeros(len(problem.parent), dtype=np.int64)
+    found = np.zeros(len(problem.parent), dtype=np.intp)
     if problem.named:
         frames = naming(problem).frames
         for group, parent in enumerate(problem.parent.tolist()):
@@ -164,4 +164,4 @@ def _marked(numbers: Ints, count: int) -> Bools:
 def mentioned(problem: Problem) -> Bools:
     """Returns the unknowns (n,) that occur in any row."""
     found = expression.mentioned(problem.tape, problem.rows.expression.tolist())
-    return _marked(np.array(found, dtype=np.int64), len(problem.initial))
+    return _marked(np.array(found, dtype=np.intp), len(problem.initial))

@@ -54,7 +54,7 @@ class Linearised:
         self.jacobian = np.zeros((len(rows), len(columns)))
         self.distance = np.zeros(len(rows))
         self.inequality = np.array([row.relation is Relation.AT_MOST for row in rows], dtype=np.bool_)
-        self.owner = np.array(hierarchy.owners(constraints), dtype=np.int64)
+        self.owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
         scale = hierarchy.problem.scale
         for i, row in enumerate(rows):
             for unknown, slope in found[row.expression].items():

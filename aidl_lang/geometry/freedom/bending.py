@@ -41,7 +41,7 @@ class Bending:
         holding = np.isnan(problem.weight) & np.array(solution.satisfied, dtype=np.bool_)
         equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
         self.equations = len(equal)
-        observed = np.array([node for _, node in problem.observables], dtype=np.int64)
+        observed = np.array([node for _, node in problem.observables], dtype=np.intp)
         self.roots = np.concatenate((rows.expression[equal], observed))
 
     @cached_property
@@ -109,7 +109,7 @@ class Bending:
         return matrix.scaled(np.ones(len(matrix)), self.problem.scale)
 
     def _second_differences(
-        self, rows: NDArray[np.int64], columns: NDArray[np.int64], step: Floats
+        self, rows: NDArray[np.intp], columns: NDArray[np.intp], step: Floats
     ) -> tuple[Floats, Floats]:
         """(r,) the value of each row one step along and one step back, less twice that between; and how much
         of it may be rounding.

@@ -16,7 +16,7 @@ from aidl_lang.geometry.freedom.bending import Bending
 from aidl_lang.solver.mobility import Motions
 
 Floats: TypeAlias = NDArray[np.float64]
-Ints: TypeAlias = NDArray[np.int64]
+Ints: TypeAlias = NDArray[np.intp]
 
 X, Y, NUMBER = 0, 1, 2
 ROOT, POINT, GEOMETRY, WHOLE = 0, 1, 2, 3

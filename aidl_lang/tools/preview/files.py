@@ -6,8 +6,6 @@ from codecs import BOM_UTF8
 from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from watchfiles import Change, awatch
-
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.files import Reads, may_be_read
 from aidl_lang.common.records import record
@@ -40,7 +38,9 @@ async def watch(file: Path, changed: Changed, begun: Begun) -> None:
 
 
 async def _watch(file: Path, changed: Changed, begun: Begun, polling: bool | None) -> None:
-    def concerns(change: Change, path: str) -> bool:
+    from watchfiles import awatch  # a program that nobody else writes is not watched
+
+    def concerns(change: object, path: str) -> bool:
         return may_be_read(path) or path == str(file)
 
     has_begun = False

@@ -41,7 +41,7 @@ _EDITS = frozenset({"aidl/setKnob", "aidl/drag", "aidl/fix"})
 _METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export", "aidl/exports"}
 """Requests that a page may send to the server."""
 _TYPING = "aidl/type"
-_OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
+OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
 """Requests about the text, which are answered here."""
 _CLIENT: Json = {
     "general": {"positionEncodings": ["utf-16"]},
@@ -200,7 +200,7 @@ class Host:
             return
         if request.method == _TYPING:
             self._spawn(self._answer(page, request, partial(self._type, page)))
-        elif request.method not in _METHODS | _OWN:
+        elif request.method not in _METHODS | OWN:
             page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
         elif request.method == _ATTEMPT:
             if page.attempt is not None:
@@ -233,7 +233,7 @@ class Host:
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
         """Has a request of a page answered, most by the server."""
-        if request.method in _OWN:
+        if request.method in OWN:
             self._spawn(self._answer(page, request, self._changes[request.method], then))
             return
 
@@ -248,7 +248,7 @@ class Host:
 
     @property
     def _changes(self) -> dict[str, Callable[[Json], None]]:
-        """Returns what carries out each of `_OWN`, given its parameters. They raise CannotError."""
+        """Returns what carries out each of `OWN`, given its parameters. They raise CannotError."""
         return {
             "aidl/undo": lambda _: self.text.undo(),
             "aidl/redo": lambda _: self.text.redo(),

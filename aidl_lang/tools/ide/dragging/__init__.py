@@ -114,14 +114,14 @@ def _solved(
         initial=at,
         scale=np.where(leads, 1.0, _DEAR) * problem.scale,
         kept=~free,
-        group=np.zeros(len(at), dtype=np.int64),
+        group=np.zeros(len(at), dtype=np.intp),
         frame_of=np.full(len(at), -1),
         parent=np.array([-1]),
         holder=np.zeros_like(problem.holder),
         named=False,
         standing=_are(lowered, frozenset()),
         spanned=_are(lowered, frozenset()),
-        thing=np.zeros(len(at), dtype=np.int64),
+        thing=np.zeros(len(at), dtype=np.intp),
         observables=(),
     )
     solution = solve(flat, _SETTINGS)

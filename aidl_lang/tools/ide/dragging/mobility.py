@@ -9,7 +9,6 @@ from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, spelled_out
@@ -140,7 +139,7 @@ def is_somewhere(at: Vec) -> bool:
 # points that a first guess moves; those of positions and sizes together, the points that a size moves.
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 
 MOST_UNKNOWNS = 300
 """Most unknowns of a connected part that is analysed."""
@@ -393,6 +392,7 @@ def _null_space(matrix: Floats) -> Floats:
     rows = matrix[lengths > _MOVES] / lengths[lengths > _MOVES, None]
     if not len(rows):
         return np.eye(width)
-    basis, triangle, _ = qr(rows.T, pivoting=True)
-    rank = int((np.abs(np.diag(triangle)) > _RANK * max(rows.shape)).sum())
-    return np.asarray(basis[:, rank:])
+    rows = np.asarray(np.linalg.qr(rows, mode="r") if len(rows) > width else rows)
+    sizes, basis = np.linalg.svd(rows)[1:]
+    rank = int((sizes > _RANK * max(rows.shape)).sum())
+    return np.asarray(basis[rank:].T)

@@ -1,6 +1,6 @@
-/** The two ways to a host: the page is a webview of VS Code, or it talks to `aidl preview` by a WebSocket. By either it
- * speaks JSON-RPC: the requests of the language server below `aidl/`.
- * @import { Ask, Message, Tell, Told, VsCodeApi } from "./protocol.js"
+/** The ways to a host: the page is a webview of VS Code, or it talks on a line, which is a WebSocket to `aidl preview` or
+ * what the page has in its place. By each it speaks JSON-RPC: the requests of the language server below `aidl/`.
+ * @import { Ask, Line, Message, Tell, Told, VsCodeApi } from "./protocol.js"
  */
 
 /**
@@ -43,7 +43,7 @@ export class Refusal extends Error {
  */
 export function connect(listener) {
   if (typeof acquireVsCodeApi === "function") return webview(acquireVsCodeApi(), listener);
-  return new Socket(document.body.dataset.socket || "socket", listener);
+  return new Caller(typeof dialAidl === "function" ? dialAidl : socket, listener);
 }
 
 /** Requests that wait for their answers. */
@@ -121,23 +121,29 @@ function webview(code, listener) {
   return { code, ask: conversation.ask, tell: conversation.tell, reconnect: () => {} };
 }
 
+/** @returns {Line} */
+function socket() {
+  const url = new URL(document.body.dataset.socket || "socket", location.href);
+  url.protocol = url.protocol.replace(/^http/, "ws");
+  return new WebSocket(url);
+}
+
 /** @implements {Host} */
-class Socket {
+class Caller {
   code = null;
-  /** @type {WebSocket | null} */
-  #socket = null;
+  /** @type {Line | null} */
+  #line = null;
   #wait = FIRST_WAIT;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #timer = undefined;
 
   /**
-   * @param {string} address relative to the page
+   * @param {() => Line} dial
    * @param {Listener} listener
    */
-  constructor(address, listener) {
+  constructor(dial, listener) {
+    this.dial = dial;
     this.listener = listener;
-    this.url = new URL(address, location.href);
-    this.url.protocol = this.url.protocol.replace(/^http/, "ws");
     this.conversation = new Conversation((message) => this.#post(message), listener.told);
     this.ask = this.conversation.ask;
     this.tell = this.conversation.tell;
@@ -147,27 +153,27 @@ class Socket {
 
   /** @param {Message} message */
   #post(message) {
-    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
-    this.#socket.send(JSON.stringify(message));
+    if (this.#line?.readyState !== WebSocket.OPEN) return false;
+    this.#line.send(JSON.stringify(message));
     return true;
   }
 
   reconnect() {
-    if (this.#socket !== null) return;
+    if (this.#line !== null) return;
     this.#wait = FIRST_WAIT;
     this.#open();
   }
 
   #open() {
     clearTimeout(this.#timer);
-    const socket = (this.#socket = new WebSocket(this.url));
-    socket.addEventListener("open", () => this.listener.open());
-    socket.addEventListener("message", (event) => {
+    const line = (this.#line = this.dial());
+    line.addEventListener("open", () => this.listener.open());
+    line.addEventListener("message", (event) => {
       this.#wait = FIRST_WAIT; // a host that takes no more pages opens the connection to say so
       this.conversation.hear(parsed(event.data));
     });
-    socket.addEventListener("close", ({ reason }) => {
-      this.#socket = null;
+    line.addEventListener("close", ({ reason }) => {
+      this.#line = null;
       this.conversation.break();
       this.#timer = setTimeout(() => this.#open(), this.#wait * 1000);
       this.listener.lost(this.#wait, reason);

@@ -46,12 +46,16 @@ class Pane {
   #fitted = /** @type {Box} */ ([0, 0, 0, 0]);
 
   stage = part("stage", HTMLElement);
-  uri = document.body.dataset.uri ?? "";
   host = connect({
     told: (told) => this.receive(told),
     open: () => this.open(),
     lost: (seconds, reason) => this.lost(seconds, reason),
   });
+
+  /** Of the document that is shown: a host may come to show another. */
+  get uri() {
+    return document.body.dataset.uri ?? "";
+  }
 
   constructor() {
     remembering(this.host.code);

@@ -168,6 +168,17 @@ export interface VsCodeApi {
   setState(state: unknown): void;
 }
 
+/** What of a WebSocket the pane needs to talk to its host. `readyState` is that of one. It may open again, when the host
+ * has another program. */
+export interface Line {
+  readonly readyState: number;
+  send(text: string): void;
+  /** A message has `data`, a close has the `reason`. */
+  addEventListener(type: "open" | "message" | "close", listener: (event: any) => void): void;
+}
+
 declare global {
   function acquireVsCodeApi(): VsCodeApi;
+  /** Where a page has it, it is called in place of opening a WebSocket. */
+  function dialAidl(): Line;
 }

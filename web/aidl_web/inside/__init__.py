@@ -1,0 +1,1 @@
+"""What runs in the browser: the host of the pane, and what `aidl_lang` counts on there."""
