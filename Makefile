@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 SITE   := build/site-venv
 # The target that builds the playground, if there is one.
-PLAYGROUND = $(shell grep -o '^site-playground:' $(firstword $(MAKEFILE_LIST)))
+PLAYGROUND = yes
 READY  := $(VENV)/.ready
 
 # Tests start hundreds of processes: each would compile all modules anew.
@@ -86,6 +86,9 @@ bench: $(READY) ## measure the command and the stages
 
 bench-commands: $(READY) ## measure whole commands beside OpenSCAD, on the pairs of programs in FOLDER
 	$(BIN)/python benchmarks/commands.py $(FOLDER)
+
+bench-stages: $(READY) ## measure each stage of a compile on the examples, or on the programs in FOLDERS
+	$(BIN)/python benchmarks/stages.py $(FOLDERS)
 
 bench-editor: $(READY) ## measure what an editor waits for
 	$(BIN)/python benchmarks/editor.py
