@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 SITE   := build/site-venv
-# The target that builds the playground, if there is one.
+# With `PLAYGROUND=` the site is built without the playground.
 PLAYGROUND = yes
 READY  := $(VENV)/.ready
 
@@ -12,7 +12,7 @@ READY  := $(VENV)/.ready
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours site pane editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples site-playground test-playground lock clean
+.PHONY: help demo test test-all fuzz fuzz-readers fuzz-mends test-model lint ceilings format reference colours site pane editors vscode test-vscode bench bench-commands bench-stages bench-editor bench-check bench-regions bench-sweep bench-solver bench-peers accept examples site-playground test-playground lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
