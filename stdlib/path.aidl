@@ -340,34 +340,38 @@ fn line_by(dx: length, dy: length, smooth: bool = false) =
 fn line_by(length: length, angle: angle, smooth: bool = false) =
     record(kind: "line_along", length: length, angle: angle, smooth: smooth)
 
-/// A step of a path: to the right, exactly level.
+/// A step of a path: to the right, exactly level. Of a point, the place as far to the right of it: `plate.top_left.right(27)`.
 ///
 /// ```aidl
 /// solid stair { edge = path(from: (0, 0), right(30), up(10), left(15), up(10), left(15), close()) }
 /// ```
 fn right(distance: length, smooth: bool = false) =
     line_by(dx: distance, dy: fixed(0), smooth: smooth)
+fn right(from: point, distance: length) = from + (distance, 0)
 
-/// A step of a path: to the left, exactly level.
+/// A step of a path: to the left, exactly level. Of a point, the place as far to the left of it: `plate.top_left.left(27)`.
 ///
 /// ```aidl
 /// solid flag { edge = path(from: (0, 0), line_to((30, 5)), up(20), left(30), close()) }
 /// ```
 fn left(distance: length, smooth: bool = false) = right(-distance, smooth: smooth)
+fn left(from: point, distance: length) = from + (-distance, 0)
 
-/// A step of a path: upwards, exactly upright.
+/// A step of a path: upwards, exactly upright. Of a point, the place as far above it: `plate.top_left.up(27)`.
 ///
 /// ```aidl
 /// solid wedge { edge = path(from: (0, 0), right(30), up(15), close()) }
 /// ```
 fn up(distance: length, smooth: bool = false) = line_by(dx: fixed(0), dy: distance, smooth: smooth)
+fn up(from: point, distance: length) = from + (0, distance)
 
-/// A step of a path: downwards, exactly upright.
+/// A step of a path: downwards, exactly upright. Of a point, the place as far below it: `plate.top_left.down(27)`.
 ///
 /// ```aidl
 /// solid notch { edge = path(from: (0, 0), right(30), down(15), left(10), up(5), left(20), close()) }
 /// ```
 fn down(distance: length, smooth: bool = false) = up(-distance, smooth: smooth)
+fn down(from: point, distance: length) = from + (0, -distance)
 
 /// A step of a path: straight on, after turning to the left by `turn`.
 ///
