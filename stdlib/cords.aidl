@@ -20,6 +20,35 @@ shape cord(start: point, end: point, sag: length = norm(end - start) / 5) {
     way = bezier(start, lerp(start, low, 2 / 3), lerp(end, low, 2 / 3), end)
 }
 
+// The way of a hose: a Bézier that keeps to its directions over about `reach`.
+shape hose_way(
+    start: point, end: point, leaving: angle, arriving: angle, reach: length = norm(end - start) / 2
+) {
+    way = bezier(start, start + polar(reach, leaving), end - polar(reach, arriving), end)
+}
+
+/// A smooth tube from `start` to `end`, `width` across: a hose, a pipe or a cable between two parts, which it follows.
+///
+/// `leaving` and `arriving` are directions of travel: one that goes out upwards and comes in from above has 90deg and
+/// -90deg. It keeps to them over about `reach`, half of the straight way if none is said.
+///
+/// ```aidl
+/// assembly pump {
+///     solid tank { body = rectangle(center: (0, 0), width: 40, height: 30) }
+///     solid motor { body = rectangle(center: (90, -5), width: 40, height: 20) }
+///     @color("dimgray")
+///     solid pipe { v = hose(tank.body.top_center, motor.body.top_center, 6, leaving: 90deg, arriving: -90deg) }
+/// }
+/// ```
+fn hose(
+    start: point,
+    end: point,
+    width: length,
+    leaving: angle,
+    arriving: angle = leaving,
+    reach: length = norm(end - start) / 2
+) = thick(hose_way(start, end, leaving, arriving, reach), width, caps: butt)
+
 /// A coiled cord from `start` to `end`, as a telephone's: `turns` loops to the left of its way, `width` across in all.
 ///
 /// It leaves and arrives straight on, over a share `lead` of its way at both ends. `start` and `end` may be points of any

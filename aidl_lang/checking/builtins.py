@@ -276,7 +276,7 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"coil", "spring", "chain", "cord", "ray_lines"})
+CONNECTING = frozenset({"coil", "spring", "chain", "cord", "hose", "hose_way", "ray_lines"})
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
