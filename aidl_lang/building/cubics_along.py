@@ -68,7 +68,7 @@ class Cubic:
     def _ways(self) -> tuple[Place, Place, Place]:
         """A third of the derivative at the control points of its own."""
         a, b, c, d = self.points
-        return _way(a, b), _way(b, c), _way(c, d)
+        return way(a, b), way(b, c), way(c, d)
 
     @cached_property
     def _spans(self) -> tuple[_Span, ...]:
@@ -160,7 +160,7 @@ class Cubic:
         return _weighed(self.points, weights), ex.atan2(y, x)
 
 
-def _way(a: Place, b: Place) -> Place:
+def way(a: Place, b: Place) -> Place:
     return ex.sub(b[0], a[0]), ex.sub(b[1], a[1])
 
 

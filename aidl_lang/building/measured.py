@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.cubics_along import Cubic
+from aidl_lang.building.cubics_along import Cubic, way
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.building.motion import Place
@@ -35,9 +35,7 @@ _MEANS = 6
 
 @record(eq=False)
 class _Side:
-    """A piece of an outline: its ends, its length, its share ½∮(x dy - y dx) of the area and ½∮x² dy and
-    -½∮y² dx of the moments, and points of it at the first guesses.
-    """
+    """A piece of an outline: `area` is ½∮(x dy - y dx) and `moments` ½∮x² dy, -½∮y² dx over it."""
 
     ends: tuple[Place, Place] | None
     length: Expression
@@ -51,15 +49,14 @@ def formula(of: Measurement) -> Expression | None:
     if of.kind not in ("area", "perimeter") or len(of.of) != 1:
         return None
     thing = of.of[0]
-    outlines = [thing] if isinstance(thing, Geometry) else list(thing.own())
-    holes = [] if isinstance(thing, Geometry) else [g for child in thing.children for g in child.own()]
-    if isinstance(thing, Structure) and (
-        len(outlines) != 1
-        or any(child.kind not in ("hole", "drawing") or child.children for child in thing.children)
-    ):
+    outlines, children = (
+        (list(thing.own()), thing.children) if isinstance(thing, Structure) else ([thing], [])
+    )
+    if len(outlines) != 1 or any(c.children or c.kind not in ("hole", "drawing") for c in children):
         return None
+    holes = [g for c in children if c.kind == "hole" for g in c.own()]
     total = ex.ZERO
-    for sign, geometry in [(1, g) for g in outlines] + [(-1, g) for g in holes if g.owner.kind == "hole"]:
+    for sign, geometry in [(1, outlines[0]), *((-1, g) for g in holes)]:
         if (loops := _loops(geometry, geometry.owner)) is None:
             return None
         for share, sides in loops:
@@ -184,8 +181,7 @@ def _arc(g: Geometry, here: Structure) -> _Side:
     first = math.atan2(a[1].value - c[1].value, a[0].value - c[0].value)
     at = (first + phi.value * k / _SAMPLES for k in range(_SAMPLES + 1))
     sampled = tuple((c[0].value + r.value * math.cos(t), c[1].value + r.value * math.sin(t)) for t in at)
-    (u, v), (s, t) = ((ex.sub(p[0], c[0]), ex.sub(p[1], c[1])) for p in (a, b))
-    swept = ex.mul(ex.apply("square", r), phi)
+    ((u, v), (s, t)), swept = (way(c, p) for p in (a, b)), ex.mul(ex.apply("square", r), phi)
     area = _sum((0.5, swept), (0.5, ex.sub(ex.mul(c[0], ex.sub(t, v)), ex.mul(c[1], ex.sub(s, u)))))
 
     def moment(middle: Expression, low: Expression, high: Expression, both: Expression) -> Expression:

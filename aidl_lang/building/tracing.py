@@ -6,15 +6,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from aidl_lang.building.model import Geometry
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.building.values import TextVal, Value
 from aidl_lang.common.drawings.drawing import Trace
 from aidl_lang.syntax import ast
 
 
 def trace_of(it: Interpreter, name: str) -> Trace:
-    """Returns the outlines under a name, of the drawing in whose definitions the call under way stands."""
-    return it.program.resolution.drawings[it.call_sites[-1].span.source].outlines.trace(name)
+    """Returns the outlines under a name, of the drawing whose definitions call; ends building elsewhere."""
+    call = it.call_sites[-1]
+    if (drawing := it.program.resolution.drawings.get(call.span.source)) is None:
+        it.refuse(call, 'imports write it: `import "logo.svg" as logo` has the parts of a drawing')
+        raise Stop
+    return drawing.outlines.trace(name)
 
 
 def part(it: Interpreter, a: Mapping[str, Value], node: ast.Call, env: Env) -> Value:
