@@ -18,6 +18,7 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
+_FILLING = ("color", "shade")
 _OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
 """Looks and numbers that a body has as a whole."""
 
@@ -147,7 +148,7 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
 def is_filled(geometry: SolvedGeometry) -> bool:
     """Tells whether a geometry is an area with a look of its own: a line has a width or dashes."""
     stated = geometry.attributes
-    return ("color" in stated or "shade" in stated) and not ("stroke" in stated or "dash" in stated)
+    return any(look in stated for look in _FILLING) and not ("stroke" in stated or "dash" in stated)
 
 
 def is_unlined(stated: Attributes) -> bool:
@@ -213,13 +214,11 @@ def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
 
 
 def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[str]) -> list[Diagnostic]:
-    """Returns warnings about looks of geometry that encloses nothing of the body that it is in; of what is
-    `loose` it is told elsewhere that it is open.
-    """
+    """Returns warnings about looks of geometry that encloses nothing of its body, but what is `loose`."""
     return [
         Diagnostic(
             "W0727",
-            f"{' and '.join(ticked(g.attributes.keys() & {'color', 'shade'}, '@'))} of `{g.path}` "
+            f"{' and '.join(ticked([w for w in _FILLING if w in g.attributes], '@'))} of `{g.path}` "
             f"counts for nothing: it encloses no part of `{s.path}`",
             g.span,
             hints=("put it where there is material, or into a `drawing`",),

@@ -11,11 +11,10 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, TimeoutError, sync_playwright
+from playwright.sync_api import Browser, TimeoutError
 
 from aidl_site import checking
 from tests.documents import ROOT
-from tests.preview.conftest import ARGUMENTS, CHROMIUM
 
 SITE = ROOT / "build" / "site"
 SHOWN = "index.html", "tutorial.html", "gallery.html", "howto/holes.html", "reference/rounds.html"
@@ -58,16 +57,6 @@ def test_programs_have_colours(page: str) -> None:
     text = (SITE / page).read_text("utf-8")
     assert re.search(r'<span class="kt">solid</span>', text)
     assert 'class="err"' not in text
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    if CHROMIUM is None:
-        pytest.skip("there is no Chromium here")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield started
-        started.close()
 
 
 class _Quiet(http.server.SimpleHTTPRequestHandler):

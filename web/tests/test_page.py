@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from aidl_web.site import built
-from tests.preview.conftest import ARGUMENTS, CHROMIUM
 from web.tests.places import MISSING, PYODIDE
 
 pytestmark = pytest.mark.slow
@@ -54,16 +53,6 @@ def serving(kind: type[SimpleHTTPRequestHandler], folder: Path) -> Iterator[str]
 def server(site: Path) -> Iterator[str]:
     with serving(Handler, site) as address:
         yield address
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    if CHROMIUM is None:
-        pytest.skip("there is no Chromium")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield browser
-        browser.close()
 
 
 @dataclass
