@@ -20,12 +20,9 @@ from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.staying import leaving_notes
 from aidl_lang.geometry.alone import all_geometry, region_alone
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.curves import Piece, bounds, inward, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import bounds, inward
-from aidl_lang.geometry.measures import area, perimeter
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
@@ -176,7 +173,7 @@ def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluat
     """Tells whether the box of an outline is off by no more than its curves are: parallel curves of cubics
     and ellipses are fitted, and true only towards the axes of the drawing, while a structure may be turned.
     """
-    from aidl_lang.geometry.strips import FIT
+    from aidl_lang.geometry.offsets import FIT
 
     assert isinstance(evaluate.measure, _Measure)
     slack = FIT * evaluate.measure.extent(outline)

@@ -17,8 +17,8 @@ from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, file_names
 from aidl_lang.export.cuts import outlines
 from aidl_lang.export.profiles import CUTS, PLAIN
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
+from aidl_lang.geometry.region import area, length
 
 # --- The list of what is to be cut: each part that differs from the others, and how many pieces of it.
 

@@ -17,10 +17,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, ends, point, points
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 # --- The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension

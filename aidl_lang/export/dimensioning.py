@@ -15,13 +15,10 @@ from aidl_lang.common.records import record
 from aidl_lang.export import themes
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
 from aidl_lang.export.marks import Group, Text
-from aidl_lang.geometry.curves import Arc, Circle, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
-from aidl_lang.geometry.dimensions.clipped import is_clipped
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
+from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, bounds, point
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 MOST = 40

@@ -21,9 +21,22 @@ from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    ends,
+    point,
+    reverse,
+    round_range,
+)
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import TAU, ends, point, reverse, round_range
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 

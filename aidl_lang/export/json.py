@@ -14,14 +14,19 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.render.compact import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
-from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import Measures
-from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.geometry.solved import Box, Finish, Mobility, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.tessellate import face_polygons
+from aidl_lang.geometry.region import Loop, Measures, Region, face_polygons
+from aidl_lang.geometry.solved import (
+    Box,
+    Finish,
+    Mobility,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    described,
+)
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")

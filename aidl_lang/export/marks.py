@@ -8,8 +8,7 @@ from dataclasses import field, replace
 from typing import NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Line, Piece, Vec, image
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, image
 from aidl_lang.geometry.region import Face, Loop
 
 # --- The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards.

@@ -14,15 +14,12 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Job, themes
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
-from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import Bounds, are_near, bounds
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.parts import COARSE
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, piece_points, region_polygons
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.tessellate import piece_points, region_polygons
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.
 

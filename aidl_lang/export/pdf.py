@@ -21,8 +21,19 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export import ExportError
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.png import FAMILY, font_file
-from aidl_lang.geometry.curves import Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, Bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.curves import (
+    TAU,
+    Bezier,
+    Bounds,
+    Circle,
+    Line,
+    Piece,
+    Vec,
+    derivative,
+    ends,
+    point,
+    round_range,
+)
 from aidl_lang.geometry.region import Loop
 from aidl_lang.version import __version__
 

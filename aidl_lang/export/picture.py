@@ -18,16 +18,12 @@ from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
-from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
-from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.stacking import stacked
-from aidl_lang.geometry.styles import DASH, GAP, Style
-from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
+from aidl_lang.geometry.styles import DASH, GAP, Style, stacked
 
 if TYPE_CHECKING:
     from aidl_lang.export.svg import Halos

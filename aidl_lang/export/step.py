@@ -46,9 +46,20 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, round_range
-from aidl_lang.geometry.joints import jointed
+from aidl_lang.geometry.boolean import jointed
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    ends,
+    round_range,
+)
 from aidl_lang.geometry.placement import Plane, placement_notes
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style

@@ -36,15 +36,26 @@ from aidl_lang.export.marks import (
     scaled,
 )
 from aidl_lang.geometry.boolean import without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Bounds,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    point,
+    points,
+    union_bounds,
+)
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.evaluate import Bounds, bounds, ends, point, points
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, region_bounds
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.stacking import stacked
-from aidl_lang.geometry.styles import Shade
+from aidl_lang.geometry.styles import Shade, stacked
 
 # --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
 

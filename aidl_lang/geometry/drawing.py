@@ -16,38 +16,69 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
-from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
-from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
-from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
-from aidl_lang.geometry.crossings import crossing_notes
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, all_bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
+from aidl_lang.geometry.bodies import (
+    Bodies,
+    Clips,
+    IdleHole,
+    InnerLoop,
+    LooseCurves,
+    Mass,
+    clip_sections,
+    clip_shapes,
+    empty_clips,
+    inner_seams,
+    visible_seams,
+)
+from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.curves import (
+    LARGEST,
+    NO_LENGTH,
+    Arc,
+    Bounds,
+    Circle,
+    Ellipse,
+    Piece,
+    all_bounds,
+    bounds,
+    is_finite,
+    union_bounds,
+)
+from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
-from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
     StackedBody,
     covered_note,
+    crossing_notes,
     lettering_note,
+    overhanging_notes,
     unseen_note,
 )
 from aidl_lang.geometry.letters import lettered_region
-from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import GRID, Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
-from aidl_lang.geometry.overhanging import overhanging_notes
+from aidl_lang.geometry.network import GRID, Network, with_finer_chords
+from aidl_lang.geometry.notes import (
+    detached_notes,
+    finding_notes,
+    gap_note,
+    stroked_note,
+    unusable_note,
+    upright_note,
+)
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
-from aidl_lang.geometry.region import Face, Region
-from aidl_lang.geometry.seams import inner_seams, visible_seams
-from aidl_lang.geometry.sections import Section, fill, intersection
+from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
+from aidl_lang.geometry.sections import Section, Traced, fill, intersection, trace, trace_all
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.stacking import idle_orders, stacked
-from aidl_lang.geometry.styles import Style, idle_areas, idle_looks, is_filled, styled, styles_of
-from aidl_lang.geometry.tessellate import region_polygons
-from aidl_lang.geometry.trace import Traced, trace, trace_all
-from aidl_lang.geometry.tracing import ENGRAVED
+from aidl_lang.geometry.styles import (
+    Style,
+    idle_areas,
+    idle_looks,
+    idle_orders,
+    is_filled,
+    stacked,
+    styled,
+    styles_of,
+)
 
 SLIT = "slit"
 _Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
@@ -226,7 +257,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
-            from aidl_lang.geometry.thin import thin_wall_notes
+            from aidl_lang.geometry.walls import thin_wall_notes
 
             notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
         loose = {g.path for f in walk.findings if isinstance(f, LooseCurves) for g, _ in f.curves}

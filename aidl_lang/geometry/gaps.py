@@ -16,8 +16,7 @@ from dataclasses import replace
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Finding, LooseCurves
-from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, bounds, ends, is_closed
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network

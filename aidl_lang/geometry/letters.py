@@ -12,14 +12,11 @@ from itertools import pairwise
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import common, without
-from aidl_lang.geometry.curves import Bezier, Line, Piece
-from aidl_lang.geometry.evaluate import all_bounds, ends, reverse
-from aidl_lang.geometry.measures import loop_area, region_bounds
+from aidl_lang.geometry.curves import Bezier, Line, Piece, all_bounds, ends, reverse, union_bounds
 from aidl_lang.geometry.nearness import near_rows
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import fill
-from aidl_lang.geometry.trace import closed_loop, faces_of, first_point, trace
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Region, loop_area, region_bounds
+from aidl_lang.geometry.sections import closed_loop, faces_of, fill, first_point, trace
 
 
 def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:

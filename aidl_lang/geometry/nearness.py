@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.running import checkpoint, give_up
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Floats, Ints, Mask
 
 _AT_ONCE = 1 << 20
 """Number of candidates looked at in one step, which bounds the memory."""
 
 _MOST_PAIRS = 2_000_000
 """Pairs of boxes that meet, beyond which no drawing is worked out in time."""
-
-Ints = NDArray[np.intp]
-Floats = NDArray[np.float64]
 
 
 def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
@@ -127,7 +123,7 @@ class Sides:
         return away
 
 
-def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
+def inside(polygons: Sequence[Floats], spots: Floats) -> Mask:
     """Returns the mask of points inside an odd number of polygons, by the crossings of rays to the right."""
     crossings = np.zeros(len(spots), dtype=np.intp)
     if polygons and len(spots):
@@ -140,5 +136,5 @@ def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
             straddle = (ay > py) != (by > py)
             x = ax + (py - ay) / np.where(straddle, by - ay, 1.0) * (bx - ax)
             crossings += np.bincount(spot[straddle & (x > px)], minlength=len(spots))
-    odd: NDArray[np.bool_] = crossings % 2 == 1
+    odd: Mask = crossings % 2 == 1
     return odd

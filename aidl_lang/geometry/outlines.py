@@ -10,20 +10,34 @@ from dataclasses import field, replace
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
-from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped_each
-from aidl_lang.geometry.curves import Line, Piece, Vec
-from aidl_lang.geometry.described import as_geometry
-from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
+from aidl_lang.geometry.boolean import clipped_each, common, united, without
+from aidl_lang.geometry.curves import (
+    LARGEST,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    is_finite,
+    reverse,
+    union_bounds,
+)
+from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
-from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.misfits import Misfit, merged_notes, misfits
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.offsets import NEAR, offset, thick
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
+from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
+from aidl_lang.geometry.region import Region, area, length
+from aidl_lang.geometry.solved import (
+    Box,
+    Finish,
+    Leaves,
+    Recipe,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    as_geometry,
+)
 from aidl_lang.geometry.styles import is_filled
 from aidl_lang.geometry.tiling import (
     MOST,
@@ -34,8 +48,8 @@ from aidl_lang.geometry.tiling import (
     tiled_strokes,
 )
 
-Leaves = Sequence[tuple[SolvedGeometry, Piece]]
-"""Primitives that are drawn, with their curves."""
+# --- Works out outlines derived from others, and finished corners, as recorded while building.
+
 
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
@@ -299,7 +313,7 @@ class _Outliner:
         """
         if all(f.sizes for f in reasons):
             return works, reasons
-        from aidl_lang.geometry.fitting import fitted
+        from aidl_lang.geometry.finishing import fitted
 
         curves = [c for _, c in leaves]
         works = fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
@@ -446,3 +460,35 @@ def _deepest(region: Region, too_deep: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if offset(region, -middle) else (low, middle)
     return low
+
+
+# --- Drawings that are clipped to the material of a solid, once that is known.
+
+
+def on_material(model: SolvedModel, drawing: Drawing) -> SolvedModel:
+    """Returns a model with its drawings as far as they lie on the solids that they are clipped to; `drawing`:
+    that of the model without.
+    """
+    return replace(model, root=_inked(model.root, drawing, None))
+
+
+def _inked(s: SolvedStructure, drawing: Drawing, around: Region | None) -> SolvedStructure:
+    """Returns a structure with its drawings clipped; `around`: the material that those around it lie on."""
+    ground = around
+    if s.ground is not None:
+        ground = _material(drawing, s.ground)
+        ground = ground if around is None else common(ground, around)
+    children = tuple(_inked(child, drawing, ground) for child in s.structures)
+    if ground is None:
+        return replace(s, structures=children)
+    inside = s.inside if s.ground is None else ground
+    return replace(s, structures=children, finished=tuple(clipped_ink(s.drawn, ground)), inside=inside)
+
+
+def _material(drawing: Drawing, path: str) -> Region:
+    """Returns what is left of a solid in the end: the bodies around it have holes, too."""
+    region = drawing.regions.get(path, Region())
+    for body in drawing.bodies:
+        if f"{path}.".startswith(f"{body.path}.") and body.path != path:
+            region = common(region, body.region)
+    return region

@@ -15,15 +15,13 @@ from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.contacts import UNNOTICED, Solid
-from aidl_lang.geometry.distance import lie_within, nearest_region
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
+from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.faces import OwnFace
-from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, region_bounds
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -32,10 +30,10 @@ from aidl_lang.geometry.sections import (
     holes_of,
     intersection,
     is_nothing,
+    trace_all,
     union,
 )
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.trace import trace_all
 
 _RING = 3
 """Outlines that a solid has at least where a piece of it lies in an opening of another."""

@@ -11,16 +11,16 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.building.expression import exact_turn
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Floats
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
-Matrix = NDArray[np.float64]
+Matrix = Floats
 
 _UP: Matrix = np.array((0.0, 0.0, 1.0))
 _RIGHT: Matrix = np.array((1.0, 0.0, 0.0))

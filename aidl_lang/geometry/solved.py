@@ -1,22 +1,32 @@
-"""The solved model in numbers: what regions, exporters and readers of the API see.
-
-Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
-"""
+"""The solved model in numbers: what regions, exporters and readers of the API see."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, all_bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.curves import (
+    FIELDS,
+    Arc,
+    Bezier,
+    Bounds,
+    Circle,
+    Piece,
+    Vec,
+    all_bounds,
+    union_bounds,
+)
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
+
+# --- The solved model in numbers: what regions, exporters and readers of the API see.
+#
+# Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
 
 Scalar: TypeAlias = float | int | bool | str
 Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]
@@ -140,6 +150,10 @@ class SolvedGeometry:
     def curves(self) -> Iterator[Piece]:
         """Yields these curves."""
         return (leaf.curve for leaf in self.leaves() if leaf.curve is not None)
+
+
+Leaves: TypeAlias = Sequence[tuple[SolvedGeometry, Piece]]
+"""Primitives that are drawn, with their curves."""
 
 
 @record()
@@ -395,3 +409,27 @@ class SolvedModel:
     def sizes(self) -> tuple[Dimension, ...]:
         """The sizes that the program states, the more important first (see `dimensions`)."""
         return self.size_up(self)
+
+
+# --- Curves that were worked out as geometry of a solved model.
+
+
+def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
+    """Returns a curve as a geometry: a part of another, or beside it in a structure."""
+    kind, values = described(curve)
+    path = f"{around or of.path}.{name}"
+    return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
+
+
+def described(curve: Piece) -> tuple[str, Values]:
+    """Returns the type and the fields of a curve."""
+    if isinstance(curve, Bezier):
+        return curve.kind, {"points": (curve.p0, curve.p1, curve.p2, curve.p3)}
+    values: Values = {}
+    for name in FIELDS[type(curve)]:
+        value = getattr(curve, name)
+        if name == "sweep":
+            values["clockwise"] = value < 0
+        elif name != "first":
+            values[name] = math.degrees(value) if name == "angle" else value
+    return curve.kind, values

@@ -15,20 +15,25 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.boolean import clearance, within
-from aidl_lang.geometry.clipping import clipped_each
-from aidl_lang.geometry.curves import Line, Piece, Vec, image
-from aidl_lang.geometry.evaluate import Bounds, bounds, turn_between
-from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.geometry.boolean import clearance, clipped_each, within
+from aidl_lang.geometry.curves import (
+    Bounds,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    image,
+    turn_between,
+    union_bounds,
+)
 from aidl_lang.geometry.nearness import Sides, inside
-from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, union_bounds
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.region import Face, Loop, Region, area, region_bounds, region_polygons
 
 MOST = 10_000
 """Copies of a cell that are made at most."""
@@ -40,8 +45,6 @@ _NEXT = 3
 """Steps within which neighbours of a cell are looked for, either way."""
 _AT_ONCE = 1000
 """Copies whose distance to the border is looked at together, which bounds the memory."""
-
-Floats = NDArray[np.float64]
 
 
 class TooManyCopiesError(Exception):

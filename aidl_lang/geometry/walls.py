@@ -1,39 +1,52 @@
-"""The thinnest wall and the narrowest gap of a region, and where they are.
-
-A wall is a straight chord through the material, a gap one through the empty space beside it, that meets the
-outline at a right angle at both ends. A corner counts as if it were rounded a little: a chord may end there
-in any direction between the normals of its two edges. So a rectangle has the wall of its shorter side, a
-circle that of its diameter, a ring, an L-profile and a comb that of their legs, and a corner where two edges
-simply meet is no wall.
-
-Where a part gets narrower towards its end, no chord is at right angles to both sides; there the end counts:
-one edge or round whose two neighbours leave it at 90 to 105 degrees, from tip to tip.
-
-Where the outline touches itself, the material hangs together by a point, and the wall is 0.
-
-Pairs of elements of the outline are tried in growing distance from each other until nothing shorter can come.
-The shortest chord that crosses nothing is the answer. Chords that end on ellipses or Bézier curves are found
-on chords of the curve, and settled by Newton's method.
-"""
+"""The thinnest wall and the narrowest gap of a region, and where they are."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.materials import least_wall
+from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.chords import ANGLE, Chords, chords, joined
-from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
-from aidl_lang.geometry.distance import piece_distance
-from aidl_lang.geometry.evaluate import derivative, ends, is_closed, point, second_derivative
+from aidl_lang.geometry.boolean import piece_distance
+from aidl_lang.geometry.chords import ANGLE, Chords, Skeleton, chords, direction, joined, within
+from aidl_lang.geometry.curves import (
+    Arc,
+    Circle,
+    Floats,
+    Line,
+    Vec,
+    derivative,
+    ends,
+    is_closed,
+    point,
+    second_derivative,
+)
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.skeleton import Floats, Skeleton, direction, within
+from aidl_lang.geometry.solved import SolvedStructure
+
+# --- The thinnest wall and the narrowest gap of a region, and where they are.
+#
+# A wall is a straight chord through the material, a gap one through the empty space beside it, that meets
+# the outline at a right angle at both ends. A corner counts as if it were rounded a little: a chord may end
+# there in any direction between the normals of its two edges. So a rectangle has the wall of its shorter
+# side, a circle that of its diameter, a ring, an L-profile and a comb that of their legs, and a corner where
+# two edges simply meet is no wall.
+#
+# Where a part gets narrower towards its end, no chord is at right angles to both sides; there the end
+# counts: one edge or round whose two neighbours leave it at 90 to 105 degrees, from tip to tip.
+#
+# Where the outline touches itself, the material hangs together by a point, and the wall is 0.
+#
+# Pairs of elements of the outline are tried in growing distance from each other until nothing shorter can
+# come. The shortest chord that crosses nothing is the answer. Chords that end on ellipses or Bézier curves
+# are found on chords of the curve, and settled by Newton's method.
 
 _LEAN = math.radians(15)
 """Greatest lean of each side of a narrowing end towards the other."""
@@ -343,5 +356,29 @@ def _seen(a: Floats, b: Floats) -> Floats:
     return angles
 
 
-def _vec(row: NDArray[np.float64]) -> Vec:
+def _vec(row: Floats) -> Vec:
     return float(row[0]), float(row[1])
+
+
+# --- Finds walls that are thinner than their material allows.
+
+
+def thin_wall_notes(
+    root: SolvedStructure, bodies: Sequence[tuple[str, Region, str | None]]
+) -> Iterator[Diagnostic]:
+    """Yields a warning for each body, with its region and material, that is somewhere too thin."""
+    spans = {s.path: s.span for s in root.walk()}
+    for path, region, material in bodies:
+        least = least_wall(material) if material and region else None
+        wall = thin_wall(region, least) if least is not None else None
+        if wall is None or least is None:
+            continue
+        x, y = ((a + b) / 2 for a, b in zip(wall.a, wall.b, strict=True))
+        yield Diagnostic(
+            "W0715",
+            f"`{path}` is {short(wall.length, 3)} mm wide at ({short(x, 3)}, {short(y, 3)}), and walls of "
+            f"{material} hold from {short(least)} mm",
+            spans.get(path),
+            "too thin there",
+            hints=("`aidl measure` shows the thinnest wall of each part",),
+        )

@@ -27,10 +27,9 @@ from aidl_lang.export.comparison.changes import (
     Version,
     pose_of,
 )
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import Arc, Line, Vec
-from aidl_lang.geometry.measures import measure
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, measure
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
 
 # --- Pairs the structures and geometries of two versions: by path first, renamed ones by shape.

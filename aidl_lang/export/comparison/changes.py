@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
-from aidl_lang.geometry.contacts import Contact
-from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
+from aidl_lang.geometry.boolean import Contact
+from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec, point
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import point
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel
 
 # --- Rigid motions of the plane, and finding the one between two poses.

@@ -14,15 +14,11 @@ import numpy as np
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
 from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon, widened
 from aidl_lang.geometry.boolean import section_of
-from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, point, union_bounds
 from aidl_lang.geometry.drawing import Stroke
-from aidl_lang.geometry.evaluate import Bounds, point
-from aidl_lang.geometry.measures import area, measure
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.region import Face, Region
-from aidl_lang.geometry.sections import difference, intersection, union
-from aidl_lang.geometry.tessellate import face_polygons
-from aidl_lang.geometry.trace import trace_all
+from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
+from aidl_lang.geometry.sections import difference, intersection, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
 INKS = {"both": "#64748b", "before": "#c2500a", "after": "#0b3c5d"}

@@ -19,7 +19,7 @@ from aidl_lang.export.comparison.changes import (
     StructureChange,
     Value,
 )
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import Vec
 
 EQUAL = "no difference"

@@ -10,15 +10,12 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import Pen, Sheet
 from aidl_lang.export.dimensioning import visible
-from aidl_lang.geometry.contacts import Contacts
-from aidl_lang.geometry.curves import Circle, Piece, Vec
+from aidl_lang.geometry.boolean import Contacts
+from aidl_lang.geometry.curves import Circle, Piece, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions, overall
 from aidl_lang.geometry.dimensions.completing import completed
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.engraving import engraved
-from aidl_lang.geometry.evaluate import bounds, point
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.parts import gathered, shape_of
+from aidl_lang.geometry.parts import engraved, gathered, shape_of
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,

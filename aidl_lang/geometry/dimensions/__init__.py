@@ -12,14 +12,17 @@ from aidl_lang.building.expression import Evaluator, Expression
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.values import Num
-from aidl_lang.geometry.curves import Arc, Circle
-from aidl_lang.geometry.dimensions.clipped import left_of
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Arc, Circle
 from aidl_lang.geometry.dimensions.constraints import by_hand, stated_lengths
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, length_along
-from aidl_lang.geometry.dimensions.fields import field_sizes
-from aidl_lang.geometry.dimensions.patterns import pattern_pitches
+from aidl_lang.geometry.dimensions.features import (
+    X_AXIS,
+    Y_AXIS,
+    field_sizes,
+    left_of,
+    length_along,
+    pattern_pitches,
+)
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")

@@ -15,14 +15,21 @@ from itertools import chain, pairwise, product
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, bounds, nearest, point
 from aidl_lang.geometry.dimensions import sketch as sk
-from aidl_lang.geometry.dimensions.features import length_between
-from aidl_lang.geometry.dimensions.fields import round_dimension
-from aidl_lang.geometry.dimensions.sketch import Level, Places, Reading, Sketch, Span, flipped
-from aidl_lang.geometry.dimensions.telling import ALONG, less, told
+from aidl_lang.geometry.dimensions.features import length_between, round_dimension
+from aidl_lang.geometry.dimensions.sketch import (
+    ALONG,
+    Level,
+    Places,
+    Reading,
+    Sketch,
+    Span,
+    flipped,
+    less,
+    told,
+)
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import bounds, nearest, point
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import Dimension, Length, Roundness
 

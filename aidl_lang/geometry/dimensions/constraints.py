@@ -20,8 +20,9 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.dimensions.features import (
+    SizedGeometry,
     angle_of,
     dot,
     extreme,
@@ -29,10 +30,10 @@ from aidl_lang.geometry.dimensions.features import (
     length_along,
     length_between,
     length_of_line,
+    level_angle,
     meeting,
+    round_dimension,
 )
-from aidl_lang.geometry.dimensions.fields import SizedGeometry, level_angle, round_dimension
-from aidl_lang.geometry.evaluate import NO_LENGTH, turn_between
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
