@@ -27,7 +27,7 @@ from aidl_lang.building.primitives import (
 )
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.common.drawings.strokes import furthest
+from aidl_lang.common.drawings.drawing import furthest
 from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record
 

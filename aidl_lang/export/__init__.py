@@ -322,7 +322,7 @@ def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
     """Returns the pages of the cut list that are asked for."""
     if "list" not in jobs[0].options.show:
         return []
-    from aidl_lang.export.cut_list_files import pages
+    from aidl_lang.export.cut_list import pages
 
     return pages(jobs)
 
@@ -369,7 +369,7 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
     ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
-    ".csv": Format(_writer("cut_list_files", "to_csv"), cuts=True),
+    ".csv": Format(_writer("cut_list", "to_csv"), cuts=True),
     ".step": Format(_each("step", "to_step"), "STEP solid", "OCP", "step"),
     ".stp": Format(_each("step", "to_step"), needs="OCP", extra="step"),
     ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
@@ -391,7 +391,7 @@ def render(picture: Picture, suffix: str, options: Options) -> bytes:
 
         return to_svg(picture, units=options.units).encode()
     if suffix == ".png":
-        from aidl_lang.export.png import to_png
+        from aidl_lang.export.pdf import to_png
 
         return to_png(picture, options.pixels)
     from aidl_lang.export.pdf import to_pdf
@@ -406,7 +406,7 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
     if suffix == ".svg":
         data, *further = (render(page, suffix, options) for page in pages)
         return Exported(data, tuple(further))
-    from aidl_lang.export.png import character_notes
+    from aidl_lang.export.pdf import character_notes
 
     if suffix == ".pdf":
         from aidl_lang.export.pdf import to_pdf

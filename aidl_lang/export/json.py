@@ -12,7 +12,7 @@ from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import rounded
-from aidl_lang.common.render.compact import to_dict as diagnostic_dict
+from aidl_lang.common.render.terminal import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS

@@ -9,8 +9,7 @@ from dataclasses import field, replace
 from typing import TypeAlias
 
 from aidl_lang.building.model import Geometry
-from aidl_lang.common.drawings.drawing import Element
-from aidl_lang.common.drawings.strokes import Bow, Stroke
+from aidl_lang.common.drawings.drawing import Bow, Element, Stroke
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import (

@@ -10,8 +10,19 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
-from aidl_lang.common.drawings.strokes import TURN, Bow, Matrix, Stroke, cubics, ends, mapped
+from aidl_lang.common.drawings.drawing import (
+    TURN,
+    Bow,
+    Collector,
+    DrawingError,
+    Engraving,
+    Matrix,
+    Remark,
+    Stroke,
+    cubics,
+    ends,
+    mapped,
+)
 from aidl_lang.common.font_files import Vec
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint

@@ -11,11 +11,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.drawings import xml
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
-from aidl_lang.common.drawings.strokes import (
+from aidl_lang.common.drawings import svg_values as xml
+from aidl_lang.common.drawings.drawing import (
     STILL,
+    Collector,
+    DrawingError,
+    Engraving,
     Matrix,
+    Remark,
     Stroke,
     ends,
     mapped,
@@ -24,6 +27,7 @@ from aidl_lang.common.drawings.strokes import (
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
     SHAPES,
+    Node,
     ValueMistake,
     declarations,
     numbers,
@@ -31,7 +35,6 @@ from aidl_lang.common.drawings.svg_values import (
     pixels,
     transform,
 )
-from aidl_lang.common.drawings.xml import Node
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
