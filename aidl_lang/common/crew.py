@@ -94,9 +94,7 @@ class Crew(Generic[K, T]):
         self._waiting[self._engine.submit(call.seconds, call.task, *call.arguments)] = call
 
     def came(self, timeout: float | None = None) -> list[tuple[K, T | Broke]]:
-        """Returns the calls that are done, once there are some or after `timeout` seconds. Raises
-        EngineError.
-        """
+        """Returns the calls that are done, once there are some or the time is up. Raises EngineError."""
         longest = _STALLED * max((call.seconds for call in self._waiting.values()), default=0.0)
         done, _ = wait(self._waiting, longest if timeout is None else timeout, FIRST_COMPLETED)
         if done or not self._engine.places:

@@ -183,9 +183,7 @@ class Font:
         return character in self._file
 
     def glyph(self, character: str) -> tuple[Glyph | None, float]:
-        """Returns the outline of a character at the origin (None for a blank) and its advance width.
-        Raises FontError.
-        """
+        """Returns the outline of a character (None: blank) and its advance width. Raises FontError."""
         if character not in self._made:
             self._made[character] = self._read(character)
         return self._made[character]

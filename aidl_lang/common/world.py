@@ -69,9 +69,7 @@ def normalize(path: str) -> str:
 
 
 def relative_to(path: str, importer: str) -> str:
-    """Returns the path from the root for one written in the file `importer`. Raises FileError as `normalize`
-    does.
-    """
+    """Returns the path from the root of one written in `importer`. Raises FileError as `normalize` does."""
     if PurePosixPath(path).is_absolute():
         raise FileError(path, ReadFailure.OUTSIDE)
     return normalize(str(PurePosixPath(importer).parent / path))

@@ -29,9 +29,7 @@ _PLACES = 5
 
 
 def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
-    """Returns the solution of a problem that states constants, with each of them that does not hold as a
-    failure of its own.
-    """
+    """Returns the solution of a problem of constants; each constraint that fails is a failure."""
     found = []
     for index, stated in enumerate(lowered.stated):
         sides = (side for part in stated.comparisons for side in (part.left, part.right)) if stated else ()

@@ -90,17 +90,13 @@ class Remedy:
     flat_at: str = ""
 
     def would_fit(self, numbers: int = 1) -> str:
-        """Returns the words of a message; they name the number if several `numbers` are written at its
-        place.
-        """
+        """Returns the words of a message; they name the number if its place has several `numbers`."""
         instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
         return f"{self.shown}{instead} would fit"
 
 
 def dear(dial: Dial, share: float, plain: bool) -> float:
-    """Returns the cost of changing a number by a `share` of itself; `plain` if the new number has few
-    digits.
-    """
+    """Returns the cost of changing a number by a `share`; `plain` if the new one has few digits."""
     return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
 
 
@@ -152,9 +148,7 @@ class RemedySearch:
 
     @cached_property
     def reach(self) -> float:
-        """The relative change of the number that its influence predicts, times its cost; infinite if nothing
-        is predicted.
-        """
+        """The relative change that the number's influence predicts, times its cost; infinite if unknown."""
         value = self.dial.value
         if self.is_late:
             return np.inf
@@ -188,9 +182,7 @@ class RemedySearch:
 
     @cached_property
     def _even_target(self) -> float | None:
-        """The value at which the violation would vanish if it fell linearly with the number; None if
-        unknown.
-        """
+        """Where the violation would vanish if it fell linearly with the number; None if unknown."""
         value = self.dial.value
         if not (off := self._lack(value)):
             return None
@@ -296,9 +288,7 @@ class RemedySearch:
         return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
 
     def _other_end(self, end: _Written, change: float) -> _Written | None:
-        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None
-        if all fit that may be meant.
-        """
+        """Returns the other end of what fits; `end` if none was found, None if all that may be meant fits."""
         inside = end.value
         for part in _BEYOND:
             outside = end.value + part * change
@@ -329,9 +319,7 @@ class RemedySearch:
         return written if written and self._is_sharp(written, step) else None
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
-        """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;
-        else `written`.
-        """
+        """Returns the short number found `onward` at a `target`, if it fits and is an end; else `written`."""
         limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
         near = 0.1 * _NUDGE * max(abs(target), 1.0)
         limit = next((limit for limit in limits if abs(limit.value - target) <= near), written)
@@ -363,9 +351,7 @@ class RemedySearch:
         return self.trials.lack(self._at(value), self.failure)
 
     def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
-        """Returns the first spelling of a number that fits. If one fails for other reasons than its digits,
-        no other is tried.
-        """
+        """Returns the first spelling that fits; none further once one fails by more than its digits."""
         for written in spelled:
             if self._fits(written):
                 return written
@@ -385,9 +371,7 @@ class RemedySearch:
     # -- digits
 
     def _spelled(self, target: float, onward: float) -> Iterator[_Written]:
-        """Yields spellings of a number, the shortest first. If `onward` is not 0, numbers a little further in
-        that direction will do as well.
-        """
+        """Yields spellings, the shortest first; with `onward` those a little further in that direction."""
         for digits in range(_MEANT + 1):
             if abs(round(target, digits) - target) <= _NEAR * max(1.0, abs(target)):
                 yield self._plain(round(target, digits) + 0.0)
@@ -437,9 +421,7 @@ _ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(const
 
 
 def left_out(constraint: Constraint) -> Fix | None:
-    """Removes a statement that has a line for itself, or stands between semicolons, with the `@allow(…)` that
-    is said of it.
-    """
+    """Removes a statement on its own line or between semicolons, with its `@allow(…)`."""
     span, text = constraint.span, constraint.span.source.text
     allowing = _ALLOWING.search(text, 0, span.start)
     if allowing is not None:

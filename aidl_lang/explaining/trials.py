@@ -69,9 +69,7 @@ class Trials:
     _places: dict[tuple[tuple[int, ...], int], dict[int, float] | None] = field(
         default_factory=dict, repr=False
     )
-    """Values at which the constraints of a failure hold without one of them, which may be in several
-    failures.
-    """
+    """Values at which the constraints of a failure hold without one, which several may share."""
 
     @cached_property
     def _clock(self) -> Clock:
@@ -110,9 +108,7 @@ class Trials:
         return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
-        """Returns the constraints of a failure and those that took part in the search, without those of other
-        failures.
-        """
+        """Returns a failure's constraints and those in its search, without those of other failures."""
         others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
         return [i for i in failure.within if hard[i] and i not in others]
@@ -179,9 +175,7 @@ class Trials:
     def _counterpart(
         self, edits: Sequence[Edit], failure: GroupFailure
     ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
-        """Returns the problem after the edits, with its numbers of the constraints and of the unknowns; None
-        if it has errors or is of another kind.
-        """
+        """Returns the edited problem, its constraints and unknowns by number; None for another kind."""
         if self.is_over or (other := self._with(edits)) is None:
             return None
         if (matched := _matched(self.lowered, other)) is None:
@@ -218,9 +212,7 @@ class Trials:
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
-        """Tells whether edits that resolve a failure leave no errors, such as another failure or a failing
-        assertion.
-        """
+        """Tells whether edits that resolve a failure leave no other error or failing assertion."""
         return not has_errors(self.diagnostics(edits))
 
     def idles(self, edits: Sequence[Edit]) -> bool:
@@ -261,9 +253,7 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """Returns the numbers of the constraints in another problem by those in this one; None if they are not
-    stated in the same order.
-    """
+    """Returns another problem's constraints by numbers in this one; None if their order differs."""
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -271,9 +261,7 @@ def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
 
 
 def _by_text(one: Lowered, other: Lowered) -> dict[int, int]:
-    """Returns the numbers of the constraints in another problem, some of which were left out, by those that
-    read the same.
-    """
+    """Returns the numbers of another problem's constraints, by those here that read the same."""
     found = {(c.text, c.label, c.holder.path): i for i, c in enumerate(other.stated) if c is not None}
     keys = ((i, (c.text, c.label, c.holder.path)) for i, c in enumerate(one.stated) if c is not None)
     return {i: found[key] for i, key in keys if key in found}
@@ -297,9 +285,7 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """Returns a key for each unknown that it keeps in another problem: its path, and the number of earlier
-    unknowns with that path.
-    """
+    """Returns a key that each unknown keeps: its path, and how many before it have that path."""
     met: Counter[str] = Counter()
     found = []
     for path in lowered.problem.names:
@@ -334,9 +320,7 @@ def verified(
 
 
 def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Trials) -> bool:
-    """Tells whether a program with the findings `before` no longer has `found` after a fix, and nothing
-    worse.
-    """
+    """Tells whether a fix removes `found` from the findings `before`, and nothing gets worse."""
     if trials.is_over or not trials.can_edit(fix.edits) or found.code in _SAID:
         return found.code in _SAID and trials.can_edit(fix.edits)
     after = trials.diagnostics(fix.edits)

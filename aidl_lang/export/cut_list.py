@@ -113,9 +113,7 @@ def _item(job: Job, number: int, group: Sequence[Part], names: _Names) -> Item:
 
 
 class _Names:
-    """What bodies are called in a list: by their paths from the root, arrays that are all of one item without
-    the numbers of their members.
-    """
+    """Names of bodies in a list: paths from the root, without the indices of arrays all of one item."""
 
     def __init__(self, job: Job) -> None:
         self._root = job.model.root.path
@@ -137,9 +135,7 @@ def _stem(name: str) -> str:
 
 @record()
 class Sheet:
-    """What is on a sheet: how many pieces of which number, which share of it they are, how long all cuts
-    are, mm.
-    """
+    """What is on a sheet: how many pieces of which number, their share of it, the length of cuts, mm."""
 
     number: int
     material: str
@@ -224,9 +220,7 @@ class Writing(Protocol):
 def contents(
     writing: Writing, name: str, suffix: str
 ) -> tuple[list[tuple[str, bytes]], tuple[Diagnostic, ...]]:
-    """Returns all files of an output, each with its name, and diagnostics about them. Raises as `writing`
-    does.
-    """
+    """Returns all files of an output by name, and diagnostics about them. Raises as `writing` does."""
     if not is_pattern(name):
         made = writing(suffix)
         datas = (made.data, *made.further)
@@ -324,9 +318,7 @@ _SHEETS = ("sheet", "material", "thickness_mm", "pieces", "numbers", "used_perce
 
 
 def to_csv(jobs: Sequence[Job]) -> Exported:
-    """Writes the list; below it, where parts are laid on sheets, a line for each sheet. Raises ExportError
-    if there is no part.
-    """
+    """Writes the list, and below it that of the sheets. Raises ExportError if there is no part."""
     found = jobs[0].cut_list
     if not found.items:
         raise ExportError(

@@ -366,9 +366,7 @@ class Sheet:
         return bool((away * away).sum(axis=1).min() < reach * reach)
 
     def seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
-        """Returns the points on an outline, else such points between them: the end of an edge may be
-        hidden.
-        """
+        """Returns the points on an outline, else such between them: the end of an edge may be hidden."""
         (x0, y0), (x1, y1) = points[0], points[-1]
         between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
         return next(filter(None, (tuple(filter(self.is_drawn, spots)) for spots in (points, between))), ())

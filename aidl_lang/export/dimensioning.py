@@ -198,9 +198,7 @@ class _Layout:
                 return replace(found, crosses=tuple(centers), ring=ring)
 
     def _length(self, of: Length, words: str) -> PlacedDimension | None:
-        """Places a length, measured from a visible point if there is one; a cross marks an end that is
-        not.
-        """
+        """Places a length from a point that is seen, if there is one; a cross marks an end that is not."""
         start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
@@ -336,9 +334,7 @@ class _Layout:
 
 
 def _turn(of: Dimension) -> tuple[int, float]:
-    """Returns the sort key for placing: lengths along the axes from the shortest, then those with more
-    choice.
-    """
+    """Returns the sort key of placing: axial lengths from the shortest, then what has more choice."""
     if of.offset is not None:
         return -1, of.value
     if isinstance(of, Length):

@@ -375,9 +375,7 @@ class _Entities:
         return made
 
     def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
-        """Yields x, y and bulge at the start of a piece and where it is split. The bulge is tan(sweep /
-        4).
-        """
+        """Yields x, y and bulge, tan(sweep / 4), where a piece starts and where it is split."""
         if not isinstance(piece, Arc):
             yield (*self._at(ends(piece)[0]), 0.0)
             return

@@ -78,9 +78,7 @@ class Area:
 
     @property
     def is_sign(self) -> bool:
-        """True for a mark of its own, such as a letter or the head of an arrow; false for a solid without
-        outline.
-        """
+        """True for a mark of its own, as a letter or an arrowhead; false for a solid without outline."""
         return self.ink is None and self.role not in ("", HALO)
 
 
@@ -105,9 +103,7 @@ class Curves:
 
 @record()
 class Text:
-    """A line of text; `anchor` is start, middle or end, `at` lies on its baseline, which rises by `angle`
-    degrees.
-    """
+    """A line of text; `anchor` is start, middle or end; its baseline through `at` rises by `angle`°."""
 
     at: Vec
     text: str

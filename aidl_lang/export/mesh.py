@@ -229,9 +229,7 @@ def _tool(
 def _extruded(
     faces: list[list[NDArray[np.float64]]], thickness: float, tools: Sequence[manifold3d.Manifold]
 ) -> manifold3d.Mesh64 | None:
-    """Extrudes faces, each given by its outline and its holes, and cuts tools out of them; returns None if
-    Manifold's numbers do not reach.
-    """
+    """Extrudes faces (outline, holes) less some tools; None if Manifold's numbers do not reach."""
     try:
         if max(map(len, faces)) > _MANY:
             solid = manifold3d.Manifold.compose([_drilled(*face, thickness=thickness) for face in faces])

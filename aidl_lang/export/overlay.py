@@ -222,9 +222,7 @@ def _names(at: Explainer) -> Iterator[Mark]:
 
 
 def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
-    """Places a name in the upper left corner of a structure without parts, if it fits; else around its
-    box.
-    """
+    """Places a name in the upper left corner of a structure without parts if it fits, else around it."""
     inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, themes.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
@@ -343,9 +341,7 @@ def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
 
 
 def _box_of(structure: SolvedStructure, path: str) -> Bounds | None:
-    """Returns the box of the structure, geometry or point that a path leads to, or of its last known
-    element.
-    """
+    """Returns the box of what a path leads to, or of its last known element."""
     if path != structure.path and not path.startswith((structure.path + ".", structure.path + "[")):
         return None
     for child in structure.structures:

@@ -75,9 +75,7 @@ _WHOLE_TURN = TAU - 1e-12
 
 
 class Shapes:
-    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it. Ends meet within `tolerance`,
-    mm.
-    """
+    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it, with a `tolerance`, mm."""
 
     def __init__(self, plane: Plane, tolerance: float, thickness: float = 0.0) -> None:
         self._build = BRep_Builder()
@@ -312,9 +310,7 @@ def _refusals(path: str) -> Iterator[None]:
 
 @contextmanager
 def _settings(tolerance: float) -> Iterator[None]:
-    """Sets Open CASCADE's settings, which are global to the process, and drops its messages; restores both in
-    the end.
-    """
+    """Sets Open CASCADE's settings, global to the process, drops its messages, and restores both."""
     STEPCAFControl_Controller.Init_s()
     wanted = _SETTINGS | {"write.precision.val": repr(tolerance)}
     before = {name: Interface_Static.CVal_s(name) for name in wanted}

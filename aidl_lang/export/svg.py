@@ -75,9 +75,7 @@ def svgwrite() -> Any:
 
 @contextmanager
 def _loaded_later(name: str, *functions: str) -> Iterator[None]:
-    """Replaces a module that is not loaded: functions imported from it meanwhile load it when they are
-    called.
-    """
+    """Replaces a module that is not loaded; functions imported from it load it when called."""
     if name in sys.modules:
         yield
         return
@@ -99,9 +97,7 @@ def _calling(name: str, function: str) -> Callable[..., Any]:
 
 
 class _StandIn(ModuleType):
-    """A placeholder module that gives way to the real one when another thread asks for anything else in
-    it.
-    """
+    """A placeholder module that gives way to the real one when another thread asks it for more."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -140,9 +136,7 @@ def loop_path(loop: Loop) -> str:
 
 
 def open_path(pieces: Sequence[Piece]) -> str:
-    """Returns curves one after the other, moving only where one does not start at the end of the one
-    before.
-    """
+    """Returns curves one after the other, moving only where one does not start at the end before."""
     return "".join(_chain(pieces))
 
 

@@ -35,9 +35,7 @@ _WHY: Mapping[str, str] = {
 
 
 def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    """Returns a note if the program states looks that such a file is without. `cuts`: a cutter may
-    read the format.
-    """
+    """Returns a note if a file has no place for stated looks; `cuts`: a cutter may read the format."""
     file = "cutter" if cuts and job.options.for_cutter else suffix.replace(".stp", ".step")
     lost = [name for name, files in _WITHOUT.items() if file in files.split()]
     stated = list(_stated(job.model.root, lost))
@@ -77,9 +75,7 @@ def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
 
 
 def followed_notes(job: Job) -> list[Diagnostic]:
-    """Returns notes on layers that the profile for a cutter does not know, and on areas to be engraved that
-    are none.
-    """
+    """Returns notes on layers that a cutter's profile does not know, and on areas that are none."""
     from aidl_lang.export.cuts import unfilled
     from aidl_lang.export.profiles import PLAIN
 

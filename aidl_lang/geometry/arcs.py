@@ -95,9 +95,7 @@ class _Stretch:
 
 
 class _Outline:
-    """Pieces end to end, to be drawn anew within a tolerance. Lines and arcs stay what they are, but short
-    ones that run on smoothly from curves.
-    """
+    """Pieces end to end, to be drawn anew within a tolerance; only short lines and arcs change."""
 
     def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
         self._whole, self._closed = tuple(pieces), closed
@@ -153,9 +151,7 @@ class _Outline:
         return found
 
     def _places(self, stretches: Sequence[_Stretch]) -> list[tuple[Vec, Vec]]:
-        """Returns the ends of the stretches. Both ends of one that is too short come to one place, where its
-        neighbours meet.
-        """
+        """Returns the ends of the stretches. Both of a too short one come to where its neighbours meet."""
         starts, count = [s.start for s in stretches], len(stretches)
         starts.append(starts[0] if self._closed else stretches[-1].end)
         short = [k for k, s in enumerate(stretches) if s.length < self._shortest]
@@ -372,9 +368,7 @@ class Slit:
 
 
 def without_slits(region: Region, cut: float) -> tuple[Region, list[Slit]]:
-    """Returns a region with the gaps filled that one pass of a cut makes, and these: narrow holes, and such
-    as are open at the border of the region.
-    """
+    """Returns a region with the holes and open gaps filled that one pass of a cut makes, and these."""
     slits: list[Slit] = []
     faces = []
     for face in region.faces:

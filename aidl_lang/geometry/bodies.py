@@ -36,9 +36,7 @@ Clips = Mapping[str, Shape]
 
 
 def clip_shapes(root: SolvedStructure, first: int) -> tuple[dict[str, Shape], list[Piece]]:
-    """Returns the outlines that structures are clipped to, with their curves, which have the numbers from
-    `first` on in the network.
-    """
+    """Returns what structures are clipped to, with its curves: in the network, those from `first` on."""
     shapes: dict[str, Shape] = {}
     curves: list[Piece] = []
     numbers = count(first)
@@ -73,9 +71,7 @@ def _clip_sections(
 
 
 def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagnostic]:
-    """Yields errors about structures of which nothing is left inside; `drawn`: the paths of those of which
-    something is there.
-    """
+    """Yields errors about structures of which nothing is left inside; `drawn`: paths of what is there."""
     if root.inside is not None and not any(s.path in drawn for s in root.walk()):
         if any(True for s in root.walk() for g in s.geometry for _ in g.curves()):
             yield _nothing_left(root)
@@ -349,9 +345,7 @@ class Bodies:
     def _voids(
         self, holder: SolvedStructure, material: Section, cuts: Sequence[Cut], taken: Section
     ) -> list[Void]:
-        """Returns the material that each hole removes, of all that is taken; reports holes that remove
-        nothing.
-        """
+        """Returns the material that each hole removes, of all taken; reports holes that remove nothing."""
         voids = []
         near = _around(material, [hole.section for cut in cuts for hole in cut.holes], taken)
         for cut in cuts:

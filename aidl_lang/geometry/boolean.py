@@ -116,9 +116,7 @@ def _to(curve: Piece, p: Vec) -> Closest:
 
 
 def _candidates(a: Piece, b: Piece) -> list[Vec]:
-    """Returns points of `a` from which the way to `b` may be the shortest: its ends and those where the
-    normals agree.
-    """
+    """Returns points of `a` nearest to `b` if any are: its ends, and those where the normals agree."""
     if not isinstance(a, Line | Arc | Circle) or not isinstance(b, Line | Arc | Circle):
         return _sampled_candidates(a, b)
     spots = [] if is_closed(a) else list(ends(a))
@@ -206,9 +204,7 @@ def overlap_area(a: Region, b: Region) -> float:
 
 
 def clearance(a: Region, b: Region) -> float:
-    """Returns the least distance between two regions, mm; 0 where they touch or overlap, infinite if one is
-    empty.
-    """
+    """Returns the least distance of two regions, mm; 0 where they meet, infinite if one is empty."""
     if not _lie_apart(a, b) and overlap_area(a, b) > 0:
         return 0.0
     closest = region_distance(a, b)
@@ -331,9 +327,7 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
 def stretches_beside(
     curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats | Sequence[Bounds], tolerance: float
 ) -> list[list[Stretch]]:
-    """Returns for each curve its parts between the places where it meets some borders; `boxes` are those of
-    the curves, then of the borders.
-    """
+    """Returns the parts of each curve between some borders; `boxes`: of the curves, then the borders."""
     every, count = [*curves, *borders], len(curves)
     near = near_rows(boxes, tolerance)
     near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
@@ -421,9 +415,7 @@ Relation = Literal["touching", "apart", "overlapping"]
 
 @record(slots=True)
 class Contact:
-    """The contact of two bodies, by their paths; `gap` (mm) if they are apart, `area` (mm²) if they
-    overlap.
-    """
+    """The contact of two bodies, by paths; `gap` (mm) if they are apart, `area` (mm²) of an overlap."""
 
     a: str
     b: str

@@ -169,9 +169,7 @@ def _bend(piece: int, t: float, at: Vec, arriving: float, turn: float) -> Bit:
 
 
 def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
-    """Yields chords of a curve with the corners between them, and the range between chord and tangent at its
-    ends.
-    """
+    """Yields chords of a curve and the corners between them, also those of chord and tangent at its ends."""
     count = _CHORDS[type(piece).__name__]
     ts = np.linspace(0.0, 1.0, count + 1)
     spots: list[Vec] = [(float(x), float(y)) for x, y in points(piece, ts)]
@@ -195,9 +193,7 @@ def _turned(piece: Piece) -> Piece:
 
 
 def _error(piece: Piece) -> float:
-    """Returns a bound on the distance of a chord of a chopped curve from it: twice that in the middle of
-    one.
-    """
+    """Returns a bound on how far chords of a chopped curve are from it: twice that in their middles."""
     if isinstance(piece, Line | Arc | Circle):
         return 0.0
     spots = points(piece, np.linspace(0.0, 1.0, 2 * _CHORDS[type(piece).__name__] + 1))
@@ -206,9 +202,7 @@ def _error(piece: Piece) -> float:
 
 
 def direction(piece: Piece, t: float) -> float:
-    """Returns the direction of travel at an end, radians; where a control point is doubled, by a small
-    step.
-    """
+    """Returns the direction of travel at an end, radians; of a doubled control point, by a small step."""
     dx, dy = derivative(piece, t)
     start, end = ends(piece)
     if math.hypot(dx, dy) <= 1e-9 * max(math.dist(start, end), 1e-300):
@@ -239,9 +233,7 @@ _CHUNK = 400_000
 
 @record(slots=True)
 class Chords:
-    """Chords by row: a length, its ends, the elements they lie on, their places along these (0..1), and the
-    kind.
-    """
+    """Chords by row: length, ends, the elements they lie on, places along these (0..1), and kind."""
 
     length: Floats
     a: Floats
@@ -265,9 +257,7 @@ def joined(parts: list[Chords]) -> Chords:
 
 
 def chords(outline: Skeleton, reach: float, least: float) -> Iterator[Chords]:
-    """Yields those longer than `least` between elements whose boxes are at most `reach` apart, some at a
-    time.
-    """
+    """Yields chords longer than `least` of elements whose boxes are `reach` apart at most, in parts."""
     for i, j in _pairs(outline, reach):
         lines = outline.straight
         yield _between_lines(outline, *_only(i, j, (i < lines) & (j < lines)), least)
@@ -293,9 +283,7 @@ def _pairs(o: Skeleton, reach: float) -> Iterator[tuple[Ints, Ints]]:
 
 
 def _by_place(boxes: Floats, reach: float) -> tuple[Ints, Ints, Ints]:
-    """Returns an order of all elements, and for each where in it its partners begin and how many there
-    are.
-    """
+    """Returns an order of all elements; for each, where in it its partners begin and their number."""
     extent = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
     along = int(extent[1] > extent[0])
     order = np.argsort(boxes[:, along], kind="stable")
@@ -333,9 +321,7 @@ def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
 
 
 def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
-    """Returns chords between parallel lines that face each other, at the middle of the stretch in which they
-    do.
-    """
+    """Returns chords between parallel lines that face each other, in the middle of where they do."""
     u = o.way[i]
     offset = o.start[j] - o.start[i]
     far = offset + o.way[j] * o.length[j][:, None]
@@ -371,9 +357,7 @@ def _line_to_round(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
 
 
 def _between_rounds(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
-    """Returns chords on the line through both centres; for concentric elements, in the middle of the
-    directions they share.
-    """
+    """Returns chords through both centres; of concentric elements, in the middle of shared directions."""
     offset = o.start[j] - o.start[i]
     distance = np.hypot(offset[:, 0], offset[:, 1])
     same = distance <= np.maximum(least, 1e-9 * (o.radius[i - o.straight] + o.radius[j - o.straight]))
@@ -396,9 +380,7 @@ def _between_rounds(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
 def _on_centers(
     o: Skeleton, i: Ints, j: Ints, distance: Floats, angle: Floats, way: int, least: float
 ) -> Chords:
-    """Returns chords along the line through the centres, which has this angle: walls this way, or gaps the
-    other.
-    """
+    """Returns chords along the line through the centres, at this angle: walls this way, or gaps the other."""
     p, q = i - o.straight, j - o.straight
     one, other = -way * o.side[p], way * o.side[q]
     start, end = one * o.radius[p], distance + other * o.radius[q]
@@ -412,9 +394,7 @@ def _on_centers(
 
 
 def _shared_direction(o: Skeleton, i: Ints, j: Ints) -> tuple[Floats, Mask]:
-    """Returns a direction into the material at the first and out of it at the other, and whether there is
-    one.
-    """
+    """Returns a direction into the material at the first and out of it at the other; and if there is one."""
     first, p, q = o.normal[i], o.spread[i], o.spread[j]
     away = (o.normal[j] - first) % (2 * math.pi) - math.pi
     low, high = np.maximum(-p, away - q), np.minimum(p, away + q)

@@ -292,9 +292,7 @@ def turn_between(a: Vec, b: Vec) -> float:
 
 
 def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
-    """Returns a curve in the coordinates of a frame: at an origin, reflected in x if it is mirrored, then
-    turned by degrees.
-    """
+    """Returns a curve as seen in a frame: from an origin, reflected in x if mirrored, turned by degrees."""
     angle = math.radians(rotation)
     c, s = math.cos(angle), math.sin(angle)
     flip = -1.0 if mirrored else 1.0
@@ -329,9 +327,7 @@ def part(curve: Piece, t0: float, t1: float, start: Vec, end: Vec) -> Piece:
 
 
 def _bezier_part(curve: Bezier, t0: float, t1: float, start: Vec, end: Vec) -> Bezier:
-    """Returns the part of a cubic; its inner control points are p0 + p'(t)·Δt/3 at both ends (Farin, Curves
-    and Surfaces, ch. 5).
-    """
+    """Returns a part; its inner points are p0 + p'(t)·Δt/3 at both ends (Farin, Curves and Surfaces)."""
     step = (t1 - t0) / 3
     d0, d1 = _bezier_derivative(curve, t0), _bezier_derivative(curve, t1)
     return Bezier(
@@ -447,9 +443,7 @@ def _nearest_on_round(curve: Arc | Circle, p: Vec) -> float:
 
 
 def _polish_nearest(curve: Piece, p: Vec, t: float) -> float:
-    """Solves (C(t) - p)·C'(t) = 0, the slope of the squared distance, by Newton kept between the samples
-    around t.
-    """
+    """Solves (C(t) - p)·C'(t) = 0, the slope of the distance, by Newton between the samples at t."""
     wraps = is_closed(curve)
     low, high = t - 1 / _SAMPLES, t + 1 / _SAMPLES
     if not wraps:

@@ -1,6 +1,4 @@
-"""The drawing of a solved model: bodies with exact outlines, strokes, seams, contacts. Exporters read
-this.
-"""
+"""The drawing of a solved model: bodies with exact outlines, strokes, seams, contacts."""
 
 from __future__ import annotations
 
@@ -131,9 +129,7 @@ class Stroke:
 
 @record()
 class _Area:
-    """An area with a look of its own: as a section on the grid of the network, and as a region; and what of
-    its geometry bounds nothing.
-    """
+    """An area with a look of its own, on the grid and as a region; `loose`: what bounds none of it."""
 
     section: Section
     region: Region
@@ -279,9 +275,7 @@ def _closed(
     clips: Clips,
     blind: Collection[str],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
-    """Returns the network after small gaps between curves are closed, what the curves enclose, and these
-    gaps.
-    """
+    """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
     found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
@@ -477,9 +471,7 @@ def _inked(
 def _unseen(
     root: SolvedStructure, shapes: dict[str, list[Shape]], styles: dict[str, Style], ground: Ground
 ) -> Iterator[Diagnostic]:
-    """Yields warnings on strokes in the colour of what they lie on, and on those under a body unless others
-    of the same array are seen.
-    """
+    """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
     drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
     for at, drawing in drawings:
@@ -514,9 +506,7 @@ def _areas(
     material: dict[str, Section],
     ink: Sequence[Piece],
 ) -> Iterator[tuple[str, _Area]]:
-    """Yields the areas with looks of their own, with the path of the geometry: what it encloses, in a body of
-    its material.
-    """
+    """Yields the paths and areas of geometry with a look of its own: what it encloses of its body."""
     for structure in root.walk():
         of = material.get(structure.path, fill([], "NonZero"))
         for shape in shapes[structure.path] if structure.kind != "hole" else ():
@@ -550,9 +540,7 @@ def _lying_areas(
 
 
 def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
-    """Returns the places of the geometry of a structure in the order of drawing: above the structure itself,
-    below the next one.
-    """
+    """Returns the places of a structure's geometry in the order of drawing: between it and the next one."""
     count = len(structure.drawn) + 1
     return {g.path: at + k / count for k, g in enumerate(structure.drawn, 1)}
 

@@ -223,9 +223,7 @@ def _cross(a: Section, b: Section) -> bool:
 
 @record()
 class Shape:
-    """A named geometry of a structure: its primitives that have curves, with the numbers of these in the
-    network.
-    """
+    """A named geometry of a structure: its primitives with curves, and their numbers in the network."""
 
     geometry: SolvedGeometry
     leaves: tuple[tuple[SolvedGeometry, int], ...]
@@ -245,9 +243,7 @@ class OwnFace:
 
 @record(frozen=False)
 class OwnFaces:
-    """The faces of a structure, the primitives that bound none, and imported outlines that cross
-    themselves.
-    """
+    """The faces of a structure, primitives that bound none, and imported outlines that cross themselves."""
 
     faces: list[OwnFace] = field(default_factory=list)
     loose: list[tuple[SolvedGeometry, int]] = field(default_factory=list)
@@ -255,9 +251,7 @@ class OwnFaces:
 
 
 def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
-    """Returns the faces of the shapes of one structure, in order of writing, those of free curves after
-    them.
-    """
+    """Returns the faces of the shapes of a structure in order of writing, those of free curves last."""
     result = OwnFaces()
     free: list[tuple[SolvedGeometry, int]] = []
     outlines: list[Use] = []
@@ -356,9 +350,7 @@ def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
 
 
 def _alternating(network: Network, uses: list[Use]) -> Section:
-    """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
-    enclosed.
-    """
+    """Returns the loops of one shape by the even-odd rule; at a node of odd degree, all enclosed."""
     if any(d % 2 for d in _degrees(network, uses).values()):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
@@ -463,9 +455,7 @@ def _chain_free(
 def _close_with_outlines(
     network: Network, rest: list[tuple[SolvedGeometry, int]], outlines: list[Use], result: OwnFaces
 ) -> set[int]:
-    """Adds the areas that the remaining curves enclose outside the closed shapes; returns the edges that took
-    part.
-    """
+    """Adds what the other curves enclose outside the closed shapes; returns the edges with a part in it."""
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)

@@ -95,9 +95,7 @@ class Finished:
 
 @record(slots=True)
 class TooLarge:
-    """A finish that does not fit: its corner has room for `largest`, or it runs into `other` on the curve of
-    that `number`.
-    """
+    """A finish that does not fit: there is room for `largest`, or it meets `other` on curve `number`."""
 
     work: Work
     largest: float
@@ -125,9 +123,7 @@ def direction(curve: Piece, t: float) -> Vec:
 
 
 def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
-    """Returns the arms of all curves that end at a point, those that arrive there (in their own direction)
-    first.
-    """
+    """Returns the arms of all curves that end at a point, first those that arrive there."""
     found = []
     for number, curve in enumerate(curves):
         if is_closed(curve):
@@ -292,9 +288,7 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 
 
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
-    """Returns the carrier (the endless line or whole circle) of all points at a distance to the left of a
-    curve.
-    """
+    """Returns the endless line or whole circle of all points at a distance to the left of a curve."""
     if isinstance(curve, Line):
         dx, dy = direction(curve, 0.0)
         (x0, y0), (x1, y1) = curve.start, curve.end
@@ -326,9 +320,7 @@ def _foot(curve: Line | Arc, p: Vec) -> float | None:
 
 
 def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[float, float, Vec] | None:
-    """Follows the touching points from the corner as the radius grows; returns None once one leaves its
-    arm.
-    """
+    """Follows the touching points from the corner as the radius grows; None once one leaves its arm."""
 
     def gap(u: float, v: float, r: float) -> Vec:
         p, q = _beside(a, u, side * r), _beside(b, v, -side * r)

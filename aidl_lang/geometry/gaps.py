@@ -96,9 +96,7 @@ def welded_gaps(
     structures: Iterable[SolvedStructure],
     shapes: Mapping[str, Sequence[Shape]],
 ) -> Iterator[Gap]:
-    """Yields gaps between ends in the outlines of single curves that are not quite the same and became one
-    node.
-    """
+    """Yields gaps between ends, in outlines of single curves, that became one node without quite meeting."""
     gaps = []
     for structure in structures:
         if structure.kind not in ("solid", "hole"):
@@ -144,9 +142,7 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
-    """Returns a curve of the same kind whose end lies elsewhere; None if that would change more than its
-    end.
-    """
+    """Returns such a curve with its end elsewhere; None if that would change more than its end."""
     left, bottom, right, top = bounds(curve)
     if max(right - left, top - bottom) <= 10 * widest:
         return None

@@ -35,9 +35,7 @@ _POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
 
 
 class Table:
-    """Curves with a row each: the coefficients of a cubic or a line, else centre, half-axes, their direction,
-    first angle and sweep.
-    """
+    """Curves by row: the coefficients of a cubic, or centre, half-axes, their turn, first angle, sweep."""
 
     def __init__(self, curves: Sequence[Piece]) -> None:
         self.curves = curves
@@ -112,9 +110,7 @@ _LAST = 1e-13
 def on_carriers(
     carriers: Sequence[Line | Arc | Circle], table: Table, curves: Ints, tolerance: float
 ) -> list[list[float]]:
-    """Returns the parameters at which each of some curves crosses what carries another, or comes within the
-    tolerance and turns away.
-    """
+    """Returns where each curve crosses, or comes within the tolerance of, what carries another."""
     is_line = np.array([isinstance(carrier, Line) for carrier in carriers], dtype=np.bool_)
     origin, way, radius = np.split(np.array([_row_carriers(carrier) for carrier in carriers]), [2, 4], axis=1)
 
@@ -163,9 +159,7 @@ def _merged(row: Ints, at: Floats, *more: NDArray[Any]) -> tuple[Ints, Floats]:
 
 
 def _zeros(of: Function, row: Ints, at: Floats, asked: Mask | None = None) -> tuple[Ints, Floats]:
-    """Returns the places at which functions change their sign, between neighbours among some places in
-    order, both asked for.
-    """
+    """Returns where functions change their sign between neighbours in order, both of them asked for."""
     is_above = of(row, at) > 0
     changes = (row[1:] == row[:-1]) & (is_above[1:] != is_above[:-1])
     if asked is not None:
@@ -330,9 +324,7 @@ def circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Ve
 
 
 def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int, float, float]]:
-    """Yields crossings and touches, each with the number of its pair, from those of the two polylines and
-    from where these come nearest.
-    """
+    """Yields crossings and touches with the numbers of their pairs, from polylines and nearest samples."""
     marks = np.linspace(0, 1, _STEPS_INTERSECT + 1)
     p, q = (
         table.at(np.repeat(own, len(marks)), np.tile(marks, len(own)))[0].reshape(len(own), -1, 2)
@@ -414,9 +406,7 @@ def _crossed(p: Floats, q: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
 
 
 def _nearest_samples(away: Floats, step: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
-    """Returns where samples are nearer than those beside them, and no further apart than neighbours are,
-    in the form of `_crossed`.
-    """
+    """Returns where samples are nearest, and no further apart than neighbours, as `_crossed` does."""
     padded = np.pad(away, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
     n = away.shape[1]
     beside = [padded[:, i : i + n, j : j + n] for i in range(3) for j in range(3)]
@@ -428,9 +418,7 @@ def _nearest_samples(away: Floats, step: Floats, asked: Mask) -> tuple[Ints, Flo
 def _improved(
     table: Table, pairs: Ints, t: Floats, s: Floats, tolerance: float, step: Step
 ) -> tuple[Floats, Floats, Mask]:
-    """Returns parameters on pairs of curves after steps of Newton's method, and which are crossings, or
-    touches, within the tolerance.
-    """
+    """Returns parameters after steps of Newton's method, and which are crossings, or touches."""
     a, b = pairs.T
     t, s = table.within(a, t), table.within(b, s)
     left, order = np.arange(len(t)), 2 if step is _to_touch else 1

@@ -87,9 +87,7 @@ class Ground:
     boxes: Sequence[Bounds]
 
     def hides(self, color: str | None, curves: Sequence[int], place: float, *, wholly: bool) -> bool:
-        """Tells whether the body below some curves drawn at a place has nearly their colour: all along them,
-        or else somewhere.
-        """
+        """Tells whether the body below some curves has nearly their colour: all along them, or somewhere."""
         count = bisect_left(self._places, place)
         below = self._around(curves, range(count))
         seen = ((k, self.bodies[k].color) for k in below)
@@ -112,9 +110,7 @@ class Ground:
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
 
     def covered_part(self, curves: Sequence[int], place: float) -> tuple[float, list[str]]:
-        """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
-        bodies.
-        """
+        """Returns the share of the length of some curves that later bodies cover, and these bodies."""
         parts = [(length(piece), over) for piece, over in self._parts(curves, self._above(curves, place))]
         by = sorted({k for long, over in parts for k in over if long > 0})
         covered = sum(long for long, over in parts if over)
@@ -131,9 +127,7 @@ class Ground:
         return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
 
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
-        """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
-        faces is an inlay and shows them.
-        """
+        """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
         above = [b for b in self.bodies if b.place > place and not b.is_clear]
         above = [b for b in above if boxes_meet(b.section, faces)]
         above = [b for b in above if not covers(faces, b.section)]
@@ -146,9 +140,7 @@ class Ground:
         return [body.place for body in self.bodies]
 
     def _parts(self, curves: Sequence[int], bodies: Sequence[int]) -> list[tuple[Piece, list[int]]]:
-        """Returns the parts of some curves between the outlines of some bodies, each with those of these that
-        it lies in; none without bodies.
-        """
+        """Returns the parts of curves between outlines of some bodies, each with the bodies it lies in."""
         if not bodies:
             return []
         own, boxes = [self.curves[k] for k in curves], [self.boxes[k] for k in curves]

@@ -18,9 +18,7 @@ _MOST_PAIRS = 2_000_000
 
 
 def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
-    """Yields pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to
-    right.
-    """
+    """Yields pairs i < j whose boxes come closer than the margin, in a sweep from left to right."""
     yield from ((i, j) for i, j in near_rows(boxes, margin).tolist())
 
 
@@ -49,9 +47,7 @@ def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
 
 
 def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
-    """Returns the boxes in the order of their beginnings on an axis; for each place the one up to which they
-    meet.
-    """
+    """Returns boxes in order of their beginnings on an axis, and for each place up to which they meet."""
     along = np.argsort(b[:, axis], kind="stable")
     return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
 
@@ -72,9 +68,7 @@ def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
 
 
 class Sides:
-    """Straight sides (x0, y0, x1, y1 in a row), found by place: sorted by their left ends, in classes of like
-    width.
-    """
+    """Straight sides (x0, y0, x1, y1 in a row), found by place: by left ends, in classes of width."""
 
     def __init__(self, sides: Floats) -> None:
         self._start, self._way = sides[:, :2], sides[:, 2:] - sides[:, :2]

@@ -216,9 +216,7 @@ class Weld:
         self._cells: dict[tuple[int, int], list[int]] = {}
 
     def number(self, p: Vec) -> int:
-        """Returns the number of p, a new one if no point is near. Looks into the four cells the tolerance can
-        reach.
-        """
+        """Returns the number of p, a new one if none is near in the four cells the tolerance can reach."""
         step = 2 * self.tolerance
         column, row = math.floor(p[0] / step), math.floor(p[1] / step)
         beside = column + (1 if p[0] - column * step > self.tolerance else -1)
@@ -349,9 +347,7 @@ class Network:
     # -- polylines and the way back ------------------------------------------------------------------------
 
     def _draw_polylines(self) -> None:
-        """Finds the points within each edge, then makes a sorted table of all grid points with the edge that
-        they lie inside of (-1 for nodes).
-        """
+        """Finds the points in each edge, and sorts all grid points with their edge (-1 for nodes)."""
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [

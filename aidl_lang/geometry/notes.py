@@ -93,9 +93,7 @@ def _words(text: str) -> Counter[str]:
 
 
 def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) -> Fix | None:
-    """Returns the fix that wraps the definition into a hole; None if something else in the program refers to
-    it.
-    """
+    """Returns the fix that makes the definition a hole; None if anything else refers to it."""
     geometry = geometries[0]
     span = geometry.span
     if span is None or not re.fullmatch(rf"{re.escape(geometry.name)}\s*=\s*\w+\(.*\)", span.text, re.DOTALL):
@@ -157,9 +155,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
 
 
 def _lost(finding: LooseCurves, message: str, network: Network) -> Diagnostic:
-    """Returns the diagnostic on curves too small for the drawing to tell apart: their ends are as good as one
-    point.
-    """
+    """Returns the diagnostic on curves too small for the drawing: their ends are as good as one point."""
     return Diagnostic(
         "W0702",
         f"{message}: too small beside the drawing, which measures {rough(network.size)} mm",
@@ -432,9 +428,7 @@ def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic
 
 
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
-    """Returns the diagnostic on a curve without extent or finite coordinates; `whole` is the geometry not
-    drawn.
-    """
+    """Returns the diagnostic on a curve without extent or place; `whole` is the geometry not drawn."""
     name, curve = local(structure, whole), leaf.curve
     if curve is not None and not is_finite(curve):
         what = "has no place"

@@ -127,17 +127,13 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
 
 
 def _reached(curve: Piece, t: float, left: float) -> Vec:
-    """Returns the end of a normal that goes a little beyond the centre of curvature, but not beyond the
-    distance.
-    """
+    """Returns the end of a normal a little beyond the centre of curvature, but within the distance."""
     stretch = _stretch(curve, t, left)
     return _parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
-    """Returns the length of a step on the parallel curve relative to that on the curve: 1 - left ·
-    curvature.
-    """
+    """Returns the length of a step on the parallel curve for one on the curve: 1 - left · curvature."""
     (dx, dy), (ax, ay) = derivative(curve, t), second_derivative(curve, t)
     speed = math.hypot(dx, dy)
     return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
@@ -187,9 +183,7 @@ def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Str
 
 
 def cap(at: Vec, outward: Vec, half: float, form: str) -> Strip | None:
-    """Returns the strip that an end adds on both sides of its curve: `round`, `square`, or None for
-    `butt`.
-    """
+    """Returns the strip that an end adds to both sides: `round`, `square`, or None for `butt`."""
     p = at[0] + half * outward[1], at[1] - half * outward[0]
     q = at[0] - half * outward[1], at[1] + half * outward[0]
     if form == "butt":
@@ -215,9 +209,7 @@ NEAR = 1e-6
 
 
 def offset(region: Region, distance: float, sharp: bool = True) -> Region:
-    """Returns all points within a distance of the region; for a negative one, the region without its
-    border.
-    """
+    """Returns all within a distance of the region; for a negative one, the region without its border."""
     if distance == 0 or not region:
         return region
     strips: list[Strip] = []
@@ -247,9 +239,7 @@ def _along(
 
 
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
-    """Returns the region that a pen of a width draws along curves; where more than two meet, the joint is
-    round.
-    """
+    """Returns what a pen of a width draws along curves; where more than two meet, the joint is round."""
     half = width / 2
     left, bottom, right, top = union_bounds([bounds(c) for c in curves])
     near = NEAR * (max(right - left, top - bottom) or 1.0)
@@ -352,9 +342,7 @@ def hull(curves: Sequence[Piece]) -> Region:
 
 
 def _distinct(curves: Sequence[Piece]) -> list[Piece]:
-    """Returns each curve once, without those in the disc of a circle: on circles that all but coincide, no
-    line touches two.
-    """
+    """Returns each curve once, without those in the disc of a circle, where no line touches two."""
     kept: list[Piece] = []
     for curve in sorted(dict.fromkeys(curves), key=lambda c: -c.radius if isinstance(c, Circle) else 0.0):
         if not (isinstance(curve, Arc | Circle) and any(_holds(c, curve) for c in kept)):
@@ -425,9 +413,7 @@ def _convex(p: Floats) -> list[int]:
 
 
 def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
-    """Returns the parameters where the line from one contact to the next leaves the one and reaches the
-    other.
-    """
+    """Returns where the line from one contact to the next leaves the one and reaches the other."""
     t, s = a.t1, b.t0
     one, other = _disc(a.curve, t), _disc(b.curve, s)
     while one is not None and other is not None and (ways := _tangent(*one, *other)) is not None:
@@ -465,9 +451,7 @@ def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
 
 
 def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
-    """Returns the points of touch of the line that has both discs on its left; None if one lies in the
-    other.
-    """
+    """Returns where the line with both discs on its left touches; None if one lies in the other."""
     x, y = d[0] - c[0], d[1] - c[1]
     square = x * x + y * y
     rest = square - (r - s) ** 2
@@ -484,9 +468,7 @@ def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
 
 
 def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
-    """Returns the parameter at which a curve passes a point of its circle; None if that is beyond the end
-    that the hull touches.
-    """
+    """Returns where a curve passes a point of its circle; None if beyond the end that the hull touches."""
     if isinstance(curve, Line):
         return about
     t = nearest(curve, p)
@@ -501,9 +483,7 @@ def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
 
 
 def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
-    """Returns the parameter near t at which the tangent of a curve passes through a point; an end stays an
-    end.
-    """
+    """Returns the parameter near t where the tangent passes through a point; an end stays an end."""
     if isinstance(curve, Line):
         return t
 

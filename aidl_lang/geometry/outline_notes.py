@@ -218,9 +218,7 @@ class Misfit:
 def misfits(
     result: Result, works: Sequence[Work], reasons: Sequence[Finish], leaves: Leaves, told: SolvedStructure
 ) -> Iterator[Misfit]:
-    """Yields the finishes that do not fit, each fault once: failures of one statement are one, as are those
-    that meet.
-    """
+    """Yields the finishes that do not fit, each fault once, by statements that meet."""
     reason_of = {id(work): reason for work, reason in zip(works, reasons, strict=True)}
     curves = [curve for _, curve in leaves]
     for group in _groups(result.failures, reason_of):
@@ -361,9 +359,7 @@ class _Fault:
 
 
 def merged_notes(found: Sequence[Misfit]) -> list[Diagnostic]:
-    """Returns one note for each set of statements: that of the smallest size that fits, which fits
-    everywhere.
-    """
+    """Returns one note for each set of statements: that of the smallest size, which fits everywhere."""
     least: dict[frozenset[Span], Misfit] = {}
     for misfit in found:
         known = least.get(misfit.statements)

@@ -65,9 +65,7 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
-    """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
-    out.
-    """
+    """Yields the primitives of a geometry that is drawn, with their curves, if they have a place."""
     for leaf in g.leaves():
         if (curve := leaf.curve) and is_finite(curve, LARGEST):
             yield leaf, curve
@@ -125,9 +123,7 @@ class _Outliner:
         )
 
     def _inside(self, s: SolvedStructure, around: Region | None) -> Region | None:
-        """Returns what the outline around a structure encloses within those around it; that of the latter if
-        it encloses nothing.
-        """
+        """Returns what the outline around a structure encloses in those around it; theirs if it is open."""
         own = _region(self._operand(s.clip))
         if not own:
             self.notes.append(notes.open_clip(s))
@@ -308,9 +304,7 @@ class _Outliner:
     def _fitted(
         self, leaves: Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
     ) -> tuple[list[Work], list[Finish]]:
-        """Returns the works with the sizes of those that are to be as large as fits, without those of which
-        nothing does.
-        """
+        """Returns the works with the sizes of those as large as fits, without those that do not fit."""
         if all(f.sizes for f in reasons):
             return works, reasons
         from aidl_lang.geometry.finishing import fitted
@@ -337,9 +331,7 @@ class _Outliner:
                 yield from ((f, corner) for corner in corners)
 
     def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
-        """Yields the finishes that a copy has from its source: of corners between the same curves, with sizes
-        in proportion.
-        """
+        """Yields a copy's finishes from its source: of the same corners, with sizes in proportion."""
         sources, curves = [(self._source(g), c) for g, c in leaves], [c for _, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
             if not any(g is not None for g, _ in sources):
@@ -360,9 +352,7 @@ class _Outliner:
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
-        """Returns the geometry that a copy was made from; None for what is no copy or goes by the name of its
-        copy.
-        """
+        """Returns what a copy was made from; None for what is no copy, or has the name of its copy."""
         return self.index.get(g.source) if g.source is not None and g.source != g.path else None
 
 
@@ -391,9 +381,7 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
 
 
 def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
-    """Returns the geometry with its new curves; a new one belongs to the parts that both its neighbours
-    belong to.
-    """
+    """Returns the geometry with its new curves, which belong to what both their neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
     free: list[SolvedGeometry] = []
@@ -452,9 +440,7 @@ def _extent(curves: Sequence[Piece]) -> float:
 
 
 def _deepest(region: Region, too_deep: float) -> float:
-    """Returns the distance by which an outline can be moved inwards before nothing is left, to about seven
-    digits.
-    """
+    """Returns how far an outline can move inwards before nothing is left, to about seven digits."""
     low, high = 0.0, too_deep
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
@@ -466,9 +452,7 @@ def _deepest(region: Region, too_deep: float) -> float:
 
 
 def on_material(model: SolvedModel, drawing: Drawing) -> SolvedModel:
-    """Returns a model with its drawings as far as they lie on the solids that they are clipped to; `drawing`:
-    that of the model without.
-    """
+    """Returns a model with its drawings cut to the solids they are clipped to, by the `drawing` without."""
     return replace(model, root=_inked(model.root, drawing, None))
 
 

@@ -70,9 +70,7 @@ def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
 
 
 def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...], tuple[Piece, ...]]:
-    """Returns the parts of curves in a region or on its edge, and those outside; uncut curves stay as they
-    were.
-    """
+    """Returns the parts of curves in or along a region, and those outside; uncut ones stay as they were."""
     found = clipped_each(curves, region, with_border=True)
     return tuple(p for one in found for p in one.inner), tuple(p for one in found for p in one.outer)
 

@@ -79,9 +79,7 @@ def loose_piece_notes(
 
 
 def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
-    """Returns the pieces that a solid, and those in it, cover before anything is cut out; none if they are
-    all alike.
-    """
+    """Returns the pieces that a solid covers before anything is cut out; none if they are all alike."""
     faces = [f for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
     if len(faces) < 2:
         return []
@@ -147,9 +145,7 @@ def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterat
 
 
 def _traits(piece: _Piece) -> Iterator[object]:
-    """Yields the traits that make pieces alike: their area, and the place where they are written, in a
-    loop.
-    """
+    """Yields what makes pieces alike: their area, and the statement, in a loop, that makes them."""
     yield _area(piece.section)
     yield from {g.span for f in piece.faces for g in f.geometries if g.span}
 
@@ -189,9 +185,7 @@ def fallen_piece_notes(
     solids: Sequence[Solid],
     pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
-    """Yields a warning for each hole that cuts pieces free which nothing else holds, as the inside of an
-    O.
-    """
+    """Yields a warning for each hole that cuts pieces free which nothing holds, as the inside of an O."""
     free = marked_detached(root)
     held = _held_by_others(solids, pairs)
     known, holes = {s.path: s for s in root.walk()}, _holes(root, masses)
@@ -319,9 +313,7 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 
 
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
-    """Tells whether a piece was connected with the material around the opening before anything was cut
-    out.
-    """
+    """Tells whether a piece was part of the material around the opening before the cuts."""
     faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
     near = union([f for f in faces if boxes_meet(f, opening)])
     return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
@@ -338,9 +330,7 @@ def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
 def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
 ) -> Iterator[tuple[str, dict[str, None]]]:
-    """Yields the paths of the holes that took away the material between a piece and the rest, and the names
-    of their geometries that did.
-    """
+    """Yields the holes that took what was around a piece, by path, and the names of their geometries."""
     between = difference(opening, piece)
     for hole in holes:
         near = [f for f in walk.faces.get(hole.path, ()) if boxes_meet(f.section, between)]

@@ -56,9 +56,7 @@ _FULL_TURN = 2 * math.pi
 def read_out(
     model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
 ) -> tuple[SolvedModel, Evaluator]:
-    """Returns the solved model, and the evaluator of its values for later checks. Its `freedom` is worked out
-    when it is read.
-    """
+    """Returns the solved model, with its `freedom` worked out on demand, and the evaluator of its values."""
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
@@ -84,9 +82,7 @@ def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Calla
 
 
 def _literal(model: Model, finish: Finish) -> ast.Number | None:
-    """Returns the number in the call that is the size of a fillet or chamfer, if no constraint mentions
-    it.
-    """
+    """Returns the number that is the size of a fillet or chamfer, if no constraint mentions it."""
     if not finish.sizes:
         return None
     size, *more = finish.sizes
@@ -409,9 +405,7 @@ def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:
 
 
 def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """Returns the model without curves and numbers that are not finite or out of range, and diagnostics on
-    them.
-    """
+    """Returns the model without curves and numbers that have no place, and diagnostics on them."""
     if all(map(_is_sound, model.root.walk())):
         return model, []
     cleaner = _Cleaner()

@@ -274,9 +274,7 @@ def face_polygons(face: Face, tolerance: float) -> list[Polygon]:
 
 
 def _faithful(loop: Loop, tolerance: float) -> Polygon:
-    """Returns a loop's polygon; a loop that is thinner than the tolerance is followed more closely, so that
-    it does not turn inside out.
-    """
+    """Returns a loop's polygon, which follows a thin loop closely enough not to turn inside out."""
     checkpoint()
     exact = loop_area(loop)
     for _ in range(_ROUNDS):
@@ -301,9 +299,7 @@ def piece_points(piece: Piece, tolerance: float) -> Polygon:
 
 
 def polygon_area(polygon: Polygon) -> float:
-    """Returns the area, positive counter-clockwise; about the first vertex, so that far away nothing
-    cancels.
-    """
+    """Returns the area, positive counter-clockwise; about the first vertex, so that nothing cancels."""
     x, y = (polygon - polygon[0]).T
     return float(x[:-1] @ y[1:] - y[:-1] @ x[1:]) / 2
 
@@ -317,9 +313,7 @@ def _from_start(piece: Piece, tolerance: float) -> Polygon:
 
 
 def _chords(piece: Piece, tolerance: float) -> int:
-    """Returns the number of chords that keeps the tolerance; at least two for a curve, so that it does not
-    fall on its chord.
-    """
+    """Returns how many chords keep the tolerance: for a curve at least two, so that it does not fall flat."""
     if isinstance(piece, Line):
         return 1
     if isinstance(piece, Bezier):

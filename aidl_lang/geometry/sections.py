@@ -137,9 +137,7 @@ def box_within(a: Section, b: Section) -> bool:
 
 
 def is_nothing(section: Section, scale: float | None = None) -> bool:
-    """Tells whether an area is empty or thinner than the tolerance; `scale` is the size to compare it
-    with.
-    """
+    """Tells whether an area is empty or thinner than the tolerance, compared with the size `scale`."""
     if section.is_empty():
         return True
     if scale is None:
@@ -250,9 +248,7 @@ def _components(section: Section) -> list[list[Polygon]]:
 
 
 def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
-    """Returns faces: outer loops with the holes that lie in them, one loop or several that touch in a
-    point.
-    """
+    """Returns faces: outer loops with the holes that lie in them, which are one loop or touch."""
     outers = [loop for _, loop in sorted(loops, key=lambda pair: pair[0]) if _ > 0]
     inner = [loop for area, loop in loops if area < 0 and outers]
     holes: list[list[Loop]] = [[] for _ in outers]
@@ -333,9 +329,7 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
-    """Returns the loops of exact pieces of one polygon with their areas, without those no wider than the
-    tolerance.
-    """
+    """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance."""
     low, high = sides.bounds[number], sides.bounds[number + 1]
     starts = sides.starts[number] or [low]
     runs: list[Run] = []
@@ -356,9 +350,7 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
 
 
 def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
-    """Returns loops that pass no point twice, from a polygon that may (a circle inscribed in a square
-    does).
-    """
+    """Returns loops that pass no point twice, of a polygon that may (as a circle in a square does)."""
     if len({run.start for run in runs}) == len(runs):
         return [runs] if runs else []
     loops: list[list[Run]] = []

@@ -326,9 +326,7 @@ def _ordered(beside: Sequence[SolvedStructure]) -> Sequence[SolvedStructure]:
 
 
 def _wanted(places: dict[str, int], said: dict[tuple[str, str], list[str]]) -> dict[str, float]:
-    """Returns the place for which each structure asks: its own, or a little before or after that of what it
-    names.
-    """
+    """Returns the place each structure asks for: its own, or a little beside that of what it names."""
     wanted: dict[str, float] = {name: float(place) for name, place in places.items()}
     step = 1 / (len(places) + 1)
     for _ in places:

@@ -70,9 +70,7 @@ class Inertia:
 
     @property
     def angle(self) -> float:
-        """The angle from the x axis to the axis of the largest moment, degrees over -90 to 90; 0 if all are
-        equal.
-        """
+        """The angle to the axis of the largest moment, degrees over -90 to 90; 0 if all are equal."""
         largest, least = self.principal
         if largest - least <= _ISOTROPIC * largest:
             return 0.0

@@ -129,9 +129,7 @@ class Lattice:
         return [(x, y) for x, y in (kept + self.offset).tolist()]
 
     def run_of(self, curve: Piece) -> tuple[Vec, Vec | None] | None:
-        """Returns the step along which a line runs on from copy to copy, and the other one; None for what
-        ends in its copy.
-        """
+        """Returns the step along which a line runs on, and the other one; None for what ends in its copy."""
         if not isinstance(curve, Line):
             return None
         way = curve.end[0] - curve.start[0], curve.end[1] - curve.start[1]

@@ -118,9 +118,7 @@ def thin_wall(region: Region, least: float) -> Chord | None:
 
 
 class _ChordSearch:
-    """A search for the shortest chord of a kind. `tip` is the least end of a taper, where nothing is
-    shorter.
-    """
+    """A search for the shortest chord of a kind; `tip` is the least end of a taper, if none is shorter."""
 
     def __init__(self, outline: Skeleton, kind: int, tips: list[Chord]) -> None:
         self.outline = outline
@@ -180,9 +178,7 @@ def _is_convex(outline: Skeleton) -> bool:
 
 
 def _settled(o: Skeleton, found: Chords, k: int) -> Chord | None:
-    """Returns the chord itself, or the one at right angles that is near where curves are not straight or
-    round.
-    """
+    """Returns the chord, or the one at right angles nearby where curves are neither straight nor round."""
     a, b = _vec(found.a[k]), _vec(found.b[k])
     if not (o.free[found.i[k]] or o.free[found.j[k]]):
         return Chord(float(found.length[k]), a, b)
@@ -329,9 +325,7 @@ def _crosses(o: Skeleton, start: Floats, way: Floats, margin: float) -> bool:
 
 
 def _covers(o: Skeleton, spot: Floats) -> bool:
-    """Tells whether a place lies in the material: how often the outline goes round it, by the angles it
-    sees.
-    """
+    """Tells whether a place lies in the material: how often the outline goes round it, by angles seen."""
     n = o.straight
     turns = _seen(o.start[:n] - spot, o.start[:n] + o.way * o.length[:, None] - spot).sum()
     is_arc = o.radius > 0

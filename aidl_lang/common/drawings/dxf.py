@@ -228,9 +228,7 @@ class _Walk:
 
 
 def _engraving(entity: Any) -> Engraving | None:
-    """Returns what AIDL says of an entity that is engraved: the operation, and the layer of the program; None
-    for all others.
-    """
+    """Returns the operation and the layer that AIDL notes on an engraved entity; None for others."""
     if not entity.has_xdata(ENGRAVED):
         return None
     operation, layer = ([text for code, text in entity.get_xdata(ENGRAVED) if code == 1000] + ["", ""])[:2]
@@ -308,9 +306,7 @@ def _polyline(entity: Any) -> Iterator[Stroke]:
 
 
 def _bulged(points: Sequence[tuple[float, float, float]], is_closed: bool, plane: Matrix) -> Iterator[Stroke]:
-    """Yields the edges of a polyline: a line, or an arc of which the bulge is the tangent of a quarter of its
-    sweep.
-    """
+    """Yields the edges of a polyline: lines, and arcs by their bulge, tan(sweep / 4)."""
     if is_closed and len(points) > 1:
         points = [*points, (*points[0][:2], 0.0)]
     for (x0, y0, bulge), (x1, y1, _) in pairwise(points):

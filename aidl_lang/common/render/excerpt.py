@@ -25,9 +25,7 @@ _BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
 
 
 def escape(text: str) -> str:
-    """Returns the text with a visible stand-in for every character that could disturb a terminal; line breaks
-    are kept.
-    """
+    """Returns the text with stand-ins for characters that disturb a terminal; line breaks are kept."""
     return "".join(char if char == "\n" else _visible(char) for char in text)
 
 

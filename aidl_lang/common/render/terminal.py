@@ -116,9 +116,7 @@ WIDTH = 110
 
 
 def render(diagnostic: Diagnostic, style: TerminalStyle | None = None, width: int = WIDTH) -> str:
-    """Returns the diagnostic for a reader, without a line break at the end; plain text unless `style` has
-    colour.
-    """
+    """Returns the diagnostic for a reader, in plain text unless `style` has colour, without a last break."""
     return "\n".join(_Page(diagnostic, style or TerminalStyle(), width).lines())
 
 

@@ -220,9 +220,7 @@ def _congruent(
 def _nearest(
     y: _T, candidates: Sequence[_T], pose: Callable[[_T, _T, float], Pose], tolerance: float
 ) -> tuple[_T, _T, Pose] | None:
-    """Returns the candidate of the same shape that moved least, among the first few: many that were renamed
-    together keep their order.
-    """
+    """Returns the like candidate that moved least, of the first few: renamed ones keep their order."""
     found: list[tuple[float, float, int, _T, Pose]] = []
     for x in candidates[:_MOST]:
         p = pose(x, y, tolerance)
@@ -262,9 +260,7 @@ Changed = dict[str, tuple[Value, Value]]
 
 
 def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) -> Changed:
-    """Returns the values that differ, in order of writing after. Points that moved by `move` count as
-    equal.
-    """
+    """Returns the values that differ, in order of writing after; points moved by `move` are equal."""
     return {
         name: (a.get(name), b.get(name))
         for name in dict.fromkeys([*b, *a])
@@ -324,9 +320,7 @@ def sizes(s: SolvedStructure, region: Region | None) -> dict[str, Value]:
 
 
 def of_geometry(a: SolvedGeometry, b: SolvedGeometry, move: Move, tolerance: float) -> Changed:
-    """Returns the changed fields of a geometry that did not move as a whole; for an outline its corners and
-    radii.
-    """
+    """Returns the changed fields of a geometry that did not move as one; corners and radii of outlines."""
     if a.type != b.type:
         return {"type": (a.type, b.type)}
     first, last = _values(a), _values(b)

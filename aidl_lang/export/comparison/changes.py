@@ -107,9 +107,7 @@ class Pose:
         return bool(np.all(np.abs(move.all(self.centers[0]) - self.centers[1]) <= self.tolerance))
 
     def move(self, expected: Move = STILL) -> Move | None:
-        """Returns the motion of all its points, if there is one: `expected` if that fits, else the
-        simplest.
-        """
+        """Returns the motion of all points, if there is one: `expected` if that fits, else the simplest."""
         if not self.congruent:
             return None
         return next((m for m in self._candidates(expected) if self.fits(m)), None)
@@ -196,9 +194,7 @@ def _gather(
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
-    """Returns points that fix the place and direction of a primitive; the middle of an arc fixes its way
-    round.
-    """
+    """Returns points that fix where a primitive is and its direction; of an arc its middle, too."""
     if g.curve is None:
         at = g.values.get("at")
         return [] if at is None else [at]  # type: ignore[list-item]
@@ -234,9 +230,7 @@ class Version:
 
 @record()
 class GeometryChange:
-    """The change of a named geometry. `fields` differ if it did not move as a whole
-    (`is_outline_changed`).
-    """
+    """The change of a named geometry: of `fields` if it did not move as a whole."""
 
     name: str
     type: str

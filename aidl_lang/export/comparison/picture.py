@@ -136,9 +136,7 @@ def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _arrows(changes: Iterable[StructureChange], before: Version, size: float) -> Iterator[Mark]:
-    """Yields arrows from the old to the new middle of a thing: the centroid of its region, else of its
-    box.
-    """
+    """Yields arrows between the old and new middles of things: centroids of regions, else of boxes."""
     ways = []
     for change in changes:
         region = before.drawing.regions.get(change.was or change.path)

@@ -225,9 +225,7 @@ def _move(move: Move, middle: Vec | None, size: float) -> str:
 
 
 def _contacts(changes: Sequence[ContactChange], root: str) -> Iterator[str]:
-    """Yields lines on contacts, those of another kind now first; changed gaps only as far as there is
-    room.
-    """
+    """Yields lines on contacts, new kinds first; changed gaps only as far as there is room."""
     kinds = {id(c): len({lie.relation if lie else "apart" for lie in (c.before, c.after)}) for c in changes}
     ranked = sorted(changes, key=lambda c: -kinds[id(c)])
     most = max(_MOST_CONTACTS, sum(kind > 1 for kind in kinds.values()))

@@ -122,9 +122,7 @@ _FILED = frozenset({"glyphs", "traced"})
 
 @record()
 class Hole:
-    """A round hole of a table: its sign, a letter for its size and a number, and its place from the datum of
-    the view.
-    """
+    """A round hole of a table: a letter for its size and a number, and its place from the datum."""
 
     sign: str
     circle: Circle

@@ -301,9 +301,7 @@ class _Statement:
     # --- Offsets -----------------------------------------------------------------------------------
 
     def _offset(self, left: ast.Expression, right: ast.Expression) -> Iterator[tuple[Dimension, Num]]:
-        """Yields the lengths from one place to another in `a.left == b.right + 5` or `a.center == b.center +
-        (3, 4)`.
-        """
+        """Yields the lengths in `a.left == b.right + 5` or `a.center == b.center + (3, 4)`."""
         terms = [*self._terms(left, 1), *self._terms(right, -1)]
         places = [(sign, node) for sign, node, value in terms if value is None]
         if len(places) != 2 or places[0][0] == places[1][0]:

@@ -148,9 +148,7 @@ def length_along(curves: Sequence[Piece | Vec], u: Vec) -> Length:
 
 
 def length_between(start: Sequence[Vec], end: Sequence[Vec], u: Vec) -> Length:
-    """Returns the length along a direction from any of some points to any of others, all of which agree in
-    it.
-    """
+    """Returns the length along a direction between points of which either side agrees in it."""
     u = readable(u)
     low, high = sorted((tuple(start), tuple(end)), key=lambda points: dot(points[0], u))
     return Length(dot(high[0], u) - dot(low[0], u), "", start=low, end=high, along=u)
@@ -401,9 +399,7 @@ class SizedGeometry:
             yield found
 
     def _straight(self, name: str, word: str, value: float) -> Length | None:
-        """Returns the edge that the name speaks of, else the way the shape reaches as far, else any edge as
-        long.
-        """
+        """Returns the edge that the name speaks of, else the extent as far, else any edge as long."""
         curves = self._curves()
         lines = [
             (g.name, g.curve) for g in self.solved.walk() if isinstance(g.curve, Line) and not g.construction
@@ -425,9 +421,7 @@ class SizedGeometry:
         return length_of_line(fitting[0][1].start, fitting[0][1].end) if fitting else None
 
     def _angle(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
-        """Yields the angle of an edge to the x axis of its structure; none for right angles, which can be
-        seen.
-        """
+        """Yields the angle of an edge to the structure's x axis; none for right angles, which are seen."""
         if name != "angle" or abs((value + 45) % 90 - 45) < _TURNED:
             return
         line = self.solved.curve

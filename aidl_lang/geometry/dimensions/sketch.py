@@ -241,9 +241,7 @@ class Sketch:
         self._equate(partial(_turned, dot if is_right else cross, a, b, c, d), a, b, c, d)
 
     def _vertex(self, before: Piece, after: Piece) -> Spot:
-        """Returns the spot where a piece begins; where an edge along an axis touches an arc, it lies straight
-        beside the centre.
-        """
+        """Returns where a piece begins; where an axial edge touches an arc, straight beside the centre."""
         at = ends(after)[0]
         is_joint = is_smooth(before, after)
         ranks = [JOINT if is_joint else CORNER] * 2
@@ -470,9 +468,7 @@ def less(high: Reading, low: Reading) -> Reading:
 
 
 def level(sketch: Sketch, axis: int, points: Sequence[Vec]) -> Reading | None:
-    """Returns the level of the first of some points that is a point of an outline, else that of anything seen
-    at the same level.
-    """
+    """Returns the level of the first point that is on an outline, else of anything seen at that level."""
     for spot, radius, side in _ends(sketch, points, ALONG[axis]):
         return _tip(spot.along(axis), radius, side)
     value = points[0][axis]

@@ -73,9 +73,7 @@ def _chosen(lines: Sequence[_Line], most: int) -> Iterator[_Line]:
 
 
 def _lines(motions: Iterable[Motion]) -> Iterator[_Line]:
-    """Yields one line for all motions of the same things; members of an array with the same motions share
-    one.
-    """
+    """Yields one line for all motions of the same things; alike members of an array share one."""
     told: dict[tuple[str, ...], list[Motion]] = {}
     for motion in motions:
         told.setdefault(motion.things, []).append(motion)
@@ -128,9 +126,7 @@ def _named(paths: Sequence[str], root: str) -> str:
 
 
 def _runs(paths: Sequence[str]) -> Iterator[list[str]]:
-    """Yields members of one array that stand side by side; things that are no members are yielded by
-    themselves.
-    """
+    """Yields members of one array that stand side by side, and all other things by themselves."""
     for key, run in groupby(paths, key=lambda path: pattern(path) if "[" in path else path):
         found = list(run)
         if key in found or len(found) < _RUN:

@@ -83,9 +83,7 @@ class Bending:
         return Valuation(self.problem.tape, self.at.tolist())
 
     def goes_on(self, part: Part, rates: Floats, wanted: Floats) -> bool:
-        """Tells whether the observables of the problem can have the accelerations `wanted` (o,) where the
-        unknowns of a part change at these rates.
-        """
+        """Tells whether observables can accelerate as `wanted` (o,) at these rates of a part's unknowns."""
         columns = part.unknowns
         has_part = np.zeros(len(self.at), dtype=np.bool_)
         has_part[columns] = True
@@ -116,9 +114,7 @@ class Bending:
         return matrix.scaled(np.ones(len(matrix)), self.problem.scale)
 
     def _second_differences(self, rows: Ints, columns: Ints, step: Floats) -> tuple[Floats, Floats]:
-        """(r,) the value of each row one step along and one step back, less twice that between; and how much
-        of it may be rounding.
-        """
+        """(r,) the second difference of each row over a step either way; and how much may be rounding."""
         roots = self.roots[rows].tolist()
         valuation = self.valuation
         cone = valuation.cone(roots)

@@ -67,9 +67,7 @@ class Reach:
         return len(self.taken) == int(self.reach.shape[1])
 
     def at(self, observables: Ints) -> Ints:
-        """Returns the index in the part of each of the scene's observables, -1 for those that are not in
-        it.
-        """
+        """Returns the index in the part of each of the scene's observables, -1 for others."""
         own = self.part.observables
         place = np.minimum(np.searchsorted(own, observables), len(own) - 1)
         return np.where(own[place] == observables, place, -1)
@@ -100,9 +98,7 @@ class Reach:
             self.taken.append(way)
 
     def _news(self, velocity: Floats) -> Floats | None:
-        """Returns the unit part of a motion that is no combination of those known, in the space of all; None
-        if there is none.
-        """
+        """Returns the unit part of a motion beyond those known, in the space of all; None if it has none."""
         size = float(np.linalg.norm(velocity))
         if not size:
             return None
@@ -114,9 +110,7 @@ class Reach:
         return way / left if left > POSSIBLE else None
 
     def goes_on(self, velocity: Floats, spin: float) -> bool:
-        """Tells whether a possible motion goes on as it begins: straight, or in a circle by `spin`
-        radians.
-        """
+        """Tells whether a possible motion goes on as it begins: straight, or turning by `spin` radians."""
         wanted = np.zeros(len(self.scene.places))
         if spin:
             at_x = self.part.observables[self.axis == X]
@@ -171,9 +165,7 @@ class Reach:
         return found
 
     def _near(self) -> list[Thing]:
-        """Returns the things that something of the part belongs to; not the small ones where they are too
-        many.
-        """
+        """Returns the things that something of the part belongs to; of too many, no small ones."""
         found = {thing for o in self.part.observables.tolist() for thing in self.scene.of[o]}
         for ranks in ((ROOT, WHOLE), ()):
             if len(found) * self.reach.size > WORK:
@@ -221,9 +213,7 @@ class Reach:
 
 
 def _gladly(thing: Thing) -> tuple[bool, int, int]:
-    """Returns the order in which things are named: structures before geometry and points, large before
-    small.
-    """
+    """Returns the order of naming: structures before geometry and points, large before small."""
     return thing.rank in (GEOMETRY, POINT), thing.start - thing.stop, -thing.rank
 
 
