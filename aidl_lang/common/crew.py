@@ -297,7 +297,6 @@ def _other(worker: str, version: str) -> EngineError:
 
 
 def _require() -> None:
-    """Raises AidlError if the package is not installed."""
     from importlib.util import find_spec
 
     if find_spec("distributed") is None:

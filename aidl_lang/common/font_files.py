@@ -211,7 +211,6 @@ class _Drawer:
 
 
 def _true_type(file: TTFont) -> Any:
-    """Returns what draws a glyph of TrueType outlines with a pen."""
     file.setGlyphOrder([f"glyph{k}" for k in range(file["maxp"].numGlyphs)])
     if any(after < before for before, after in pairwise(file["loca"].locations)):
         raise FontError("its contents are broken")
@@ -226,7 +225,6 @@ def _true_type(file: TTFont) -> Any:
 
 
 def _cff(file: TTFont) -> Any:
-    """Returns what draws a glyph of CFF outlines with a pen."""
     from fontTools.misc.psCharStrings import T2OutlineExtractor
 
     class Counting(T2OutlineExtractor):  # type: ignore[misc]

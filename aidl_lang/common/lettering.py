@@ -69,7 +69,6 @@ def silhouette_of(curves: Sequence[Curve]) -> tuple[Curve, ...]:
 
 
 def _point(curve: Curve, t: float) -> Vec:
-    """Returns the point of a cubic Bézier curve at a parameter."""
     s = 1.0 - t
     a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
     (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
@@ -312,7 +311,6 @@ def _parts(character: str) -> str:
 
 
 def _way(words: Sequence[str]) -> Iterator[Curve]:
-    """Yields the curves of a stroke."""
     is_closed = words[-1] == "z"
     corners = [_corner(word) for word in (words[:-1] if is_closed else words)]
     ring = [corners[-1], *corners, corners[0]] if is_closed else [corners[0], *corners, corners[-1]]

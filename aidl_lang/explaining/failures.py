@@ -404,7 +404,6 @@ class Explanation:
             yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
-        """Yields labels at the exact numbers that have a remedy."""
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
@@ -460,7 +459,6 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
 
 
 def _structures(comparison: Comparison) -> Iterator[Structure]:
-    """Yields the structures that a comparison speaks of."""
     yield from comparison.boxes
     yield from (u.owner for u in unknowns([comparison.left, comparison.right]))
 

@@ -51,7 +51,6 @@ def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> 
 
 
 def _stated(lowered: Lowered, index: int) -> Constraint | None:
-    """Returns the constraint if somebody wrote it; else None."""
     stated = lowered.stated[index]
     return stated if stated is not None and stated.wording is not None else None
 

@@ -295,7 +295,6 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
 
 
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
-    """Returns the paths of what gave way unasked."""
     moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
     gave = {u for stage in solution.stages if stage.concession is not None for u in stage.concession.unknowns}
     return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}

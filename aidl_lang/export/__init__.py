@@ -192,7 +192,6 @@ class Exporter:
 
     @cached_property
     def _grown(self) -> tuple[Job, list[Diagnostic]]:
-        """The job with its outlines widened by the cut."""
         from aidl_lang.export.sheets import grown
 
         return grown(self._job, self._progress)
@@ -284,7 +283,6 @@ def file_names(name: str, count: int) -> list[str]:
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:
-    """Returns a warning if the drawing has nothing visible."""
     drawing = job.drawing
     plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
     if drawing.bodies or drawing.strokes or (plans and "plan" in job.options.show):
@@ -319,7 +317,6 @@ def _files(parts: Sequence[Exported]) -> Exported:
 
 
 def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
-    """Returns the pages of the cut list that are asked for."""
     if "list" not in jobs[0].options.show:
         return []
     from aidl_lang.export.cut_list import pages

@@ -253,7 +253,6 @@ class _Layout:
         return best[1]
 
     def _stretch(self, placed: PlacedDimension) -> float:
-        """Returns the cost of long extension lines."""
         return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)
 
     def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[PlacedDimension, _Row] | None:

@@ -145,7 +145,6 @@ def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
 
 
 def _finishes(f: Finish) -> Iterator[Json]:
-    """Yields one entry for each finished corner."""
     names = ("radius",) if f.kind == "fillet" else ("size", "second")
     for at in f.corners:
         yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))

@@ -79,12 +79,10 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
 
 
 def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns start and end of each side of a polyline, a row each."""
     return np.concatenate((line[:-1], line[1:]), axis=1)
 
 
 def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the distance of each point to the nearest side."""
     start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
     square = np.maximum((way**2).sum(axis=1), 1e-30)
     least = np.full(len(spots), np.inf)

@@ -276,7 +276,6 @@ def pages(job: Job) -> list[Picture]:
 
 
 def _sheet(job: Job) -> Picture:
-    """Returns the picture of a sheet with parts laid on it."""
     groups = [*_drawn(job, 1.0)]
     if texts := tuple(labels(job)):
         groups.append(Group("show-labels", texts, {"class": "overlay"}))
@@ -315,7 +314,6 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 
 
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
-    """Yields all marks, with the path of the structure they belong to."""
     halos = _halos(root, drawing)
     for index, body in enumerate(drawing.bodies):
         areas = list(_areas(body, index, size))

@@ -144,7 +144,6 @@ def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) ->
 
 
 def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
-    """Returns the warning about strokes engraved outside all parts."""
     spans = {g.path: g.span for s in model.root.walk() for geometry in s.drawn for g in geometry.walk()}
     names = list(dict.fromkeys(stroke.geometry for stroke in strays))
     return Diagnostic(

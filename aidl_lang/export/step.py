@@ -128,7 +128,6 @@ class Shapes:
         return made.Reversed() if loop.reversed else made
 
     def _vertex(self, p: Vec) -> TopoDS_Vertex:
-        """Returns the vertex of a place; outlines that touch share it."""
         if p not in self._vertices:
             made = self._vertices[p] = TopoDS_Vertex()
             self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
@@ -456,7 +455,6 @@ class _File:
         return TCollection_ExtendedString(self._number(text))
 
     def _number(self, text: str) -> str:
-        """Returns the placeholder of a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
 
 

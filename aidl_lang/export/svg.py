@@ -315,7 +315,6 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
 
 
 def _shades(picture: Picture) -> dict[Gradient, str]:
-    """Returns the names of the gradients of a picture, in order of use."""
     marks = (mark for group in picture.groups for mark in group.marks)
     used = (mark.gradient for mark in marks if isinstance(mark, Area) and mark.gradient is not None)
     return {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
@@ -352,7 +351,6 @@ def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
 
 
 def _clean(text: str) -> str:
-    """Removes the characters that XML cannot hold."""
     return _NOT_XML.sub("\ufffd", text)
 
 

@@ -180,7 +180,6 @@ class _Outline:
         return middle if math.dist(start, end) <= reach else None
 
     def _drawn(self, stretch: _Stretch, start: Vec, end: Vec) -> Iterator[Piece]:
-        """Yields a stretch between two places."""
         first = stretch.pieces[0]
         if len(stretch.pieces) == 1 and isinstance(first, Line):
             yield Line(start, end)
@@ -331,7 +330,6 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
 
 
 def _distances(piece: Piece, spots: Floats) -> Floats:
-    """Returns the distance of each spot from a line or an arc."""
     (x0, y0), (x1, y1) = ends(piece)
     off: Floats
     if isinstance(piece, Line):

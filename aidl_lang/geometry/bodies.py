@@ -311,7 +311,6 @@ class Bodies:
     def _united(
         self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
     ) -> list[Mass]:
-        """Returns the one mass of a solid; none if its holes take away all of it."""
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         taken = union([c.section for c in cuts])

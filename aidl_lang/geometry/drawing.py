@@ -373,7 +373,6 @@ def _usable(curve: Piece) -> Piece | None:
 
 
 def _has_extent(box: Bounds) -> bool:
-    """Tells whether a curve can be drawn that has this box."""
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return False
     return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH

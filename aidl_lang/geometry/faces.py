@@ -334,7 +334,6 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
 
 
 def _degrees(network: Network, uses: Iterable[Use]) -> Counter[int]:
-    """Returns how many edges end in each node."""
     edges = [network.edges[number] for number, _ in uses]
     return Counter([*(edge.start for edge in edges), *(edge.end for edge in edges)])
 
@@ -422,7 +421,6 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 
 def _direction(network: Network, use: Use) -> float:
-    """Returns the angle at which the polyline of an edge leaves its start."""
     inner = network.inner(use)
     target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
     dx, dy = target - network.node_grid[first_node(network, use)]

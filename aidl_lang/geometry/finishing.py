@@ -178,7 +178,6 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
 
 
 def _misfit(work: Work) -> TooLarge:
-    """Returns a finish that an arm is too short for."""
     return TooLarge(work, largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes)))
 
 

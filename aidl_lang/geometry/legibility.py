@@ -122,7 +122,6 @@ class Ground:
         return self._around(curves, [k for k in later if not self.bodies[k].is_clear])
 
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
-        """Returns those of some bodies whose boxes meet that of some curves."""
         box = union_bounds([self.boxes[curve] for curve in curves])
         return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
 
@@ -157,7 +156,6 @@ class Ground:
 
     @cached_property
     def _at_middles(self) -> list[list[int]]:
-        """The bodies that the middle of each curve lies in."""
         return self._holders([point(curve, 0.5) for curve in self.curves], range(len(self.bodies)))
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
@@ -483,7 +481,6 @@ def _within(span: Span, start: int, part: re.Match[str]) -> Span:
 
 
 def _sides(corners: Sequence[Vec], swap: tuple[int, int]) -> list[Line]:
-    """Returns the sides of a polygon with two corners swapped."""
     order = list(corners)
     order[swap[0]], order[swap[1]] = corners[swap[1]], corners[swap[0]]
     return [Line(*ends) for ends in zip(order, [*order[1:], order[0]], strict=True)]

@@ -246,7 +246,6 @@ def gap_note(gap: Gap) -> Diagnostic:
 
 
 def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
-    """Returns the constraint before the closing brace of the structure."""
     span = structure.span
     if span is None or not span.text.endswith("}"):
         return None

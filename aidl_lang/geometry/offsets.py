@@ -275,7 +275,6 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
-    """Returns a region with strips added to it or taken off."""
     pieces = [p for loop in region.loops for p in loop.pieces]
     number = len(pieces)
     pieces += [p for strip in strips for outline in strip for p in outline]
@@ -387,7 +386,6 @@ def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
 
 
 def _spread(curve: Piece) -> Floats:
-    """Returns the parameters of the samples of a curve."""
     if isinstance(curve, Line):
         return np.array([0.0, 1.0])
     return np.arange(_SAMPLES + (not is_closed(curve))) / _SAMPLES

@@ -320,7 +320,6 @@ class _Outliner:
     def _own(
         self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
     ) -> Iterator[tuple[Finish, Corner]]:
-        """Yields the finishes of these curves with their corners."""
         for f in finishes:
             if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
                 continue
@@ -362,7 +361,6 @@ def _is_of(path: str, of: Iterable[str]) -> bool:
 
 
 def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
-    """Returns the corners that a finish is about, among these curves."""
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
         found = corners_of([leaves[n][1] for n in own], near)
@@ -429,7 +427,6 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
 
 
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:
-    """Returns the region that some geometry encloses together."""
     found = ((g, list(_leaves(g))) for g in geometry)
     return region_of((g, leaves) for g, leaves in found if leaves)[0]
 

@@ -289,7 +289,6 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
 
 
 def _held_by_others(solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
-    """Returns for each body those that touch or overlap it."""
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
     for a, b in pairs:

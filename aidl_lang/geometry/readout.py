@@ -119,7 +119,6 @@ def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
-    """Yields the report of each constraint, in order of writing."""
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:

@@ -305,7 +305,6 @@ def polygon_area(polygon: Polygon) -> float:
 
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
-    """Returns the points along a piece without its end."""
     count = _chords(piece, tolerance)
     found = points(piece, np.arange(count) / count)
     found[0] = ends(piece)[0]

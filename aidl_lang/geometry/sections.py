@@ -394,7 +394,6 @@ def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]
 
 
 def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
-    """Returns the parameter of a vertex on a part of a curve."""
     node, p = _spot(network, sides, vertex)
     if node in (edge.start, edge.end):
         if edge.start != edge.end:

@@ -412,7 +412,6 @@ class _Surveyor:
             )
 
     def _find(self, written: str) -> tuple[str, str]:
-        """Returns the full path of the thing named, and its kind."""
         known = self._known()
         root = self.model.root.path
         for path in (written, f"{root}.{written}"):
@@ -421,7 +420,6 @@ class _Surveyor:
         raise self._missing(written, "")
 
     def _known(self) -> dict[str, str]:
-        """Kinds of all that has a name."""
         structures = list(self.model.root.walk())
         known = {g.path: "geometry" for s in structures for top in s.drawn for g in top.walk()}
         return known | {s.path: s.kind for s in structures}
@@ -442,7 +440,6 @@ def _total(values: Sequence[float | None]) -> float | None:
 
 
 def _measured(path: str, kind: str, region: Region) -> Part:
-    """Returns a region with its thin places."""
     checkpoint()
     wall, gap = (Width(c.length, c.a, c.b, path) if c else None for c in widths(region))
     return replace(_part(path, kind, region), wall=wall, gap=gap)

@@ -267,7 +267,6 @@ class _Walk:
             return otherwise
 
     def _corner(self, node: Node, page: tuple[float, float]) -> Matrix:
-        """Returns the shift by the `x` and `y` of an element."""
         x, y = (
             self._length(node, node.attributes.get(name, "0"), whole)
             for name, whole in zip("xy", page, strict=True)

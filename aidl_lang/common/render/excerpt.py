@@ -338,7 +338,6 @@ class Bars:
 
 
 def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> Iterator[ExcerptRow]:
-    """Yields the carets under one line and the texts that belong to them."""
     if not marks:
         return
     marks = sorted(marks, key=lambda m: (m.start, m.primary))

@@ -78,7 +78,6 @@ def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[ChangedLine]:
 
 
 def _context(source: SourceFile, number: int) -> Iterator[ChangedLine]:
-    """Yields the line above an insertion."""
     if number > 1:
         yield ChangedLine(number - 1, " ", source.line(number - 1))
 

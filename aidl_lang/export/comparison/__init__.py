@@ -405,7 +405,6 @@ def _renamed(path: str, names: Mapping[str, str]) -> str:
 def _contact_changes(
     before: Version, after: Version, names: Mapping[str, str], tolerance: float
 ) -> Iterator[ContactChange]:
-    """Yields the changed contacts between bodies of both versions."""
     bodies = {names.get(b.path, "") for b in before.drawing.bodies} & {b.path for b in after.drawing.bodies}
     first = {
         frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()

@@ -262,7 +262,6 @@ def _freedom(comparison: Comparison, root: str) -> Iterator[str]:
 
 
 def _pair(a: Value, b: Value) -> str:
-    """Returns both values, with enough digits to tell them apart."""
     shown = [(_value(a, digits), _value(b, digits)) for digits in _DIGITS]
     return " → ".join(next((p for p in shown if p[0] != p[1]), shown[-1]))
 

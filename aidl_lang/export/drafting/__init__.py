@@ -324,7 +324,6 @@ def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] |
 
 
 def _tables(content: Content) -> list[Table]:
-    """Returns the tables of a sheet, the lowest first."""
     found = [Table("notes", ("Notes",), tuple((line,) for line in content.lines))] if content.lines else []
     found += [_list_of_parts(content)] if content.items else []
     return found + [_table_of_holes(view) for view in content.views if view.holes]

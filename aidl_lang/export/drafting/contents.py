@@ -274,7 +274,6 @@ def _overview(
 
 
 def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
-    """Returns the bodies with equal ones together, in order of writing."""
     return tuple(
         Item(number, tuple(group), _stem(group[0].path))
         for number, group in enumerate(gathered(bodies, shape_of), 1)
@@ -286,7 +285,6 @@ def _stem(path: str) -> str:
 
 
 def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:
-    """Returns the drawing of some of its bodies and strokes."""
     boxes = [b.box for b in bodies] + [bounds(p) for s in strokes for p in s.pieces]
     paths = {b.path for b in bodies}
     return replace(

@@ -82,7 +82,6 @@ def _grouped(found: Iterable[Dimension], tolerance: float) -> list[tuple[Dimensi
 
 
 def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
-    """Tells whether a circle reaches as far as all there is."""
     assert isinstance(whole, Length)
     middle = circle.center[0] * whole.along[0] + circle.center[1] * whole.along[1]
     start = whole.start[0][0] * whole.along[0] + whole.start[0][1] * whole.along[1]

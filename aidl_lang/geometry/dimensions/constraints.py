@@ -161,7 +161,6 @@ class _Statement:
         )
 
     def _alone(self, node: ast.Expression) -> Dimension | None:
-        """Returns the size of a line or of something round."""
         thing = self.wording.value(node)
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
         curve = solved.curve if solved is not None else None

@@ -534,7 +534,6 @@ def _apart(a: End, b: End, sense: float, z: Unknowns) -> complex:
 
 
 def _from_edge(end: End, a: Spot, b: Spot, z: Unknowns) -> complex:
-    """Returns how far an end is from an edge."""
     u = way(a, b, z)
     found = cross(u, way(a, end[0], z)) / dot(u, u) ** 0.5
     sense = 1.0 if found.real > 0 else -1.0
@@ -577,7 +576,6 @@ def _opening(sketch: Sketch, of: Opening) -> list[Reading] | None:
 
 
 def _arm(sketch: Sketch, corner: Vec, degrees: float) -> tuple[Spot, Spot] | None:
-    """Returns the edge in a direction from a point."""
     u = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     for a, b in sketch.lines:
         (x0, y0), (x1, y1) = a.at, b.at

@@ -85,7 +85,6 @@ class Reach:
     # --- What is possible --------------------------------------------------------------------------
 
     def _missing(self, velocity: Floats) -> Floats:
-        """Returns the part of a velocity that is out of reach."""
         missing: Floats = velocity - self.reach @ (self.reach.T @ velocity)
         return missing
 
