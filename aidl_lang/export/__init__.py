@@ -403,11 +403,9 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
     if suffix == ".svg":
         data, *further = (render(page, suffix, options) for page in pages)
         return Exported(data, tuple(further))
-    from aidl_lang.export.pdf import character_notes
+    from aidl_lang.export.pdf import character_notes, to_pdf
 
     if suffix == ".pdf":
-        from aidl_lang.export.pdf import to_pdf
-
         return Exported(to_pdf(pages, title), notes=character_notes(pages))
     data, *further = (render(page, suffix, options) for page in pages)
     return Exported(data, tuple(further), character_notes(pages))

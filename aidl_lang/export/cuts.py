@@ -15,7 +15,17 @@ from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
-from aidl_lang.geometry.curves import Piece, bounds, ends, is_closed, locate, point, reverse, union_bounds
+from aidl_lang.geometry.curves import (
+    Piece,
+    bounds,
+    ends,
+    is_closed,
+    larger_side,
+    locate,
+    point,
+    reverse,
+    union_bounds,
+)
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
@@ -187,8 +197,7 @@ def _is_closed(pieces: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _extent(pieces: Iterable[Piece]) -> float:
-    left, bottom, right, top = union_bounds([bounds(piece) for piece in pieces])
-    return max(right - left, top - bottom)
+    return larger_side(union_bounds([bounds(piece) for piece in pieces]))
 
 
 def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Outline]:

@@ -19,6 +19,7 @@ from aidl_lang.export import themes
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 # --- The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension
@@ -359,11 +360,7 @@ class Sheet:
         near = _within(self.outlines, (p[0] - reach, p[1] - reach, p[0] + reach, p[1] + reach))
         if not len(near):
             return False
-        a, d = near[:, :2], near[:, 2:] - near[:, :2]
-        square = np.maximum((d * d).sum(axis=1), 1e-300)
-        t = np.clip(((np.array(p) - a) * d).sum(axis=1) / square, 0, 1)
-        away = a + t[:, None] * d - np.array(p)
-        return bool((away * away).sum(axis=1).min() < reach * reach)
+        return bool(from_sides(np.array(p) - near[:, :2], near[:, 2:] - near[:, :2]).min() < reach)
 
     def seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
         """Returns the points on an outline, else such between them: the end of an edge may be hidden."""

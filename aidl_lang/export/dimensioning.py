@@ -15,7 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.export import themes
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
 from aidl_lang.export.marks import Group, Text
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, point, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, larger_side, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
 from aidl_lang.geometry.drawing import Drawing
@@ -41,13 +41,13 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
     be read when the whole is seen.
     """
     wanted = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
-    size = max(box[2] - box[0], box[3] - box[1])
+    size = larger_side(box)
     if not wanted or not size > 0:
         return box, ()
     height = 1.3 * SHARE * size
     for _ in range(6):
         whole, groups = _Layout(drawing, Pen(height / HEIGHT), box).make(wanted)
-        needed = SHARE * max(whole[2] - whole[0], whole[3] - whole[1])
+        needed = SHARE * larger_side(whole)
         if height >= needed:
             break
         height = 1.05 * needed

@@ -207,7 +207,7 @@ class Placing:
             case Area(face=face, ink=ink, gradient=gradient):
                 return replace(
                     mark,
-                    face=self.face(face),
+                    face=face.mapped(self.piece),
                     ink=None if ink is None else self.ink(ink),
                     gradient=None if gradient is None else self.gradient(gradient),
                 )
@@ -228,12 +228,6 @@ class Placing:
     def ink(self, ink: Ink) -> Ink:
         dash = None if ink.dash is None else tuple(self.factor * part for part in ink.dash)
         return replace(ink, width=self.factor * ink.width, dash=dash)
-
-    def face(self, face: Face) -> Face:
-        return Face(self.loop(face.outer), tuple(map(self.loop, face.holes)))
-
-    def loop(self, loop: Loop) -> Loop:
-        return replace(loop, pieces=tuple(map(self.piece, loop.pieces)))
 
     def piece(self, piece: Piece) -> Piece:
         return image(piece, self.point, self.factor)

@@ -16,7 +16,7 @@ from aidl_lang.export import Job, themes
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.parts import COARSE
 from aidl_lang.geometry.region import Region, piece_points, region_polygons
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
@@ -84,12 +84,7 @@ def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
     start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
-    square = np.maximum((way**2).sum(axis=1), 1e-30)
-    least = np.full(len(spots), np.inf)
-    for k, spot in enumerate(spots):
-        t = np.clip(((spot - start) * way).sum(axis=1) / square, 0, 1)
-        least[k] = np.hypot(*(spot - start - t[:, None] * way).T).min()
-    return least
+    return np.array([from_sides(spot - start, way).min() for spot in spots])
 
 
 # Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look
@@ -206,8 +201,7 @@ def _overlap(a: Bounds, b: Bounds) -> float:
 
 
 def _bounds(structure: SolvedStructure) -> Bounds | None:
-    box = structure.box
-    return None if box is None else (box.left, box.bottom, box.right, box.top)
+    return None if structure.box is None else structure.box.bounds
 
 
 def _names(at: Explainer) -> Iterator[Mark]:

@@ -28,6 +28,7 @@ from aidl_lang.geometry.curves import (
     turn_between,
 )
 from aidl_lang.geometry.finishing import direction
+from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
 # --- Outlines as machines follow them: nothing but lines and arcs, and no piece too short to be cut.
@@ -262,11 +263,7 @@ class _Fit:
         if off.max() > self._tolerance:
             return False
         probes = np.concatenate([points(arc, _PROBES) for arc in arcs])
-        starts, ways = spots[:-1], np.diff(spots, axis=0)
-        square = np.maximum((ways**2).sum(axis=1), 1e-300)
-        between = probes[:, None, :] - starts
-        t = np.clip((between * ways).sum(axis=2) / square, 0, 1)
-        gaps = np.hypot(*np.moveaxis(between - t[..., None] * ways, 2, 0)).min(axis=1)
+        gaps = from_sides(probes[:, None, :] - spots[:-1], np.diff(spots, axis=0)).min(axis=1)
         return bool(gaps.max() <= self._tolerance)
 
 
@@ -331,21 +328,15 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
 
 def _distances(piece: Piece, spots: Floats) -> Floats:
     (x0, y0), (x1, y1) = ends(piece)
-    off: Floats
     if isinstance(piece, Line):
-        way = np.array((x1 - x0, y1 - y0))
-        from_start = spots - (x0, y0)
-        t = np.clip(from_start @ way / max(float(way @ way), 1e-300), 0, 1)
-        off = np.hypot(*(from_start - np.multiply.outer(t, way)).T)
-        return off
+        return from_sides(spots - (x0, y0), np.array((x1 - x0, y1 - y0)))
     assert isinstance(piece, Arc)
     from_center = spots - piece.center
     turned = np.arctan2(from_center[:, 1], from_center[:, 0]) - piece.start_angle
     turned = np.mod(turned * math.copysign(1.0, piece.sweep), TAU)
-    off = np.abs(np.hypot(*from_center.T) - piece.radius)
+    off: Floats = np.abs(np.hypot(*from_center.T) - piece.radius)
     at_ends = np.minimum(np.hypot(*(spots - (x0, y0)).T), np.hypot(*(spots - (x1, y1)).T))
-    off = np.where(turned <= abs(piece.sweep), off, at_ends)
-    return off
+    return np.where(turned <= abs(piece.sweep), off, at_ends)
 
 
 # --- Straight gaps about as wide as the cut of a machine, which makes them in one pass along their middle.

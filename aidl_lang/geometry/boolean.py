@@ -40,7 +40,7 @@ from aidl_lang.geometry.sections import (
     NEGLIGIBLE,
     Section,
     difference,
-    fill,
+    filled,
     intersection,
     is_nothing,
     trace,
@@ -243,22 +243,12 @@ def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> R
     firsts = accumulate([0, *counts][:-1])
 
     def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:
-        return trace(network, operation(*(section_of(network, r, first) for r, first in placed))).region
+        return trace(
+            network,
+            operation(*(filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)),
+        ).region
 
     return with_finer_chords(network, traced)
-
-
-def section_of(network: Network, region: Region, number: int) -> Section:
-    """Returns a region as polygons; its pieces are the curves of the network from `number` on."""
-    polygons = []
-    for loop in region.loops:
-        uses = [use for k in range(len(loop.pieces)) for use in network.uses[number + k]]
-        number += len(loop.pieces)
-        if not uses:  # too small to be seen beside the rest
-            continue
-        polygons.append(network.polyline(uses))
-        assert loop.is_whole or not any(map(is_closed, loop.pieces))
-    return fill(polygons, "EvenOdd")
 
 
 # --- Outlines that touch each other in a point, with a joint there: boundary representations want a vertex
@@ -424,14 +414,19 @@ class Contact:
     area: float | None = None
 
 
-@record(slots=True)
+@record()
 class Solid:
-    """A body to be compared: its region, and the same as polygons of the network."""
+    """A body, or an area that others lie on: its region, also as polygons of the network, its place in the
+    order of drawing, and its colour, if it has one. One that `is_clear` hides nothing.
+    """
 
     path: str
     region: Region
     section: Section = field(repr=False, compare=False)
     box: Bounds
+    place: float
+    color: str | None
+    is_clear: bool
 
 
 @record()

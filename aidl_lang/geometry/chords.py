@@ -29,6 +29,7 @@ from aidl_lang.geometry.curves import (
     reverse,
     round_range,
 )
+from aidl_lang.geometry.nearness import windows
 from aidl_lang.geometry.region import Loop, Region
 
 # --- The outline of a region as straight and round elements in arrays, to be searched for chords (`walls`).
@@ -275,7 +276,8 @@ def _pairs(o: Skeleton, reach: float) -> Iterator[tuple[Ints, Ints]]:
     from each other; by place or by direction, whichever leaves fewer to try.
     """
     order, begin, count = min(_by_place(o.boxes, reach), _by_direction(o), key=lambda way: way[2].sum())
-    for i, rank in _listed(begin, count):
+    for i, rank in windows(begin, begin + count, _CHUNK):
+        checkpoint()
         j = order[rank % len(order)]
         apart = np.maximum(o.boxes[i, :2] - o.boxes[j, 2:], o.boxes[j, :2] - o.boxes[i, 2:])
         i, j = _only(i, j, np.all(apart <= reach, axis=1))
@@ -305,19 +307,6 @@ def _by_direction(o: Skeleton) -> tuple[Ints, Ints, Ints]:
     begin = np.searchsorted(starts, low)
     end = np.searchsorted(starts, low + np.minimum(2 * o.spread + 2 * ANGLE, turn), side="right")
     return order, begin, np.minimum(end - begin, len(order))
-
-
-def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
-    """Yields each element with each of its `count` ranks from `begin`, some at a time."""
-    total = np.concatenate(([0], np.cumsum(count)))
-    first = 0
-    while first < len(count):
-        checkpoint()
-        last = max(first + 1, int(np.searchsorted(total, total[first] + _CHUNK)) - 1)
-        rows = np.arange(first, last)
-        i = np.repeat(rows, count[rows])
-        yield i, np.arange(len(i)) + np.repeat(begin[rows] - total[rows] + total[first], count[rows])
-        first = last
 
 
 def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:

@@ -491,3 +491,7 @@ def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
         return 0.0, 0.0, 0.0, 0.0
     lefts, bottoms, rights, tops = zip(*boxes, strict=True)
     return min(lefts), min(bottoms), max(rights), max(tops)
+
+
+def larger_side(box: Bounds) -> float:
+    return max(box[2] - box[0], box[3] - box[1])

@@ -39,6 +39,7 @@ from aidl_lang.geometry.curves import (
     all_bounds,
     bounds,
     is_finite,
+    larger_side,
     union_bounds,
 )
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
@@ -46,7 +47,6 @@ from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, with
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
-    StackedBody,
     covered_note,
     crossing_notes,
     lettering_note,
@@ -80,6 +80,8 @@ from aidl_lang.geometry.styles import (
 
 SLIT = "slit"
 _Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
+_Shapes: TypeAlias = dict[str, list[Shape]]
+_Arranged: TypeAlias = tuple[Bodies, list[Mass], dict[str, Traced]]
 
 
 @record()
@@ -179,7 +181,7 @@ class Drawing:
     @property
     def size(self) -> float:
         """The larger side of the box, 1 for an empty drawing."""
-        return max(self.box[2] - self.box[0], self.box[3] - self.box[1]) or 1.0
+        return larger_side(self.box) or 1.0
 
 
 @record()
@@ -199,13 +201,19 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
-    network, walk, masses, traced, gaps = _closed(root, network, shapes, clips, blind)
+    network, walk, masses, traced, gaps = _closed(
+        root, network, shapes, partial(_arranged, root, shapes, clips, blind)
+    )
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
-    solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
+    order = {structure.path: place for place, structure in enumerate(stacked(root))}
+    solids = [
+        Solid(b.path, b.region, m.section, b.box, order[b.path], b.style.color, b.style.is_clear)
+        for b, m in zip(bodies, masses, strict=True)
+    ]
     touching = contacts(network, solids)
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
@@ -219,14 +227,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    order = {structure.path: place for place, structure in enumerate(stacked(root))}
-    lying = [
-        StackedBody(b.path, order[b.path], b.style.color, m.section, b.region, b.box, b.style.is_clear)
-        for b, m in zip(bodies, masses, strict=True)
-    ]
     material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
     areas = dict(_areas(root, shapes, network, material, ink[0]))
-    lying += _lying_areas(stacked(root), styles, areas)
+    lying = [*solids, *_lying_areas(stacked(root), styles, areas)]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
@@ -271,16 +274,15 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 def _closed(
     root: SolvedStructure,
     network: Network,
-    shapes: dict[str, list[Shape]],
-    clips: Clips,
-    blind: Collection[str],
+    shapes: _Shapes,
+    arranged: Callable[[Network], _Arranged],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
-    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
+    found = with_finer_chords(network, partial(arranged, network))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps), box=network.box)
-        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
+        then = with_finer_chords(joined, partial(arranged, joined))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -291,12 +293,8 @@ def _closed(
 
 
 def _arranged(
-    root: SolvedStructure,
-    network: Network,
-    shapes: dict[str, list[Shape]],
-    clips: Clips,
-    blind: Collection[str],
-) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
+    root: SolvedStructure, shapes: _Shapes, clips: Clips, blind: Collection[str], network: Network
+) -> _Arranged:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
     walk = Bodies(network, shapes, clip_sections(network, root, clips), blind)
     masses = _root_masses(walk, root)
@@ -307,17 +305,15 @@ def _arranged(
     return walk, [m for m in masses if traced[m.structure.path].region], traced
 
 
-def _collect(
-    root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[_Curves, _Curves, dict[str, list[Shape]], dict[str, list[Shape]]]:
+def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _Curves, _Shapes, _Shapes]:
     """Returns all curves that can be drawn, numbered, with their boxes: those that bound material, and those
     of strokes, which nothing is cut by. And by structure the shapes they belong to, and the outlines that a
     file says are engraved.
     """
     solid: _Curves = ([], [])
     ink: _Curves = ([], [])
-    shapes: dict[str, list[Shape]] = {}
-    engraved: dict[str, list[Shape]] = {}
+    shapes: _Shapes = {}
+    engraved: _Shapes = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.drawn:
@@ -407,8 +403,8 @@ def _covered_letters(
 
 def _strokes(
     root: SolvedStructure,
-    shapes: dict[str, list[Shape]],
-    engraved: dict[str, list[Shape]],
+    shapes: _Shapes,
+    engraved: _Shapes,
     walk: Bodies,
     areas: _Areas,
     styles: dict[str, Style],
@@ -468,7 +464,7 @@ def _inked(
 
 
 def _unseen(
-    root: SolvedStructure, shapes: dict[str, list[Shape]], styles: dict[str, Style], ground: Ground
+    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: Ground
 ) -> Iterator[Diagnostic]:
     """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
@@ -500,7 +496,7 @@ def _unseen(
 
 def _areas(
     root: SolvedStructure,
-    shapes: dict[str, list[Shape]],
+    shapes: _Shapes,
     network: Network,
     material: dict[str, Section],
     ink: Sequence[Piece],
@@ -527,15 +523,18 @@ def _areas(
 
 def _lying_areas(
     order: Iterable[SolvedStructure], styles: dict[str, Style], areas: _Areas
-) -> Iterator[StackedBody]:
+) -> Iterator[Solid]:
     """Yields the areas as what others lie on."""
     for at, structure in enumerate(order):
         places = _places(structure, at)
         for g in structure.drawn:
             if (area := areas.get(g.path)) is not None:
-                look, box = styled(styles[structure.path], g), region_bounds(area.region)
-                section, region = area.section, area.region
-                yield StackedBody(g.path, places[g.path], look.color, section, region, box, look.is_clear)
+                look, box, place = (
+                    styled(styles[structure.path], g),
+                    region_bounds(area.region),
+                    places[g.path],
+                )
+                yield Solid(g.path, area.region, area.section, box, place, look.color, look.is_clear)
 
 
 def _places(structure: SolvedStructure, at: float) -> dict[str, float]:

@@ -110,15 +110,7 @@ def parts_of(
 def _contours(g: Geometry, name: str, curves: Sequence[Piece], element: Element) -> SolvedGeometry:
     checkpoint()
     path = f"{g.path}.{name}"
-
-    def edge(k: int, curve: Piece) -> SolvedGeometry:
-        kind, values = described(curve)
-        own = f"edge[{k}]"
-        return SolvedGeometry(
-            own, f"{path}.{own}", kind, values, curve, (), g.construction, g.span, piece_of=g.path
-        )
-
-    edges = tuple(edge(k, curve) for k, curve in enumerate(curves))
+    edges = tuple(edge_of(g, f"{name}.edge[{k}]", curve) for k, curve in enumerate(curves))
     kind, is_filled = CONTOURS[element.is_winding], g.filled
     looks: dict[str, tuple[Scalar, ...]] = {}
     if (engraving := element.engraving) is not None:
@@ -126,6 +118,13 @@ def _contours(g: Geometry, name: str, curves: Sequence[Piece], element: Element)
         looks = {k: (v,) for k, v in (("layer", engraving.layer), ("color", engraving.color)) if v}
     made = SolvedGeometry(name, path, kind, {}, None, edges, g.construction, g.span, filled=is_filled)
     return replace(made, attributes=looks)
+
+
+def edge_of(of: Geometry, path: str, curve: Piece) -> SolvedGeometry:
+    """Returns one of the curves that a primitive is made of, by its path in it."""
+    kind, values = described(curve)
+    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
+    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
 
 
 def is_winding(shape: SolvedGeometry) -> bool:

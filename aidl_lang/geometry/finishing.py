@@ -187,10 +187,10 @@ def sized(work: Work, size: float) -> Work:
     return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
 
 
-def largest(fits: Callable[[float], bool], too_large: float) -> float:
+def largest(fits: Callable[[float], bool], too_large: float, halvings: int = _HALVINGS) -> float:
     """Returns the largest size below one that is too large, by halving."""
     low, high = 0.0, too_large
-    for _ in range(_HALVINGS):
+    for _ in range(halvings):
         middle = (low + high) / 2
         low, high = (middle, high) if fits(middle) else (low, middle)
     return low
@@ -322,7 +322,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
     """Follows the touching points from the corner as the radius grows; None once one leaves its arm."""
 
     def gap(u: float, v: float, r: float) -> Vec:
-        p, q = _beside(a, u, side * r), _beside(b, v, -side * r)
+        p, q = parallel(a, u, side * r), parallel(b, v, -side * r)
         return p[0] - q[0], p[1] - q[1]
 
     u = v = 0.0
@@ -342,10 +342,11 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
                 break
         if not (math.hypot(*gap(u, v, r)) < _EXACT * max(1.0, radius) and min(u, v) >= 0 and max(u, v) <= 1):
             return None
-    return u, v, _beside(a, u, side * radius)
+    return u, v, parallel(a, u, side * radius)
 
 
-def _beside(curve: Piece, t: float, left: float) -> Vec:
+def parallel(curve: Piece, t: float, left: float) -> Vec:
+    """Returns the point at a distance to the left of that at a parameter."""
     (x, y), (dx, dy) = point(curve, t), direction(curve, t)
     return x - left * dy, y + left * dx
 

@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Finding, LooseCurves
-from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, bounds, ends, is_closed
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, bounds, ends, is_closed, larger_side
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -143,8 +143,7 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
     """Returns such a curve with its end elsewhere; None if that would change more than its end."""
-    left, bottom, right, top = bounds(curve)
-    if max(right - left, top - bottom) <= 10 * widest:
+    if larger_side(bounds(curve)) <= 10 * widest:
         return None
     start, end = ends(curve)
     start, end = (start, kept.at) if is_last else (kept.at, end)

@@ -18,7 +18,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.boolean import stretches_beside
+from aidl_lang.geometry.boolean import Solid, stretches_beside
 from aidl_lang.geometry.curves import (
     NO_LENGTH,
     Bounds,
@@ -34,7 +34,7 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.faces import Shape, first_node, last_node
 from aidl_lang.geometry.intersect import meet
-from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.network import GRID, Network, Use
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.region import Region, length, loop_points
@@ -61,28 +61,13 @@ _WHOLE = 0.995
 
 
 @record()
-class StackedBody:
-    """A body with its path, its place in the order of drawing, and its colour, if it has one. One that
-    `is_clear` hides nothing.
-    """
-
-    path: str
-    place: float
-    color: str | None
-    section: Section
-    region: Region
-    box: Bounds
-    is_clear: bool = False
-
-
-@record()
 class Ground:
     """The bodies that strokes lie on, or under, from back to front. `curves` are those of all strokes, which
     go by their numbers; `boxes` are theirs.
     """
 
     network: Network
-    bodies: Sequence[StackedBody]
+    bodies: Sequence[Solid]
     curves: Sequence[Piece]
     boxes: Sequence[Bounds]
 
@@ -265,11 +250,7 @@ def overhang(pieces: Sequence[Piece], region: Region) -> float:
         return 0.0
     start = np.concatenate(polygons)
     way = np.concatenate([np.roll(p, -1, axis=0) - p for p in polygons])
-    square = np.maximum((way**2).sum(axis=1), 1e-300)
-    furthest = 0.0
-    for spot in spots:
-        t = np.clip(((spot - start) * way).sum(axis=1) / square, 0, 1)
-        furthest = max(furthest, float(np.hypot(*(spot - start - t[:, None] * way).T).min()))
+    furthest = max(float(from_sides(spot - start, way).min()) for spot in spots)
     return furthest if furthest > max(UNSEEN, 1e-3 * size) else 0.0
 
 

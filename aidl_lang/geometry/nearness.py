@@ -32,7 +32,7 @@ def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
     sweeps = [_sweep(b, axis, margin) for axis in (0, 1)]
     along, stops = min(sweeps, key=lambda sweep: int((sweep[1] - np.arange(len(b))).sum()))
     found, total = [], 0
-    for one, other in _windows(np.arange(1, len(b) + 1), stops):
+    for one, other in windows(np.arange(1, len(b) + 1), stops):
         first, second = np.minimum(along[one], along[other]), np.maximum(along[one], along[other])
         meets = (b[first, 2:] + margin >= b[second, :2]).all(axis=1) & (b[first, 1] - margin <= b[second, 3])
         found.append((first[meets], second[meets]))
@@ -52,14 +52,14 @@ def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
     return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
 
 
-def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
+def windows(low: Ints, high: Ints, at_once: int = _AT_ONCE) -> Iterator[tuple[Ints, Ints]]:
     """Yields every number k with every place in `low[k]:high[k]`, a part of them at a time."""
     sizes = np.maximum(0, high - low)
     ends = np.cumsum(sizes)
     begin = 0
     while begin < len(sizes):
         done = int(ends[begin - 1]) if begin else 0
-        stop = max(begin + 1, int(np.searchsorted(ends, done + _AT_ONCE, side="right")))
+        stop = max(begin + 1, int(np.searchsorted(ends, done + at_once, side="right")))
         size = sizes[begin:stop]
         number = np.repeat(np.arange(begin, stop), size)
         within = np.arange(len(number)) - np.repeat(np.cumsum(size) - size, size)
@@ -85,7 +85,7 @@ class Sides:
         for of_size, left, width in self._classes:
             low = np.searchsorted(left, x - width - reach)
             high = np.searchsorted(left, x + reach, side="right")
-            for place, window in _windows(low, high):
+            for place, window in windows(low, high):
                 yield place, of_size[window]
 
     def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
@@ -110,11 +110,15 @@ class Sides:
         return result
 
     def _distance(self, spots: Floats, side: Ints) -> Floats:
-        gap, way = spots - self._start[side], self._way[side]
-        square = np.maximum((way**2).sum(axis=1), 1e-300)
-        t = np.clip((gap * way).sum(axis=1) / square, 0, 1)
-        away: Floats = np.hypot(*(gap - t[:, None] * way).T)
-        return away
+        return from_sides(spots - self._start[side], self._way[side])
+
+
+def from_sides(gap: Floats, way: Floats) -> Floats:
+    """Returns the distances of spots from sides, by the ways from the starts to spots and ends of these."""
+    square = np.maximum((way**2).sum(axis=-1), 1e-300)
+    t = np.clip((gap * way).sum(axis=-1) / square, 0, 1)
+    away: Floats = np.hypot(*np.moveaxis(gap - t[..., None] * way, -1, 0))
+    return away
 
 
 def inside(polygons: Sequence[Floats], spots: Floats) -> Mask:

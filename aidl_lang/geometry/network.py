@@ -28,6 +28,7 @@ from aidl_lang.geometry.curves import (
     bounds,
     ends,
     is_closed,
+    larger_side,
     locate,
     part,
     point,
@@ -245,7 +246,7 @@ class Network:
         self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
         self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
-        self.size = max(right - left, top - bottom) or 1.0
+        self.size = larger_side(self.box) or 1.0
         self.tolerance = RELATIVE_TOLERANCE * self.size
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
@@ -317,8 +318,7 @@ class Network:
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
-            left, bottom, right, top = self.boxes[number]
-            is_large = max(right - left, top - bottom) > 4 * self.tolerance
+            is_large = larger_side(self.boxes[number]) > 4 * self.tolerance
             whole = is_closed(curve) or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]

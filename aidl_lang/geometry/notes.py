@@ -24,7 +24,16 @@ from aidl_lang.geometry.bodies import (
     OwnFinding,
 )
 from aidl_lang.geometry.boolean import Contacts
-from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Piece, Vec, bounds, ends, is_finite
+from aidl_lang.geometry.curves import (
+    LARGEST,
+    NO_LENGTH,
+    Bezier,
+    Vec,
+    bounds,
+    ends,
+    is_finite,
+    larger_side,
+)
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
@@ -184,14 +193,13 @@ def _partly_closed(finding: LooseCurves) -> SolvedGeometry | None:
 
 
 def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
-    is_seen = geometry.curve is not None and not geometry.construction and not _is_a_point(geometry.curve)
+    is_seen = (
+        geometry.curve is not None
+        and not geometry.construction
+        and not larger_side(bounds(geometry.curve)) < NO_LENGTH
+    )
     own = [geometry.path] if is_seen else []
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
-
-
-def _is_a_point(curve: Piece) -> bool:
-    left, bottom, right, top = bounds(curve)
-    return max(right - left, top - bottom) < NO_LENGTH
 
 
 End = tuple[SolvedGeometry, Vec, str]

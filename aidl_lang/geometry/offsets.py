@@ -9,7 +9,6 @@ from itertools import pairwise
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import (
     Arc,
     Bezier,
@@ -23,6 +22,7 @@ from aidl_lang.geometry.curves import (
     ends,
     extreme_parameters,
     is_closed,
+    larger_side,
     nearest,
     part,
     point,
@@ -32,10 +32,10 @@ from aidl_lang.geometry.curves import (
     turn_between,
     union_bounds,
 )
-from aidl_lang.geometry.finishing import direction
+from aidl_lang.geometry.finishing import direction, parallel
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import difference, fill, trace, union
+from aidl_lang.geometry.sections import difference, filled, trace, union
 
 # --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 #
@@ -63,7 +63,7 @@ _SHARPEST = math.radians(168.5)
 def beside(curve: Piece, left: float) -> Iterator[Strip]:
     """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
     if isinstance(curve, Line):
-        yield (_between(curve, Line(_parallel(curve, 0.0, left), _parallel(curve, 1.0, left))),)
+        yield (_between(curve, Line(parallel(curve, 0.0, left), parallel(curve, 1.0, left))),)
     elif isinstance(curve, Circle):
         other = curve.radius - left
         yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
@@ -129,7 +129,7 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
 def _reached(curve: Piece, t: float, left: float) -> Vec:
     """Returns the end of a normal a little beyond the centre of curvature, but within the distance."""
     stretch = _stretch(curve, t, left)
-    return _parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
+    return parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
@@ -141,15 +141,10 @@ def _stretch(curve: Piece, t: float, left: float) -> float:
 
 def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
     """Returns the cubic with the ends and the derivatives of the parallel curve."""
-    p, q = _parallel(curve, t0, left), _parallel(curve, t1, left)
+    p, q = parallel(curve, t0, left), parallel(curve, t1, left)
     (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
     u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
     return Bezier(p, (p[0] + u * ax, p[1] + u * ay), (q[0] - v * bx, q[1] - v * by), q)
-
-
-def _parallel(curve: Piece, t: float, left: float) -> Vec:
-    (x, y), (dx, dy) = point(curve, t), direction(curve, t)
-    return x - left * dy, y + left * dx
 
 
 def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> float:
@@ -157,7 +152,7 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
     worst = 0.0
     for s in (0.2, 0.35, 0.5, 0.65, 0.8):
         t = t0 + s * (t1 - t0)
-        (px, py), (qx, qy), (dx, dy) = _parallel(curve, t, left), point(fitted, s), direction(curve, t)
+        (px, py), (qx, qy), (dx, dy) = parallel(curve, t, left), point(fitted, s), direction(curve, t)
         worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
     return worst
 
@@ -241,8 +236,7 @@ def _along(
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
     """Returns what a pen of a width draws along curves; where more than two meet, the joint is round."""
     half = width / 2
-    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
-    near = NEAR * (max(right - left, top - bottom) or 1.0)
+    near = NEAR * (larger_side(union_bounds([bounds(c) for c in curves])) or 1.0)
     strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
     for at, leaving in _joints(curves, near):
         if len(leaving) > 2:
@@ -275,24 +269,16 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
-    pieces = [p for loop in region.loops for p in loop.pieces]
-    number = len(pieces)
-    pieces += [p for strip in strips for outline in strip for p in outline]
-    network = Network(pieces)
+    strokes = (p for strip in strips for outline in strip for p in outline)
+    network = Network([*region.pieces, *strokes])
 
     def traced() -> Region:
-        place = number
-        sections = []
+        place, sections = len(region.pieces), []
         for strip in strips:
-            polygons = []
-            for outline in strip:
-                uses = [u for k in range(len(outline)) for u in network.uses[place + k]]
-                place += len(outline)
-                if uses:
-                    polygons.append(network.polyline(uses))
             # Normals of a curve that bends closely cross: all that a single outline goes around counts.
-            sections.append(fill(polygons, "NonZero" if len(strip) == 1 else "EvenOdd"))
-        base, added = section_of(network, region, 0), union(sections)
+            sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
+            place += sum(map(len, strip))
+        base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
         return trace(network, difference(base, added) if cut else union([base, added])).region
 
     return with_finer_chords(network, traced)

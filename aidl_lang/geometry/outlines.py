@@ -19,12 +19,13 @@ from aidl_lang.geometry.curves import (
     bounds,
     ends,
     is_finite,
+    larger_side,
     reverse,
     union_bounds,
 )
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
-from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
+from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
 from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
 from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
 from aidl_lang.geometry.region import Region, area, length
@@ -221,7 +222,7 @@ class _Outliner:
         if not lattice.is_possible:
             self.notes.append(notes.no_lattice(g, recipe))
             return []
-        cell, area = [lattice.turned(c) for c in first], lattice.turned_region(_region(groups[0]))
+        cell, area = [lattice.turned(c) for c in first], _region(groups[0]).mapped(lattice.turned)
         whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
         try:
             if area:
@@ -432,17 +433,12 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
 
 
 def _extent(curves: Sequence[Piece]) -> float:
-    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
-    return max(right - left, top - bottom) or 1.0
+    return larger_side(union_bounds([bounds(c) for c in curves])) or 1.0
 
 
 def _deepest(region: Region, too_deep: float) -> float:
     """Returns how far an outline can move inwards before nothing is left, to about seven digits."""
-    low, high = 0.0, too_deep
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if offset(region, -middle) else (low, middle)
-    return low
+    return largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
 
 
 # --- Drawings that are clipped to the material of a solid, once that is known.

@@ -11,10 +11,19 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.boolean import Contacts, clipped_each, common, without
-from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Piece, are_near, bounds, inward, union_bounds
+from aidl_lang.geometry.curves import (
+    NO_LENGTH,
+    Bounds,
+    Piece,
+    are_near,
+    bounds,
+    inward,
+    larger_side,
+    union_bounds,
+)
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.legibility import Holders, owner
-from aidl_lang.geometry.region import Face, Loop, Region, face_polygons, length, region_bounds
+from aidl_lang.geometry.region import Region, face_polygons, length, region_bounds
 from aidl_lang.geometry.solved import SolvedStructure
 
 # --- The parts that drawings are engraved on, for drawings whose parts are taken from one another.
@@ -102,21 +111,15 @@ class Motion:
     x: float = 0.0
     y: float = 0.0
 
-    def pieces(self, pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-        # Where the shift takes the origin is where the curves are seen from.
+    def piece(self, piece: Piece) -> Piece:
+        # Where the shift takes the origin is where the curve is seen from.
         angle = math.radians(self.turn)
         c, s = math.cos(angle), math.sin(angle)
         origin = -(c * self.x + s * self.y), s * self.x - c * self.y
-        return tuple(inward(piece, origin, -self.turn, mirrored=False) for piece in pieces)
+        return inward(piece, origin, -self.turn, mirrored=False)
 
-    def face(self, face: Face) -> Face:
-        return Face(self._loop(face.outer), tuple(map(self._loop, face.holes)))
-
-    def _loop(self, loop: Loop) -> Loop:
-        return Loop(self.pieces(loop.pieces), loop.reversed)
-
-    def region(self, region: Region) -> Region:
-        return Region(tuple(map(self.face, region.faces)))
+    def pieces(self, pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+        return tuple(map(self.piece, pieces))
 
 
 @record()
@@ -139,16 +142,17 @@ class Part:
         return self.body.style.material or "", self.body.style.thickness or 0.0
 
     def moved(self, by: Motion) -> Part:
-        region = by.region(self.body.region)
+        region = self.body.region.mapped(by.piece)
         strokes = tuple(
-            replace(s, pieces=by.pieces(s.pieces), faces=tuple(map(by.face, s.faces))) for s in self.strokes
+            replace(s, pieces=by.pieces(s.pieces), faces=tuple(f.mapped(by.piece) for f in s.faces))
+            for s in self.strokes
         )
         box = region_bounds(region)
         return Part(
             replace(self.body, region=region, box=box),
             strokes,
             tuple(replace(seam, pieces=by.pieces(seam.pieces)) for seam in self.seams),
-            {path: by.region(below) for path, below in self.regions.items()},
+            {path: below.mapped(by.piece) for path, below in self.regions.items()},
             union_bounds([box, *(bounds(piece) for s in strokes for piece in s.pieces)]),
         )
 
@@ -228,34 +232,21 @@ def gathered(things: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]
 
 def shape_of(body: Body) -> Hashable:
     """Returns a key that bodies share which are moved copies of each other, and of one stock."""
-    corner = region_bounds(body.region)
-    size = max(corner[2] - corner[0], corner[3] - corner[1])
-    return (
-        body.style.material,
-        body.style.thickness,
-        body.style.quantity,
-        round(size, 6),
-        _places(body.region.pieces, corner, size),
-    )
+    box, style = region_bounds(body.region), body.style
+    places = _places(body.region.pieces, box)
+    return style.material, style.thickness, style.quantity, round(larger_side(box), 6), places
 
 
 def _engraving(part: Part) -> Hashable:
-    corner = region_bounds(part.body.region)
-    size = max(corner[2] - corner[0], corner[3] - corner[1])
-    return tuple(sorted((s.style.layer or "", _places(s.pieces, corner, size)) for s in part.strokes))
+    box = region_bounds(part.body.region)
+    return tuple(sorted((s.style.layer or "", _places(s.pieces, box)) for s in part.strokes))
 
 
-def _places(pieces: Iterable[Piece], corner: Bounds, size: float) -> tuple[tuple[int, ...], ...]:
-    """Returns the boxes of pieces from a corner, in steps so small that equal ones are the same."""
-    origin = corner[:2] * 2
-    return tuple(
-        sorted(
-            tuple(
-                round((v - o) / (_ALIKE * size) + _OFF_BEAT) for v, o in zip(bounds(p), origin, strict=True)
-            )
-            for p in pieces
-        )
-    )
+def _places(pieces: Iterable[Piece], around: Bounds) -> tuple[tuple[int, ...], ...]:
+    """Returns the boxes of pieces in one, in steps of it so small that equal ones are the same."""
+    step, origin = _ALIKE * larger_side(around), around[:2] * 2
+    boxes = (zip(bounds(p), origin, strict=True) for p in pieces)
+    return tuple(sorted(tuple(round((v - o) / step + _OFF_BEAT) for v, o in box) for box in boxes))
 
 
 def upright_turn(part: Part) -> float:
@@ -281,6 +272,8 @@ def smallest_size(part: Part) -> Size:
     where the part is turned for it.
     """
     turn = upright_turn(part)
-    left, bottom, right, top = region_bounds(Motion(turn).region(part.body.region)) if turn else part.body.box
+    left, bottom, right, top = (
+        region_bounds(part.body.region.mapped(Motion(turn).piece)) if turn else part.body.box
+    )
     width, height = right - left, top - bottom
     return (max(width, height), min(width, height)) if turn else (width, height)

@@ -24,7 +24,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec, is_finite
-from aidl_lang.geometry.faces import parts_of
+from aidl_lang.geometry.faces import edge_of, parts_of
 from aidl_lang.geometry.letters import stencilled, united
 from aidl_lang.geometry.notes import unusable_note
 from aidl_lang.geometry.solved import (
@@ -239,7 +239,9 @@ class _Reader:
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
         if is_plain and curve is None:
-            parts = tuple(_edge(g, f"edge[{i}]", points) for i, points in enumerate(self._pieces(g)))
+            parts = tuple(
+                edge_of(g, f"edge[{i}]", _through(points)) for i, points in enumerate(self._pieces(g))
+            )
         else:
             parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
         return self._solved(g, self._own_values(g, curve), parts, curve, recipe)
@@ -381,18 +383,12 @@ def _glyph(
     checkpoint()
     outline = glyph.curves if glyph.is_nested else united(glyph.curves)
     outline = stencilled(outline, bridge) if bridge else outline
-    edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
+    edges = tuple(
+        edge_of(text, f"{name}.edge[{i}]", _through([at(p) for p in c])) for i, c in enumerate(outline)
+    )
     path, filled = f"{text.path}.{name}", text.filled
     made = SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
     return replace(made, stroked=glyph.is_stroked)
-
-
-def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
-    """Returns one of the lines and cubics of a primitive, by its path in it."""
-    curve = _through(points)
-    kind, values = described(curve)
-    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
-    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
 
 
 def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:

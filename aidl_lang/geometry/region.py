@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import field
 from functools import cache, cached_property
 from itertools import pairwise
@@ -47,6 +48,10 @@ class Loop:
     pieces: tuple[Piece, ...]
     reversed: bool = False
 
+    def mapped(self, moved: Callable[[Piece], Piece]) -> Loop:
+        """Returns the loop of the images of the pieces under what keeps its sense."""
+        return Loop(tuple(map(moved, self.pieces)), self.reversed)
+
     @property
     def is_whole(self) -> bool:
         """True if the loop is a single closed curve without ends."""
@@ -63,6 +68,9 @@ class Face:
     @property
     def loops(self) -> tuple[Loop, ...]:
         return (self.outer, *self.holes)
+
+    def mapped(self, moved: Callable[[Piece], Piece]) -> Face:
+        return Face(self.outer.mapped(moved), tuple(hole.mapped(moved) for hole in self.holes))
 
 
 @record()
@@ -90,6 +98,9 @@ class Region:
     def boxes(self) -> Floats:
         """The box of each piece, a row each."""
         return np.array([bounds(piece) for piece in self.pieces]).reshape(-1, 4)
+
+    def mapped(self, moved: Callable[[Piece], Piece]) -> Region:
+        return Region(tuple(face.mapped(moved) for face in self.faces))
 
     def __bool__(self) -> bool:
         return bool(self.faces)

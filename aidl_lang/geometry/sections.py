@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
@@ -168,6 +168,24 @@ def inside_mask(section: Section, spots: Polygon) -> Mask:
         if len(near):
             within[near] = inside(section.to_polygons(), spots[near])
     return within
+
+
+def filled(
+    network: Network,
+    outlines: Iterable[Sequence[object]],
+    number: int,
+    rule: Literal["EvenOdd", "NonZero"] = "EvenOdd",
+) -> Section:
+    """Returns the area in outlines whose pieces are the curves of a network from `number` on; outlines too
+    small to be seen beside the rest are left out.
+    """
+    polygons = []
+    for outline in outlines:
+        uses = [use for own in network.uses[number : number + len(outline)] for use in own]
+        number += len(outline)
+        if uses:
+            polygons.append(network.polyline(uses))
+    return fill(polygons, rule)
 
 
 # --- Turns the polygons of a boolean back into outlines of exact curves.

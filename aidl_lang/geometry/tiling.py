@@ -11,8 +11,9 @@ Only copies near the border take part in a boolean. Those wholly inside are the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -27,13 +28,14 @@ from aidl_lang.geometry.curves import (
     Vec,
     bounds,
     image,
+    larger_side,
     turn_between,
     union_bounds,
 )
 from aidl_lang.geometry.nearness import Sides, inside
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
-from aidl_lang.geometry.region import Face, Loop, Region, area, region_bounds, region_polygons
+from aidl_lang.geometry.region import Region, area, region_bounds, region_polygons
 
 MOST = 10_000
 """Copies of a cell that are made at most."""
@@ -95,9 +97,6 @@ class Lattice:
             return x + cos * dx - sin * dy, y + sin * dx + cos * dy
 
         return image(curve, at, turned=lambda direction: direction + self.angle)
-
-    def turned_region(self, region: Region) -> Region:
-        return _mapped(region, self.turned)
 
     @property
     def is_possible(self) -> bool:
@@ -189,7 +188,8 @@ def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) 
     outside.
     """
     inner, crossing = (
-        [_moved_region(cell, way) for way in ways] for ways in _sorted(cell.pieces, region, lattice)
+        [cell.mapped(partial(_moved, way=way)) for way in ways]
+        for ways in _sorted(cell.pieces, region, lattice)
     )
     if whole:
         inner, crossing = [*inner, *_uncut(crossing, region)], []
@@ -266,14 +266,14 @@ def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
     """Tells whether copies of an area touch or overlap."""
     left, bottom, right, top = region_bounds(cell)
-    near = RELATIVE_TOLERANCE * max(right - left, top - bottom)
+    near = RELATIVE_TOLERANCE * larger_side((left, bottom, right, top))
     row = lattice.row or (0.0, 0.0)
     for j in range(_NEXT + 1 if lattice.row is not None else 1):
         for i in range(-_NEXT if j else 1, _NEXT + 1):
             way = i * lattice.step[0] + j * row[0], i * lattice.step[1] + j * row[1]
             if abs(way[0]) > right - left + near or abs(way[1]) > top - bottom + near:
                 continue
-            if clearance(cell, _moved_region(cell, way)) <= near:
+            if clearance(cell, cell.mapped(partial(_moved, way=way))) <= near:
                 return True
     return False
 
@@ -290,17 +290,6 @@ def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
 
 def _moved(curve: Piece, way: Vec) -> Piece:
     return image(curve, lambda p: (p[0] + way[0], p[1] + way[1]))
-
-
-def _moved_region(region: Region, way: Vec) -> Region:
-    return _mapped(region, lambda curve: _moved(curve, way))
-
-
-def _mapped(region: Region, moved: Callable[[Piece], Piece]) -> Region:
-    def loop(old: Loop) -> Loop:
-        return Loop(tuple(map(moved, old.pieces)), old.reversed)
-
-    return Region(tuple(Face(loop(f.outer), tuple(map(loop, f.holes))) for f in region.faces))
 
 
 def _together(regions: Sequence[Region]) -> Region:

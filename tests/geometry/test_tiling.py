@@ -150,7 +150,7 @@ def test_a_pattern_in_the_middle_turns_and_moves_with_its_outline(angle: float, 
     points = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), at(1, 0), at(7, 0), at(2, 6)]
     cover = disc(31, (x, y))
     lattice = Lattice.through(points, cover, "center")
-    cell = lattice.turned_region(rectangle(3, 2))
+    cell = rectangle(3, 2).mapped(lattice.turned)
     plain = Lattice((7, 0), (2, 6))
     wanted = tiled_areas(rectangle(3, 2), disc(31), plain, whole=False)
     assert area(tiled_areas(cell, cover, lattice, whole=False)) == pytest.approx(area(wanted), rel=1e-6)

@@ -13,12 +13,11 @@ import numpy as np
 
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
 from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon, widened
-from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, point, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
-from aidl_lang.geometry.sections import difference, intersection, trace_all, union
+from aidl_lang.geometry.sections import difference, filled, intersection, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
 INKS = {"both": "#64748b", "before": "#c2500a", "after": "#0b3c5d"}
@@ -58,7 +57,7 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
     def traced() -> list[Region]:
         sections, number = [], 0
         for region in (*before, *after):
-            sections.append(section_of(network, region, number))
+            sections.append(filled(network, [loop.pieces for loop in region.loops], number))
             number += sum(len(loop.pieces) for loop in region.loops)
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
         wanted = [intersection(first, last), difference(first, last), difference(last, first)]
