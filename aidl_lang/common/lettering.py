@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 
-from aidl_lang.common.font_files import Curve, FontFile, Vec
+from aidl_lang.common.font_files import Curve, FontFile, Vec, point_of
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 
@@ -68,13 +68,6 @@ def silhouette_of(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     return (*((p,) for p in hull.corners if p in ends), *bent)
 
 
-def _point(curve: Curve, t: float) -> Vec:
-    s = 1.0 - t
-    a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
-    return a * x0 + b * x1 + c * x2 + d * x3, a * y0 + b * y1 + c * y2 + d * y3
-
-
 _SAMPLES = 16
 """Points of a curve that are tested for lying inside the hull of all."""
 
@@ -83,7 +76,7 @@ def _samples(curve: Curve) -> Sequence[Vec]:
     """Returns points of a curve, its exact ends among them."""
     if len(curve) == 2:
         return curve
-    between = [_point(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
+    between = [point_of(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
     return [curve[0], *between, curve[-1]]
 
 

@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from aidl_lang.common.drawings import WHOLE
-from aidl_lang.common.font_files import Curve, Vec
+from aidl_lang.common.font_files import Curve, Vec, point_of
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
@@ -125,13 +125,6 @@ def has_length(stroke: Stroke) -> bool:
     return len(set(stroke)) > 1
 
 
-def quadratic(a: Vec, b: Vec, c: Vec) -> Curve:
-    """Returns a quadratic Bézier curve as the same cubic one."""
-    one = (a[0] + 2 * b[0]) / 3, (a[1] + 2 * b[1]) / 3
-    two = (c[0] + 2 * b[0]) / 3, (c[1] + 2 * b[1]) / 3
-    return a, one, two, c
-
-
 # --- How far strokes reach -------------------------------------------------------------------------
 
 
@@ -233,8 +226,8 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
     """Returns the cubics of a SPLINE, and whether they are the same curve."""
     spline: BSpline = entity.construction_tool()
     if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
-        return [_raised([_flat(p) for p in piece]) for piece in spline.bezier_decomposition()], True
-    points = [_flat(p) for p in spline.control_points]
+        return [_raised([flat(p) for p in piece]) for piece in spline.bezier_decomposition()], True
+    points = [flat(p) for p in spline.control_points]
     size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
     knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
     found = [
@@ -245,7 +238,7 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
     return [_joined(curve, found[k - 1] if k else None) for k, curve in enumerate(found)], False
 
 
-def _flat(p: Any) -> Vec:
+def flat(p: Any) -> Vec:
     return float(p[0]), float(p[1])
 
 
@@ -266,12 +259,12 @@ def _followed(spline: BSpline, first: float, last: float, near: float, halvings:
     checkpoint()
     step = last - first
     inside = [first + 1e-12 * step, last - 1e-12 * step]  # of the part, should its ends be corners
-    (start, heading), (end, arrival) = ((_flat(p), _flat(d)) for p, d in spline.derivatives(inside, 1))
+    (start, heading), (end, arrival) = ((flat(p), flat(d)) for p, d in spline.derivatives(inside, 1))
     one = start[0] + heading[0] * step / 3, start[1] + heading[1] * step / 3
     two = end[0] - arrival[0] * step / 3, end[1] - arrival[1] * step / 3
     middle = (first + last) / 2
     off = max(
-        math.dist(_at((start, one, two, end), k / 4), _flat(spline.point(first + k / 4 * step)))
+        math.dist(point_of((start, one, two, end), k / 4), flat(spline.point(first + k / 4 * step)))
         for k in (1, 2, 3)
     )
     if off <= near or halvings == 0:
@@ -279,13 +272,6 @@ def _followed(spline: BSpline, first: float, last: float, near: float, halvings:
         return
     yield from _followed(spline, first, middle, near, halvings - 1)
     yield from _followed(spline, middle, last, near, halvings - 1)
-
-
-def _at(curve: Curve, t: float) -> Vec:
-    s = 1.0 - t
-    weights = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
-    x, y = (sum(w * p[axis] for w, p in zip(weights, curve, strict=True)) for axis in (0, 1))
-    return x, y
 
 
 def _joined(curve: Curve, before: Curve | None) -> Curve:

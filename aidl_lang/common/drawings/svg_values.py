@@ -18,9 +18,8 @@ from aidl_lang.common.drawings.drawing import (
     Stroke,
     ellipse,
     product,
-    quadratic,
 )
-from aidl_lang.common.font_files import Vec
+from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 
