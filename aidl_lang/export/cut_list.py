@@ -22,10 +22,6 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
 from aidl_lang.geometry.region import area, length
 
-# --- The list of what is to be cut, with how many pieces of each, and names of files for single parts.
-
-# --- The list of what is to be cut: each part that differs from the others, and how many pieces of it.
-
 # --- Parts each by itself: a job for every part that differs from the others.
 
 

@@ -50,8 +50,6 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.region import Loop
 from aidl_lang.version import __version__
 
-# --- PNG: the SVG of a picture as pixels on white, with the bundled font and no other.
-
 # --- The font of texts in pictures, for formats that embed it.
 
 FAMILY = "DejaVu Sans AIDL"

@@ -1,4 +1,9 @@
-"""Outlines as machines follow them."""
+"""Outlines as machines follow them: nothing but lines and arcs, and no piece too short to be cut.
+
+Curves are fitted by pairs of arcs. A pair has the ends and the directions of the part it stands for, so that
+arcs run on smoothly wherever the curve does; a part whose pair departs too far is halved. Lines and arcs long
+enough to be cut stay what they are.
+"""
 
 from __future__ import annotations
 
@@ -30,13 +35,6 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
-
-# --- Outlines as machines follow them: nothing but lines and arcs, and no piece too short to be cut.
-#
-# Curves are fitted by pairs of arcs. A pair has the ends and the directions of the part it stands for, so
-# that arcs run on smoothly wherever the curve does; a part whose pair departs too far is halved. Lines and
-# arcs long enough to be cut stay what they are.
-
 
 TOLERANCE = 0.01
 """How far arcs may be from the curves that they stand for, mm, unless something else is asked for."""

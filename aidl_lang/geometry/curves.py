@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 
-# --- Exact curves in the plane: numbers only, millimetres and radians.
-
 Vec: TypeAlias = tuple[float, float]
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.intp]

@@ -1,4 +1,10 @@
-"""Corners rounded (fillet) or cut off (chamfer) after solving."""
+"""Corners rounded (fillet) or cut off (chamfer) after solving.
+
+An arm is a curve seen from a corner where it ends: u = 0 at the corner, 1 at its other end. The arc of a
+fillet is tangent to both arms, inside the angle between them: its centre lies on both arms moved sideways by
+the radius. Lines and arcs meet there in closed form; with other curves the two parameters are found by
+Newton's method, following the radius up from 0.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +31,6 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.region import length
-
-# --- Corners rounded (fillet) or cut off (chamfer) after solving.
-#
-# An arm is a curve seen from a corner where it ends: u = 0 at the corner, 1 at its other end. The arc of a
-# fillet is tangent to both arms, inside the angle between them: its centre lies on both arms moved sideways
-# by the radius. Lines and arcs meet there in closed form; with other curves the two parameters are found by
-# Newton's method, following the radius up from 0.
 
 SMOOTH = 1e-7
 """Curves whose directions differ by less, in radians, run on smoothly: there is no corner."""

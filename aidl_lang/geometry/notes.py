@@ -39,8 +39,6 @@ from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
-# --- Diagnostics on the findings of this package, with places, reasons and remedies.
-
 GUIDE = "to guide other geometry only, write `construction` before it"
 
 

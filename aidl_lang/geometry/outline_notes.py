@@ -25,8 +25,6 @@ from aidl_lang.geometry.finishing import (
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure
 
-# --- Diagnostics on derived outlines and finished corners.
-
 _ONE_WAY = 5
 """Points of a lattice that has no second step."""
 _OPERATION = {"difference": "cut"}

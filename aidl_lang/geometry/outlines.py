@@ -49,9 +49,6 @@ from aidl_lang.geometry.tiling import (
     tiled_strokes,
 )
 
-# --- Works out outlines derived from others, and finished corners, as recorded while building.
-
-
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
 _HALVINGS = 24

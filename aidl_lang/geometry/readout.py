@@ -48,8 +48,6 @@ from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution
 from aidl_lang.syntax import ast
 
-# --- Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root.
-
 _FULL_TURN = 2 * math.pi
 
 

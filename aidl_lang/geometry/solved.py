@@ -1,4 +1,7 @@
-"""The solved model in numbers: what regions, exporters and readers of the API see."""
+"""The solved model in numbers: what regions, exporters and readers of the API see.
+
+Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +26,6 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
-
-# --- The solved model in numbers: what regions, exporters and readers of the API see.
-#
-# Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
 
 Scalar: TypeAlias = float | int | bool | str
 Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]

@@ -1,4 +1,20 @@
-"""The thinnest wall and the narrowest gap of a region, and where they are."""
+"""The thinnest wall and the narrowest gap of a region, and where they are.
+
+A wall is a straight chord through the material, a gap one through the empty space beside it, that meets the
+outline at a right angle at both ends. A corner counts as if it were rounded a little: a chord may end there
+in any direction between the normals of its two edges. So a rectangle has the wall of its shorter side, a
+circle that of its diameter, a ring, an L-profile and a comb that of their legs, and a corner where two edges
+simply meet is no wall.
+
+Where a part gets narrower towards its end, no chord is at right angles to both sides; there the end counts:
+one edge or round whose two neighbours leave it at 90 to 105 degrees, from tip to tip.
+
+Where the outline touches itself, the material hangs together by a point, and the wall is 0.
+
+Pairs of elements of the outline are tried in growing distance from each other until nothing shorter can come.
+The shortest chord that crosses nothing is the answer. Chords that end on ellipses or Bézier curves are found
+on chords of the curve, and settled by Newton's method.
+"""
 
 from __future__ import annotations
 
@@ -30,23 +46,6 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedStructure
-
-# --- The thinnest wall and the narrowest gap of a region, and where they are.
-#
-# A wall is a straight chord through the material, a gap one through the empty space beside it, that meets
-# the outline at a right angle at both ends. A corner counts as if it were rounded a little: a chord may end
-# there in any direction between the normals of its two edges. So a rectangle has the wall of its shorter
-# side, a circle that of its diameter, a ring, an L-profile and a comb that of their legs, and a corner where
-# two edges simply meet is no wall.
-#
-# Where a part gets narrower towards its end, no chord is at right angles to both sides; there the end
-# counts: one edge or round whose two neighbours leave it at 90 to 105 degrees, from tip to tip.
-#
-# Where the outline touches itself, the material hangs together by a point, and the wall is 0.
-#
-# Pairs of elements of the outline are tried in growing distance from each other until nothing shorter can
-# come. The shortest chord that crosses nothing is the answer. Chords that end on ellipses or Bézier curves
-# are found on chords of the curve, and settled by Newton's method.
 
 _LEAN = math.radians(15)
 """Greatest lean of each side of a narrowing end towards the other."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ezdxf.math import BSpline
 
 
-# --- The curves of a drawing file: lines and cubic Bézier curves by points, arcs of ellipses, B-splines.
-
 # --- The curves of a drawing file: lines and cubic Bézier curves by their points, and arcs of ellipses, of
 # which circles are a kind. An affine map of each is one of the same sort, exactly.
 
@@ -278,8 +276,6 @@ def _joined(curve: Curve, before: Curve | None) -> Curve:
     """Returns a curve that begins where the one before it ends, to the last digit."""
     return curve if before is None else (before[-1], *curve[1:])
 
-
-# --- A drawing that was read, by the suffix of its name: its outlines, and their names made names of AIDL.
 
 # --- A drawing that was read: its outlines and their names.
 

@@ -129,8 +129,6 @@ def _plain(attributes: dict[str, str]) -> dict[str, str]:
     return found
 
 
-# --- The shapes of SVG as curves, and the values of its attributes.
-
 # --- The values of attributes in SVG: lengths, numbers, transforms, styles and the data of paths.
 
 MM_PER_PIXEL = 25.4 / 96

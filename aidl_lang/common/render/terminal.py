@@ -12,8 +12,6 @@ from aidl_lang.common.records import record
 from aidl_lang.common.render.excerpt import Excerpt, Mark, TerminalStyle, escape, mark, window
 from aidl_lang.common.source import SourceFile, Span
 
-# --- A diagnostic as text: the headline, the place, the lines with their labels, hints and the fix.
-
 # --- A fix as the lines it removes and the lines it adds.
 
 _LONGEST = 12
@@ -221,8 +219,6 @@ def _shown(span: Span) -> Span:
     """Returns the span without the blank space that a recovering parser may have taken along at its end."""
     return Span(span.source, span.start, max(span.start, span.start + len(span.text.rstrip())))
 
-
-# --- Diagnostics for a language model, and as plain data for JSON.
 
 # --- A diagnostic as plain data, for JSON. Lines and columns count from 1, offsets from 0, in code points.
 

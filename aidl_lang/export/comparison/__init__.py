@@ -250,8 +250,6 @@ def _form_of_geometry(g: SolvedGeometry) -> object:
     return g.type, g.construction, tuple((p.name, _form_of_geometry(p)) for p in g.parts)
 
 
-# --- Compares two trees from the root down: each structure relative to the motion of its parent.
-
 # --- The numbers and words of a structure or geometry, and which of them differ.
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9

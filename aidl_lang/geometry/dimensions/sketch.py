@@ -1,4 +1,13 @@
-"""What of an outline is told: by what is seen of it, and by dimensions."""
+"""What of an outline is told: by what is seen of it, and by dimensions.
+
+The unknowns are the levels of its edges, corners and centres along both axes, and its radii. What is seen
+without a number gives equations: arcs end on their edges, joints are smooth, corners are right, halves mirror
+each other about a drawn axis; what stands on one level is one unknown. Each equation is a row of a matrix,
+and so is each dimension. A dimension is needed if its row lies outside the span of those before it, and a
+number is missing as long as its own does. Rows are taken at the outline as it is drawn, by derivatives along
+imaginary steps (Squire and Trapp, "Using complex variables to estimate derivatives of real functions", SIAM
+Review 40, 1998).
+"""
 
 from __future__ import annotations
 
@@ -17,16 +26,6 @@ from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, meeting
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.sections import joined
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
-
-# --- What of an outline is told: by what is seen of it, and by dimensions.
-#
-# The unknowns are the levels of its edges, corners and centres along both axes, and its radii. What is seen
-# without a number gives equations: arcs end on their edges, joints are smooth, corners are right, halves
-# mirror each other about a drawn axis; what stands on one level is one unknown. Each equation is a row of a
-# matrix, and so is each dimension. A dimension is needed if its row lies outside the span of those before
-# it, and a number is missing as long as its own does. Rows are taken at the outline as it is drawn, by
-# derivatives along imaginary steps (Squire and Trapp, "Using complex variables to estimate derivatives of
-# real functions", SIAM Review 40, 1998).
 
 Unknowns = Sequence[complex]
 Row = Floats
