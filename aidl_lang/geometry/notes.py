@@ -24,16 +24,7 @@ from aidl_lang.geometry.bodies import (
     OwnFinding,
 )
 from aidl_lang.geometry.boolean import Contacts
-from aidl_lang.geometry.curves import (
-    LARGEST,
-    NO_LENGTH,
-    Bezier,
-    Vec,
-    bounds,
-    ends,
-    is_finite,
-    larger_side,
-)
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
