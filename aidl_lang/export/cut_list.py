@@ -18,7 +18,6 @@ from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, file_names
 from aidl_lang.export.cuts import outlines
 from aidl_lang.export.marks import Group, Picture
 from aidl_lang.export.profiles import CUTS, PLAIN
-from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
 from aidl_lang.geometry.region import area, length
 
@@ -147,20 +146,15 @@ def sheets(found: CutList, jobs: Sequence[Job]) -> Iterator[Sheet]:
     for number, job in enumerate(jobs, 1):
         pieces = Counter(found.numbers[body.path] for body in job.drawing.bodies)
         items = [(by_number[n], count) for n, count in pieces.items()]
-        first, (width, height) = items[0][0], _size(job.drawing)
+        first, (left, bottom, right, top) = items[0][0], job.drawing.box
         yield Sheet(
             number,
             first.material,
             first.thickness,
             pieces,
-            sum(item.area * count for item, count in items) / (width * height),
+            sum(item.area * count for item, count in items) / ((right - left) * (top - bottom)),
             sum(item.cut * count for item, count in items),
         )
-
-
-def _size(drawing: Drawing) -> Size:
-    left, bottom, right, top = drawing.box
-    return right - left, top - bottom
 
 
 # --- Names of files for single parts, made of a pattern such as `parts/{part}.dxf`.

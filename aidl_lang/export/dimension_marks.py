@@ -18,6 +18,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
+from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
@@ -88,7 +89,7 @@ class Block:
 
 
 def _range(points: tuple[Vec, ...], axis: Vec) -> tuple[float, float]:
-    along = [_dot(p, axis) for p in points]
+    along = [dot(p, axis) for p in points]
     return min(along), max(along)
 
 
@@ -163,7 +164,7 @@ class Pen:
         def at(along: float, across: float) -> Vec:
             return along * u + across * n[0], along * v + across * n[1]
 
-        low, high = (_dot(p[0], of.along) for p in (of.start, of.end))
+        low, high = (dot(p[0], of.along) for p in (of.start, of.end))
         room, width = high - low, self.width(words)
         is_tight = room < 2.5 * HEAD * mm
         fits = room >= width + 0.5 * mm
@@ -182,7 +183,7 @@ class Pen:
         text = self.text(words, at(middle, level + RAISED * mm), angle)
         extensions = []
         for pair, along in ((of.start, low), (of.end, high)):
-            across = min((_dot(p, n) for p in pair), key=lambda c: abs(c - level))
+            across = min((dot(p, n) for p in pair), key=lambda c: abs(c - level))
             side = math.copysign(1.0, level - across)
             if abs(level - across) > 1.5 * GAP * mm:
                 extensions.append(
@@ -267,10 +268,6 @@ def _signed(value: float) -> str:
 def arc_segments(arc: Arc) -> list[Segment]:
     spots = [point(arc, k / 12) for k in range(13)]
     return list(pairwise(spots))
-
-
-def _dot(p: Vec, q: Vec) -> float:
-    return p[0] * q[0] + p[1] * q[1]
 
 
 # --- The marks on a sheet so far, and what a further dimension would cover or cross.

@@ -72,7 +72,9 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
     spots = spots[np.argsort(np.hypot(*((spots - spots[0]) * (width, 1.0)).T), kind="stable")]
     spots = spots[within] if (within := inside(shrunk, spots)).any() else spots[:1]
     # A square lies in a circle: where a text is as high as wide, its room is that of a square.
-    sizes = _AIR * np.sqrt(2) * _clearance(spots, np.concatenate(sides))
+    start, end = np.split(np.concatenate(sides), 2, axis=1)
+    room = np.array([from_sides(spot - start, end - start).min() for spot in spots])
+    sizes = _AIR * np.sqrt(2) * room
     best = int(np.argmax(np.minimum(sizes, SIZE)))
     x, y = spots[best] * (width, 1.0)
     return (float(x), float(y)), float(min(sizes[best], SIZE))
@@ -80,11 +82,6 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
 
 def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate((line[:-1], line[1:]), axis=1)
-
-
-def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
-    start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
-    return np.array([from_sides(spot - start, way).min() for spot in spots])
 
 
 # Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look

@@ -47,7 +47,6 @@ from aidl_lang.geometry.curves import (
     point,
     round_range,
 )
-from aidl_lang.geometry.region import Loop
 from aidl_lang.version import __version__
 
 # --- The font of texts in pictures, for formats that embed it.
@@ -202,7 +201,8 @@ class _Pen:
     def _(self, mark: Area) -> None:
         path = self._canvas.beginPath()
         for loop in mark.face.loops:
-            _add_loop(path, loop)
+            _add_pieces(path, loop.pieces)
+            path.close()
         if mark.fill is not None:
             self._fill(mark.fill)
             if mark.opacity != 1:
@@ -335,11 +335,6 @@ class _Pen:
             canvas.setStrokeAlpha(ink.opacity)
         if ink.dash is not None:
             canvas.setDash(list(ink.dash))
-
-
-def _add_loop(path: Any, loop: Loop) -> None:
-    _add_pieces(path, loop.pieces)
-    path.close()
 
 
 def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:

@@ -19,7 +19,7 @@ from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, union_bounds
-from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
+from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -316,7 +316,8 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
     halos = _halos(root, drawing)
     for index, body in enumerate(drawing.bodies):
-        areas = list(_areas(body, index, size))
+        color = body.style.color or themes.body_fill(index)
+        areas = list(_filled(body.region, body.style, color, size))
         line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
         for area in (*halos.around_body(body, line), *areas) if halos else areas:
             yield body.path, area
@@ -344,10 +345,6 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     from aidl_lang.export.svg import Halos
 
     return Halos(drawing, root)
-
-
-def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
-    return _filled(body.region, body.style, body.style.color or themes.body_fill(index), size)
 
 
 def _filled(region: Region, style: Style, fill: str, size: float) -> Iterator[Area]:

@@ -111,11 +111,7 @@ class Shapes:
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         """Returns an edge for each piece."""
         self._vertices.clear()
-        return [self._edge(piece, *self._ends(piece)) for piece in map(_upright, pieces)]
-
-    def _ends(self, piece: Piece) -> tuple[TopoDS_Vertex, TopoDS_Vertex]:
-        start, end = ends(piece)
-        return self._vertex(start), self._vertex(end)
+        return [self._edge(piece, *map(self._vertex, ends(piece))) for piece in map(_upright, pieces)]
 
     def _wire(self, loop: Loop) -> TopoDS_Shape:
         made = TopoDS_Wire()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import fixed, listed, named, ticked
@@ -93,7 +93,8 @@ def followed_notes(job: Job) -> list[Diagnostic]:
         notes.append(
             Diagnostic(
                 "N0754",
-                f"the profile `{profile.name}` does not say what is done on the {_layers(names)}: "
+                f"the profile `{profile.name}` does not say what is done on the "
+                f"{'layer' if len(names) == 1 else 'layers'} {named(names)}: "
                 "parts are cut there and drawings engraved as elsewhere",
                 unknown[names[0]],
                 hints=(f'say it in a file for `--profile`: `[layers]` with `"{names[0]}" = "score"`',),
@@ -110,10 +111,6 @@ def followed_notes(job: Job) -> list[Diagnostic]:
             )
         )
     return notes
-
-
-def _layers(names: Sequence[str]) -> str:
-    return f"{'layer' if len(names) == 1 else 'layers'} {named(names)}"
 
 
 def _states(holder: SolvedStructure | SolvedGeometry, name: str) -> bool:

@@ -264,7 +264,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += idle_orders(root, paths)
         return ordered(by_statement([*notes, *empty]))
 
-    plans = tuple(_plans(root))
+    plans = tuple(PlanBox(s.path, s.name, s.box.bounds) for s in root.walk() if s.is_empty and s.box)
     boxes = [b.box for b in bodies]
     boxes += all_bounds(piece for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
@@ -584,9 +584,3 @@ def _colored_drawings(root: SolvedStructure) -> set[str]:
         if s.kind == "drawing" and css_color(s.attributes.get("color", ()))
         for below in s.walk()
     }
-
-
-def _plans(root: SolvedStructure) -> Iterator[PlanBox]:
-    for structure in root.walk():
-        if structure.is_empty and (box := structure.box) is not None:
-            yield PlanBox(structure.path, structure.name, box.bounds)

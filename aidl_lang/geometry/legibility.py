@@ -452,13 +452,10 @@ def _order_fix(way: SolvedGeometry) -> Fix | None:
     if len(found) != 1:
         return None
     (swap,) = found.values()
-    spans = [_within(way.span, written.start(1), literals[k]) for k in swap]
+    at = way.span.start + written.start(1)
+    spans = [Span(way.span.source, at + literals[k].start(), at + literals[k].end()) for k in swap]
     edits = [Edit(span, literals[k][0]) for span, k in zip(spans, reversed(swap), strict=True)]
     return Fix(f"swap the corners {literals[swap[0]][0]} and {literals[swap[1]][0]}", tuple(edits))
-
-
-def _within(span: Span, start: int, part: re.Match[str]) -> Span:
-    return Span(span.source, span.start + start + part.start(), span.start + start + part.end())
 
 
 def _sides(corners: Sequence[Vec], swap: tuple[int, int]) -> list[Line]:

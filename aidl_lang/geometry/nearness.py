@@ -92,7 +92,7 @@ class Sides:
         """Returns all sides that pass a spot at most at the given distance: spot, side and distance."""
         found = [(np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), np.zeros(0))]
         for spot, side in self.beside(spots[:, 0], reach):
-            away = self._distance(spots[spot], side)
+            away = from_sides(spots[spot] - self._start[side], self._way[side])
             kept = away <= reach
             found.append((spot[kept], side[kept], away[kept]))
         spot, side, away = (np.concatenate([f[k] for f in found]) for k in range(3))
@@ -108,9 +108,6 @@ class Sides:
             result[left[first[0]]] = side[order][first[1]]
             reach *= 1000
         return result
-
-    def _distance(self, spots: Floats, side: Ints) -> Floats:
-        return from_sides(spots - self._start[side], self._way[side])
 
 
 def from_sides(gap: Floats, way: Floats) -> Floats:

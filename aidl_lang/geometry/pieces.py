@@ -226,14 +226,11 @@ def _severed(
     for whole in union(faces).decompose():
         parts = [piece for piece in beside if covers(whole, piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
-        cut = [h for h in holes if apart and _links(walk.sections[h.path], parts)]
+        # Those with which filled again pieces would hang together.
+        filled = ((h, union([walk.sections[h.path], *parts])) for h in holes if apart)
+        cut = [h for h, whole in filled if len(whole.decompose()) < len(parts)]
         if cut:
             yield _cut_through(walk, mass.structure, cut, [parts[0], *apart])
-
-
-def _links(hole: Section, pieces: Sequence[Section]) -> bool:
-    """Tells whether pieces would hang together if a hole were filled."""
-    return len(union([hole, *pieces]).decompose()) < len(pieces)
 
 
 def _cut_through(

@@ -233,7 +233,8 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
         for first, last in pairwise(knots)
         for curve in _followed(spline, first, last, _NEAR * size, _HALVINGS)
     ]
-    return [_joined(curve, found[k - 1] if k else None) for k, curve in enumerate(found)], False
+    # Each begins where the one before it ends, to the last digit.
+    return [(found[k - 1][-1], *curve[1:]) if k else curve for k, curve in enumerate(found)], False
 
 
 def flat(p: Any) -> Vec:
@@ -270,11 +271,6 @@ def _followed(spline: BSpline, first: float, last: float, near: float, halvings:
         return
     yield from _followed(spline, first, middle, near, halvings - 1)
     yield from _followed(spline, middle, last, near, halvings - 1)
-
-
-def _joined(curve: Curve, before: Curve | None) -> Curve:
-    """Returns a curve that begins where the one before it ends, to the last digit."""
-    return curve if before is None else (before[-1], *curve[1:])
 
 
 # --- A drawing that was read: its outlines and their names.

@@ -214,7 +214,7 @@ class _Walk:
             if style.get("display") == "none":
                 return
             names = (*place.names, *_names(target))
-            sizes = {**target.attributes, **_sizes(node)}
+            sizes = target.attributes | {k: v for k, v in node.attributes.items() if k in ("width", "height")}
             around = (*place.around, target)
             self._inner_page(target, replace(place, style=style, names=names, around=around), sizes)
         else:
@@ -339,10 +339,6 @@ def _engraved(node: Node, around: _Place) -> tuple[str | None, str | None]:
         return (operation, operation if is_layer else None) if operation in _ENGRAVED else (None, None)
     is_drawn = said.get("data-kind") == "drawing"
     return ("", said.get("data-layer")) if is_drawn else (None, None)
-
-
-def _sizes(node: Node) -> dict[str, str]:
-    return {name: node.attributes[name] for name in ("width", "height") if name in node.attributes}
 
 
 def _names(node: Node) -> tuple[str, ...]:

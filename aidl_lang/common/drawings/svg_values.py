@@ -70,7 +70,7 @@ class _Reader:
         self.parser = expat.ParserCreate(namespace_separator=" ")
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = self._end
+        self.parser.EndElementHandler = lambda _: self.open.pop()
         self.parser.CharacterDataHandler = self._text
         self.parser.EntityDeclHandler = self._entity
 
@@ -89,9 +89,6 @@ class _Reader:
         else:
             self.root = node
         self.open.append(node)
-
-    def _end(self, name: str) -> None:
-        self.open.pop()
 
     def _text(self, data: str) -> None:
         if self.open and self.open[-1].tag == "style":

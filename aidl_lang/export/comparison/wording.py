@@ -230,14 +230,10 @@ def _contacts(changes: Sequence[ContactChange], root: str) -> Iterator[str]:
     ranked = sorted(changes, key=lambda c: -kinds[id(c)])
     most = max(_MOST_CONTACTS, sum(kind > 1 for kind in kinds.values()))
     for change in ranked[:most]:
-        yield _contact(change, root)
+        a, b = (path.removeprefix(f"{root}.") for path in (change.a, change.b))
+        yield f"{a} and {b}: {_lie(change.before)} → {_lie(change.after)}"
     if len(ranked) > most:
         yield f"and {len(ranked) - most} more gaps"
-
-
-def _contact(change: ContactChange, root: str) -> str:
-    a, b = (path.removeprefix(f"{root}.") for path in (change.a, change.b))
-    return f"{a} and {b}: {_lie(change.before)} → {_lie(change.after)}"
 
 
 def _lie(contact: Contact | None) -> str:

@@ -275,13 +275,9 @@ def _overview(
 
 def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
     return tuple(
-        Item(number, tuple(group), _stem(group[0].path))
+        Item(number, tuple(group), group[0].path.rpartition(".")[2].partition("[")[0])
         for number, group in enumerate(gathered(bodies, shape_of), 1)
     )
-
-
-def _stem(path: str) -> str:
-    return path.rpartition(".")[2].partition("[")[0]
 
 
 def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:

@@ -199,7 +199,10 @@ class Reach:
         found: list[tuple[int, str, bool]] = []
         things = {t for o in np.flatnonzero(left & placed).tolist() for t in self.scene.of[o]}
         for whole in (True, False):
-            for thing in sorted(things, key=_gladly):
+            # Structures before geometry and points, large before small.
+            for thing in sorted(
+                things, key=lambda t: (t.rank in (GEOMETRY, POINT), t.start - t.stop, -t.rank)
+            ):
                 own = self.scene.own(thing)
                 fits = entire[own].all() if whole else thing.rank == GEOMETRY
                 if fits and (left & placed)[own].any():
@@ -209,11 +212,6 @@ class Reach:
         found += [(o, path, path not in self.scene.known) for path, o in rest.items()]
         partly = tuple(f"{path}." for _, path, whole in found if not whole)
         return [(path, whole) for _, path, whole in sorted(found) if not path.startswith(partly)]
-
-
-def _gladly(thing: Thing) -> tuple[bool, int, int]:
-    """Returns the order of naming: structures before geometry and points, large before small."""
-    return thing.rank in (GEOMETRY, POINT), thing.start - thing.stop, -thing.rank
 
 
 # --- Independent motions, each as simple as was found.
