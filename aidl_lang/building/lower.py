@@ -129,6 +129,7 @@ class _Lowering:
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            sealed=np.array([self._sealed(u.owner) for u in found], dtype=np.intp),
             thing=_numbered(
                 (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
                 for u in found
@@ -200,6 +201,12 @@ class _Lowering:
             lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
             self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
         return self.standing[s]
+
+    def _sealed(self, s: Structure) -> int:
+        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none."""
+        around = chain(s)
+        rigid = (n for n, each in enumerate(around) if each.attributes.get("rigid", (False,)) != (False,))
+        return len(around) - 1 - next(rigid, len(around) - 1)
 
     def _is_rigid(self, s: Structure) -> bool:
         """Tells whether a structure can move and constraints around it name one thing of it at most: its

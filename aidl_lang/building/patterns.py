@@ -119,6 +119,12 @@ class _Call:
                     unknown.exact = True
         return NOWHERE
 
+    def is_without_place(self, centre: Place) -> bool:
+        """True for a shape without a name that lies around the origin: one that was given no place."""
+        return (
+            isinstance(self.thing, Geometry) and self.thing.name is None and not any(c.value for c in centre)
+        )
+
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
@@ -182,21 +188,25 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
             "leave one of them out",
         )
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
+    back = _total([(ex.constant(-1.0), span)])
     goes_on = call.has_place and "center" not in call.a and "start" not in call.a
     about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
+    first = back if goes_on and call.is_without_place(about) else NOWHERE
     if goes_on:
-        start = about
-    elif "center" in call.a:
-        start = _total([(ex.ONE, call.position("center")), (ex.constant(-1.0), span)])
-    else:
+        start = _total([(ex.ONE, about), (ex.ONE, first)])
+    elif "start" in call.a:
         start = call.position("start")
+    else:
+        start = _total([(ex.ONE, call.position("center")), (ex.ONE, back)])
     call.settings.fields.setdefault("start", point(*start))
     call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
 
     def motion(index: Index) -> Motion | None:
         away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
         if goes_on:
-            return Motion(to=away) if any(index) else None
+            return (
+                Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if first is back or any(index) else None
+            )
         return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
 
     return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))

@@ -298,19 +298,8 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
-    *(
-        "detached",
-        "note",
-        "stroke",
-        "dash",
-        "opacity",
-        "shade",
-        "edges",
-        "halo",
-        "behind",
-        "in_front",
-        "clip",
-    ),
+    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo"),
+    *("behind", "in_front", "clip"),
     *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""

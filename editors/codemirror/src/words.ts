@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "thread", "tolerance", "finish", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "thread", "tolerance", "finish", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -950,7 +950,7 @@ export const about: Record<string, string> = {
   "mesh": "A net of bars over an outline: the bars are `width` wide and a `pitch` apart.",
   "knurling": "The crossed lines of a knurled grip; bars if a `width` is given.",
   "threads": "The lines of a screw thread seen from the side, whose axis is upright at angle 0; bars if a `width` is given.",
-  "ribs": "Bars across an outline, upright at angle 0, half as wide as their `pitch` if no `width` is given.",
+  "ribs": "Bars across an outline, half as wide as their `pitch` if no `width` is given.",
   "slats": "Slats that fill an outline from below: level bars at angle 0, each `width` wide, with a `gap` between them.",
   "bricks": "Bricks in courses from the lower left of an outline: the joints as lines, or with a `mortar` the bricks.",
   "tiles": "Tiles in rows from the lower left of an outline: the joints as lines, or with a `gap` the tiles.",
@@ -1097,6 +1097,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@tolerance", "title": "the general tolerances", "body": "@tolerance(\"${1:ISO 2768-m}\")$0", "place": "attribute"},
   {"prefix": "@finish", "title": "the surface of a part", "body": "@finish(\"${1:Ra 3.2}\")$0", "place": "attribute"},
   {"prefix": "@detached", "title": "a part that touches no other", "body": "@detached$0", "place": "attribute"},
+  {"prefix": "@rigid", "title": "a part in which nothing moves", "body": "@rigid$0", "place": "attribute"},
   {"prefix": "gap", "title": "one part above another", "body": "${1:a}.above(${2:b}, gap: ${3:2})$0", "place": "constraints"},
   {"prefix": "centered", "title": "one part in the middle of another", "body": "${1:a}.centered_in(${2:b})$0", "place": "constraints"},
   {"prefix": "same", "title": "two sizes alike", "body": "${1:a}.width == ${2:b}.width$0", "place": "constraints"},
