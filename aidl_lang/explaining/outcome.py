@@ -19,9 +19,8 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.staying import leaving_notes
-from aidl_lang.geometry.alone import all_geometry, region_alone
 from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
-from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom

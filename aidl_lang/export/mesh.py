@@ -16,7 +16,7 @@ from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.geometry.curves import LARGEST
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.legibility import owner
-from aidl_lang.geometry.placement import GROUND, Plane, placement_notes, planes, thickness_of
+from aidl_lang.geometry.parts import GROUND, Plane, placement_notes, planes, thickness_of
 from aidl_lang.geometry.region import Region, face_polygons
 
 # --- Common to the three-dimensional formats: bodies in their planes, with their thickness.

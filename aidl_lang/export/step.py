@@ -60,7 +60,7 @@ from aidl_lang.geometry.curves import (
     ends,
     round_range,
 )
-from aidl_lang.geometry.placement import Plane, placement_notes
+from aidl_lang.geometry.parts import Plane, placement_notes
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style
 from aidl_lang.version import __version__

@@ -493,3 +493,24 @@ def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
 
 def larger_side(box: Bounds) -> float:
     return max(box[2] - box[0], box[3] - box[1])
+
+
+def usable(curve: Piece) -> Piece | None:
+    """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
+    if not is_finite(curve):
+        return None
+    if isinstance(curve, Circle):
+        curve = Circle(curve.center, abs(curve.radius))
+    elif isinstance(curve, Ellipse):
+        curve = Ellipse(curve.center, abs(curve.rx), abs(curve.ry), curve.angle)
+    elif isinstance(curve, Arc):
+        curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
+    if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
+        return None
+    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
+
+
+def has_extent(box: Bounds) -> bool:
+    if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
+        return False
+    return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -29,18 +28,15 @@ from aidl_lang.geometry.bodies import (
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import (
-    LARGEST,
-    NO_LENGTH,
-    Arc,
     Bounds,
-    Circle,
-    Ellipse,
     Piece,
     all_bounds,
     bounds,
+    has_extent,
     is_finite,
     larger_side,
     union_bounds,
+    usable,
 )
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
@@ -66,7 +62,7 @@ from aidl_lang.geometry.notes import (
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
 from aidl_lang.geometry.sections import Section, Traced, fill, intersection, trace, trace_all
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
     idle_areas,
@@ -323,10 +319,10 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
+            found = [(leaf, usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
             around = iter(all_bounds(curve for _, curve in found if curve is not None))
             for leaf, curve in found:
-                if curve is None or not _has_extent(box := next(around)):
+                if curve is None or not has_extent(box := next(around)):
                     vanished.append(leaf)
                     continue
                 curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
@@ -351,27 +347,6 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
 def _has_strokes(geometry: SolvedGeometry) -> bool:
     """Tells whether there are letters of strokes in what is drawn of a geometry."""
     return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
-
-
-def _usable(curve: Piece) -> Piece | None:
-    """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
-    if not is_finite(curve):
-        return None
-    if isinstance(curve, Circle):
-        curve = Circle(curve.center, abs(curve.radius))
-    elif isinstance(curve, Ellipse):
-        curve = Ellipse(curve.center, abs(curve.rx), abs(curve.ry), curve.angle)
-    elif isinstance(curve, Arc):
-        curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
-    if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
-        return None
-    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
-
-
-def _has_extent(box: Bounds) -> bool:
-    if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
-        return False
-    return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
@@ -584,3 +559,17 @@ def _colored_drawings(root: SolvedStructure) -> set[str]:
         if s.kind == "drawing" and css_color(s.attributes.get("color", ()))
         for below in s.walk()
     }
+
+
+def region_alone(root: SolvedStructure, path: str) -> Region:
+    """Returns the region that a geometry would cover as a solid of its own."""
+    found = (g for g in all_geometry(root) if g.path == path)
+    geometry = tuple(replace(g, construction=False) for g in found)
+    frame = Frame(0.0, 0.0, 0.0)
+    alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, None)
+    return draw(SolvedModel("solved", alone))[0].regions.get("it", Region(()))
+
+
+def all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
+    """Yields every piece of geometry under a structure, as it is drawn, with the parts of each."""
+    return (g for structure in root.walk() for drawn in structure.drawn for g in drawn.walk())

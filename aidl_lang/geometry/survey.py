@@ -14,7 +14,6 @@ from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.alone import region_alone
 from aidl_lang.geometry.boolean import Contact, region_distance
 from aidl_lang.geometry.curves import (
     Bezier,
@@ -28,7 +27,7 @@ from aidl_lang.geometry.curves import (
     point,
     round_range,
 )
-from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.drawing import Body, Drawing, region_alone
 from aidl_lang.geometry.region import Loop, Region, measure, moments_about_start
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.walls import widths
