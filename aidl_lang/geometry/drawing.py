@@ -59,7 +59,7 @@ from aidl_lang.geometry.notes import (
     unusable_note,
     upright_note,
 )
-from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
+from aidl_lang.geometry.pieces import LETTERING, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
 from aidl_lang.geometry.sections import Section, Traced, fill, intersection, trace, trace_all
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
@@ -246,10 +246,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not is_seen:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
+        notes += piece_notes(root, walk, masses, solids, touching.near())
         notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground, order)
-        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.walls import thin_wall_notes

@@ -13,7 +13,7 @@ from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Arc, Circle
-from aidl_lang.geometry.dimensions.constraints import by_hand, stated_lengths
+from aidl_lang.geometry.dimensions.constraints import Scene, by_hand, stated_lengths
 from aidl_lang.geometry.dimensions.features import (
     X_AXIS,
     Y_AXIS,
@@ -32,11 +32,8 @@ RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
     """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
-    found = [
-        *by_hand(model, solved, evaluate, names),
-        *field_sizes(model, solved, evaluate, names),
-        *stated_lengths(model, solved, evaluate, names),
-    ]
+    scene, fields = Scene(model, solved, evaluate, names), field_sizes(model, solved, evaluate, names)
+    found = [*by_hand(model, scene), *fields, *stated_lengths(model, scene)]
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))
 

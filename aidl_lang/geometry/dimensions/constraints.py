@@ -58,22 +58,16 @@ _SIZES = frozenset({"length", "radius", "diameter", "width", "height", "angle"})
 _SLACK = 1e-6
 
 
-def stated_lengths(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
-) -> Iterator[Dimension]:
+def stated_lengths(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the constraints of the author measure, in order of writing."""
-    scene = Scene(model, solved, evaluate, names)
     for constraint in model.constraints:
         checkpoint()
         if constraint.weight is None and isinstance(constraint.wording, Wording):
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
 
 
-def by_hand(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
-) -> Iterator[Dimension]:
+def by_hand(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the program asks for, in order of writing."""
-    scene = Scene(model, solved, evaluate, names)
     for asked in model.by_hand:
         checkpoint()
         assert isinstance(asked.wording, Wording)
