@@ -26,8 +26,7 @@ def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the corners of a shape of straight edges, in order, if it is convex as written; none
-    otherwise.
+    """Returns the corners of a shape of straight edges, in order, if it is convex as written; none otherwise.
 
     Corners that were given one by one may become something else while solving, so they do not count.
     """

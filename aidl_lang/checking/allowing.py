@@ -125,10 +125,7 @@ def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diag
     """
     return [
         Diagnostic(
-            IDLE,
-            f"`@allow` silences nothing: there is no `{each.code}` here",
-            each.place,
-            fix=_without(each),
+            IDLE, f"`@allow` silences nothing: there is no `{each.code}` here", each.place, fix=_without(each)
         )
         for each in allowed
         if not each.may_come and not any(each.covers(d) for d in found)

@@ -89,9 +89,7 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
             "write its geometry and constraints straight into the first structure, under names of their own",
         ),
         Construct.LOOSE: Restriction(
-            "E0403",
-            f"{_ONE}, and this stands outside `{{name}}`",
-            "write it inside `{name}`",
+            "E0403", f"{_ONE}, and this stands outside `{{name}}`", "write it inside `{name}`"
         ),
         Construct.TEMPLATE: Restriction(
             "E0404",
@@ -137,7 +135,7 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
             "E0986",
             "`paper` has what the paper on AIDL describes, and `{name}` came later",
             "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain",
-        ),
+        )
     },
 }
 

@@ -312,12 +312,7 @@ class _Attempt:
         z = np.zeros(system.size)
         z[: len(scale)] = (np.array([start[unknown] for unknown in program.columns]) - anchor) / scale
         outcome = newton.solve(
-            system,
-            TIGHTER * self.settings.tolerance,
-            self.settings.iterations,
-            self.clock,
-            z,
-            restarts,
+            system, TIGHTER * self.settings.tolerance, self.settings.iterations, self.clock, z, restarts
         )
         if outcome.contradiction is not None:
             taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()

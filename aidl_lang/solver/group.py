@@ -263,11 +263,7 @@ class Group:
         return stages[scope], best
 
     def _report(
-        self,
-        tier: Tier,
-        scope: Scope,
-        before: dict[int, float] | None,
-        despite: tuple[int, ...] = (),
+        self, tier: Tier, scope: Scope, before: dict[int, float] | None, despite: tuple[int, ...] = ()
     ) -> None:
         """Reports a stage. If it succeeded, starting from the values `before`, first holds the unknowns that
         need not move. `despite` are constraints that hold though a search from `before` had failed.

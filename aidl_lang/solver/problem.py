@@ -170,12 +170,7 @@ class Problem:
         )
         return tuple(
             Constraint(
-                holder,
-                tuple(rows[i]),
-                placed[i],
-                None if weight != weight else weight,
-                whole[i],
-                inside[i],
+                holder, tuple(rows[i]), placed[i], None if weight != weight else weight, whole[i], inside[i]
             )
             for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
         )

@@ -275,13 +275,7 @@ def _pivots(rest: sp.csr_array) -> tuple[Ints, Ints]:
 
 
 def _untouched(
-    rows: Ints,
-    columns: Ints,
-    by_column: Ints,
-    starts: Ints,
-    candidate: Ints,
-    priority: Floats,
-    width: int,
+    rows: Ints, columns: Ints, by_column: Ints, starts: Ints, candidate: Ints, priority: Floats, width: int
 ) -> tuple[Ints, Ints]:
     """Returns the candidates (one to a row) that come before all those they touch, then the same of the
     rest.

@@ -464,16 +464,7 @@ Statement: TypeAlias = (
     | Todo
 )
 
-DEFINITIONS = (
-    Import,
-    Param,
-    Let,
-    Alias,
-    FunctionDefinition,
-    ShapeDefinition,
-    ConstraintDefinition,
-    Todo,
-)
+DEFINITIONS = (Import, Param, Let, Alias, FunctionDefinition, ShapeDefinition, ConstraintDefinition, Todo)
 """Statements that may stand beside the one structure of a file without making an assembly around both."""
 
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure

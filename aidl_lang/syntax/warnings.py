@@ -129,8 +129,5 @@ def _warning(source: SourceFile, place: int, begun: str) -> Diagnostic:
         sign,
         f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above",
         hints=("if it was meant as a statement of its own, end the line above with `;`",),
-        fix=Fix(
-            "end the line above with `;`",
-            (Edit(Span(source, before, before), ";"), Edit(sign, begun)),
-        ),
+        fix=Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"), Edit(sign, begun))),
     )
