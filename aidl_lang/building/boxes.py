@@ -12,9 +12,9 @@ from functools import cached_property
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
+from aidl_lang.building.curves import defining, view, xy
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.primitives import defining, view, xy
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
 from aidl_lang.common.records import record
 

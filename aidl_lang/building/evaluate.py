@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable
 from functools import partial
 
+from aidl_lang.building import coerce as lists
 from aidl_lang.building import expression as ex
-from aidl_lang.building import lists
 from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, numeric, whole
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
-from aidl_lang.building.scopes import LetBinding, Scope
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Env, Interpreter, LetBinding, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -54,9 +53,6 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
 
 _UNBOUNDED = frozenset({ListVal, RecordVal, TextVal})
 """Values that grow without limit when they are joined with themselves."""
-
-
-# --- Literals ------------------------------------------------------------------------------------
 
 
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
@@ -177,9 +173,6 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
     return False
 
 
-# --- Names and members ---------------------------------------------------------------------------
-
-
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     name = it.spelled(node)
     found = env.scope.find(name)
@@ -219,9 +212,6 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if -len(items) <= position < len(items):
         return items[position]
     return no_index(it, node, list(range(len(items))), position)
-
-
-# --- Operators -----------------------------------------------------------------------------------
 
 
 def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:

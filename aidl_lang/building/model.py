@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
-from aidl_lang.checking.registry import fields_of
+from aidl_lang.checking.types import fields_of
 from aidl_lang.checking.units import MaybeDimension
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.lettering import Glyph, silhouette
@@ -400,9 +400,6 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
             if outward:
                 angle = ex.add(angle, frame.rotation)
     return angle
-
-
-# --- Conditions and constraints --------------------------------------------------------------------
 
 
 @record(eq=False)

@@ -19,8 +19,7 @@ from aidl_lang.building.model import (
     convert_point,
     reach_of,
 )
-from aidl_lang.building.scopes import Candidate
-from aidl_lang.building.state import Arguments, Env, Function, Interpreter
+from aidl_lang.building.state import Arguments, Candidate, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -58,9 +57,6 @@ _SYNONYMS = {
     "flat": "butt",
     "maximum": "max",
 }
-
-
-# --- Outlines made of others -------------------------------------------------------------------------
 
 
 def _outline(kind: str, *words: str) -> Function:
@@ -226,9 +222,6 @@ def remember(result: Value, name: str, arguments: Arguments) -> None:
     sources = tuple(v for v in arguments.values() if isinstance(v, Geometry))
     numbers = {n: v for n, v in arguments.items() if isinstance(v, Num)}
     result.recipe = Recipe(name, (sources,), numbers, {"corners": "sharp"})
-
-
-# --- Fillets and chamfers ----------------------------------------------------------------------------
 
 
 @record()

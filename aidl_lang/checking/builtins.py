@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from aidl_lang.checking.registry import DECLARATIONS, PRIMITIVES
-from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.types import (
     ANY,
+    DECLARATIONS,
     PARAMETER_TYPES,
+    PRIMITIVES,
     BoxType,
     GeometryType,
     ListType,

@@ -181,9 +181,6 @@ def _parse(sources: Sequence[SourceFile]) -> tuple[tuple[ast.Module, ...], tuple
     return tuple(p.module for p in parsed), tuple(d for p in parsed for d in p.diagnostics)
 
 
-# --- The library as data -------------------------------------------------------------------------
-
-
 def built() -> bytes:
     """Returns the library as data: a line of JSON for the index, then one for each tree.
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins, rules, units
+from aidl_lang.checking.binding import FIELDS, MEMBERS
 from aidl_lang.checking.facts import (
     NOTHING_READ,
     UNKNOWN,
@@ -21,7 +22,6 @@ from aidl_lang.checking.facts import (
 from aidl_lang.checking.resolving.complaints import renamed, respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.rules import a, in_box, shown
-from aidl_lang.checking.synonyms import FIELDS, MEMBERS
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

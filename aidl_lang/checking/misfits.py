@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking.binding import in_order, select
+from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
+from aidl_lang.checking.calls import two_sizes
 from aidl_lang.checking.facts import body_of, is_number, is_point
-from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
 from aidl_lang.checking.rules import shown
-from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
     Binding,
     GeometryType,

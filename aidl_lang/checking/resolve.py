@@ -24,9 +24,15 @@ from aidl_lang.checking.builtins import ATTRIBUTES, WORDED, is_word
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.complaints import ATTRIBUTES_MEANT, without_idle
-from aidl_lang.checking.resolving.cuts import hole_calls, meant, with_placed_cuts
 from aidl_lang.checking.resolving.declare import Declarer, is_definition, made_by
-from aidl_lang.checking.resolving.imports import ImportedModules, load_imports, with_inner_imports
+from aidl_lang.checking.resolving.imports import (
+    ImportedModules,
+    hole_calls,
+    load_imports,
+    meant,
+    with_inner_imports,
+    with_placed_cuts,
+)
 from aidl_lang.checking.resolving.symbols import (
     UNKNOWNS,
     Resolution,

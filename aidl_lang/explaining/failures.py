@@ -10,12 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from aidl_lang.building.arithmetic import rounding
 from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Comparison, Constraint, Structure, chain
 from aidl_lang.building.values import Num
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.wording import Wording, rounding
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import listed, short
@@ -24,7 +23,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, RemedySearch, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Trials
-from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
+from aidl_lang.solver.problem import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)

@@ -8,13 +8,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.building.arithmetic import differences, givens, rounding
 from aidl_lang.building.boxes import SIDES, constrain_sources
 from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.wording import Wording, differences, givens, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
@@ -28,7 +27,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
-from aidl_lang.solver.solution import Solution, Status
+from aidl_lang.solver.problem import Solution, Status
 
 if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Explanation
@@ -61,7 +60,7 @@ def solution_notes(
     found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
-        from aidl_lang.explaining.repetitions import repetition_notes
+        from aidl_lang.explaining.giving import repetition_notes
 
         found += repetition_notes(lowered, solution, freedom)
     return found
@@ -84,9 +83,6 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
                 "a wish gives way to every constraint; without `prefer` it is told what stands against it",
             ),
         )
-
-
-# --- Assertions ----------------------------------------------------------------------------------
 
 
 def assertion_notes(

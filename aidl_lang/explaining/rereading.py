@@ -24,8 +24,8 @@ from aidl_lang.explaining.trials import Trials
 from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.solution import Failure
-from aidl_lang.solver.suspects import nearby_solution
+from aidl_lang.solver.problem import Failure
+from aidl_lang.solver.refuting import nearby_solution
 from aidl_lang.syntax import ast
 
 _MOST = 64
@@ -123,9 +123,6 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
                 assert stage.concession is not None
                 found.update(stage.concession.constraints)
     return found
-
-
-# --- What is said of it ----------------------------------------------------------------------------
 
 
 def elsewhere_notes(

@@ -17,8 +17,8 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.solution import GroupFailure
-from aidl_lang.solver.suspects import equations, nearby_solution, residual, shortfall
+from aidl_lang.solver.problem import GroupFailure
+from aidl_lang.solver.refuting import equations, nearby_solution, residual, shortfall
 
 # Each remedy is tried here, as it is printed, before a message offers it.
 

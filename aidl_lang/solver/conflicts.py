@@ -23,10 +23,8 @@ from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.problem import Problem, Relation, Settings
-from aidl_lang.solver.refuting import Relaxation
-from aidl_lang.solver.solution import Concession, Failure, GroupFailure, Member
-from aidl_lang.solver.suspects import MANY, needed, suspects
+from aidl_lang.solver.problem import Concession, Failure, GroupFailure, Member, Problem, Relation, Settings
+from aidl_lang.solver.refuting import MOST_ACCUSED, Relaxation, needed, suspects
 from aidl_lang.solver.tiers import Scope
 
 WORK = 60_000
@@ -305,7 +303,9 @@ class _ConflictSearch:
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
         accused = suspects(hierarchy, scope.constraints, scope.free)
-        yield from (accused, *self._around(best)) if len(accused) <= MANY else (*self._around(best), accused)
+        yield from (
+            (accused, *self._around(best)) if len(accused) <= MOST_ACCUSED else (*self._around(best), accused)
+        )
         yield self._violated(best)
         yield list(scope.constraints)
 

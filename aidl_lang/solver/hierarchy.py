@@ -17,13 +17,20 @@ from numpy.typing import NDArray
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
-from aidl_lang.solver.memory import Memory, Recollection
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
-from aidl_lang.solver.problem import Problem, Row, depths, violations
-from aidl_lang.solver.riding import riding_depths
+from aidl_lang.solver.problem import (
+    GroupFailure,
+    Problem,
+    Row,
+    Solution,
+    StageReport,
+    Status,
+    depths,
+    violations,
+)
+from aidl_lang.solver.riding import Memory, Recollection, riding_depths
 from aidl_lang.solver.settings import Settings, Stages
-from aidl_lang.solver.solution import GroupFailure, Solution, StageReport, Status
 from aidl_lang.solver.tiers import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 

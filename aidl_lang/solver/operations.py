@@ -75,9 +75,6 @@ IDENTITY = 40
 """The code, on arrays, of a branching node whose branch is chosen; beyond the codes of `Op`."""
 
 
-# ---- scalar values ------------------------------------------------------------------------------------
-
-
 def _div(a: float, b: float) -> float:
     if b != 0.0:
         return a / b
@@ -198,9 +195,6 @@ VALUE: dict[int, Callable[..., float]] = {
 }
 
 
-# ---- scalar partial derivatives: (a, b, value) -> (d/da, d/db) ------------------------------------------
-
-
 def _finite(d: float) -> float:
     return d if math.isfinite(d) else 0.0
 
@@ -258,9 +252,6 @@ PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.SELECT: lambda c, a, b, _: (0.0, 1.0, 0.0) if c >= 0.0 else (0.0, 0.0, 1.0),
     Op.CUBIC_MAX: _d_cubic_max,
 }
-
-
-# ---- on arrays, many nodes at once; rare operations are left to the functions above ---------------------
 
 
 def values_of(op: int, operands: tuple[Floats, ...]) -> Floats:

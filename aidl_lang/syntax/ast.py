@@ -33,9 +33,6 @@ class Identifier(Node):
     text: str
 
 
-# --- Expressions ---------------------------------------------------------------------------------
-
-
 @record(eq=False, repr=False)
 class Number(Node):
     """`value` is the number as written, without its unit applied; `text` its digits, for the printer."""
@@ -228,9 +225,6 @@ Expression: TypeAlias = (
     | Range
     | Conditional
 )
-
-
-# --- Statements ----------------------------------------------------------------------------------
 
 
 @record(eq=False, repr=False)

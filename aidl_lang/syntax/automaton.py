@@ -14,8 +14,7 @@ from lark.parsers.lalr_parser_state import ParserState
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tables import END, PlacedTree, Token, load_tables
-from aidl_lang.syntax.words import STATEMENT_WORDS
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, PlacedTree, Token, load_tables
 
 # --- Lark's parser at a place in a text, with what recovery asks of it and does to its stacks.
 

@@ -14,8 +14,7 @@ from aidl_lang.syntax.automaton import (
     replaced,
     wrong,
 )
-from aidl_lang.syntax.tables import END, Token, begins_line
-from aidl_lang.syntax.words import VALUE_STARTS
+from aidl_lang.syntax.tables import END, VALUE_STARTS, Token, begins_line
 
 CLOSE_BLOCK = "close the block"
 """The title of the fix for a block that is not closed."""

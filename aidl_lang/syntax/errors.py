@@ -9,8 +9,7 @@ from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
 from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
-from aidl_lang.syntax.tables import END, Token
-from aidl_lang.syntax.words import describe
+from aidl_lang.syntax.tables import END, Token, describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     foreign.prose,

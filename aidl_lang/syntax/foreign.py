@@ -20,8 +20,6 @@ from aidl_lang.syntax.automaton import (
 )
 from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
 
-# --- Prose ----------------------------------------------------------------------------------------
-
 _PROSE = re.compile(
     r"[ \t]*(?:#{1,6} |[-*•] |\d+[.)] )?[*_`\"“]*[A-ZÀ-Þ][^{};=@<>|\n]*\Z"  # no sign of the language
 )
@@ -57,8 +55,6 @@ def prose(t: Trouble) -> SyntaxProblem | None:
         repair=TokenRepair(t.begin, stop),
     )
 
-
-# --- Loops and blocks -----------------------------------------------------------------------------
 
 _LOOP = re.compile(
     r"for\s*(?P<open>\()?\s*(?:(?:let|var|const|int|auto)\s+)?(?P<i>[^\W\d]\w*)\s*"
@@ -162,9 +158,6 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
             t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])
         ),
     )
-
-
-# --- Values ---------------------------------------------------------------------------------------
 
 
 def object_literal(t: Trouble) -> SyntaxProblem | None:
@@ -327,8 +320,6 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
         "E0109", f"`{t.token.text}` is written `{sign}`", t.span(), right=sign, repair=t.exchanged(sign)
     )
 
-
-# --- Statements -----------------------------------------------------------------------------------
 
 _MODULES = frozenset(
     [

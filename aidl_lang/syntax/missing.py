@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Fix, Label
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, replaced, wrong
-from aidl_lang.syntax.tables import END, Token, begins_line
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, VALUE_STARTS, Token, begins_line, describe, kind_of
 from aidl_lang.syntax.tree import out_of_place
-from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe, kind_of
 
 # --- Placements in lists and arguments, where none can stand.
 
@@ -94,9 +93,6 @@ def _call_start(tokens: Sequence[Token], close: int) -> int:
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
 
-# --- Equals signs ---------------------------------------------------------------------------------
-
-
 def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
@@ -165,9 +161,6 @@ def missing_equals(t: Trouble) -> SyntaxProblem | None:
         fix=replaced("put in `=`", t.gap(), " ="),
         repair=t.put_in("="),
     )
-
-
-# --- Statements -----------------------------------------------------------------------------------
 
 
 def missing_value(t: Trouble) -> SyntaxProblem | None:

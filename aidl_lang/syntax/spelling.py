@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, line_end, replaced, wrong
-from aidl_lang.syntax.tables import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.words import (
+from aidl_lang.syntax.tables import (
+    END,
     FOREIGN_WORDS,
     QUOTES,
     SIGNS,
@@ -17,10 +17,12 @@ from aidl_lang.syntax.words import (
     TWO_WAYS,
     UNIT_WORDS,
     UNITS,
+    UNKNOWN,
+    Token,
     example,
+    is_open_comment,
+    tokenize,
 )
-
-# --- Characters -----------------------------------------------------------------------------------
 
 
 def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
@@ -249,9 +251,6 @@ def operator_spelling(t: Trouble) -> SyntaxProblem | None:
             hints=("give the new value a name of its own: `let longer = length + 5`",),
         )
     return None
-
-
-# --- Words ----------------------------------------------------------------------------------------
 
 
 def foreign_statement(t: Trouble) -> SyntaxProblem | None:

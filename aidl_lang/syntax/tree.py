@@ -18,8 +18,7 @@ from aidl_lang.common.names import fold, is_slip, nearest
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
-from aidl_lang.syntax.tables import Token
-from aidl_lang.syntax.words import FOREIGN_WORDS, KIND_OF_WORD, KINDS, kind_of
+from aidl_lang.syntax.tables import FOREIGN_WORDS, KIND_OF_WORD, KINDS, Token, kind_of
 
 
 class ThenIf:

@@ -8,8 +8,7 @@ from typing import Protocol
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import END, Token, begins_line
-from aidl_lang.syntax.words import STATEMENT_WORDS
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, begins_line
 
 # --- Lines of `constrain { }` that begin with a sign, and the question if one begins a constraint of its
 # own.

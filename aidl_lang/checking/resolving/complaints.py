@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from aidl_lang.checking.binding import FIELDS, PARAMETERS
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
-from aidl_lang.checking.synonyms import FIELDS, PARAMETERS
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.names import fold, is_like, is_slip, nearest
@@ -187,9 +187,6 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
     if (hint := _CALLS.get(word)) is not None:
         return "E0203", f"there is no function, shape or constraint `{name}`", hint
     return None
-
-
-# --- Diagnostics for names that are unknown, ambiguous, or used before they exist.
 
 
 def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, SymbolKind, SymbolScope
-from aidl_lang.checking.types import PARAMETER_TYPES, Signature
+from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
