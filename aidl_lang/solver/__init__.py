@@ -3,9 +3,9 @@
 In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing` (some rows,
 on numbers); `array_program` (many rows, on arrays); `linear`, `sparse`; `newton` (one smooth system),
 `branches` (one attempt); `tiers` (what is free when), `loosening` (who gives way), `group` (one structure),
-`levels` (all groups of a depth), `riding`, `hierarchy` (`solve`); `refuting`, `conflicts`. What is said of a solution afterwards is in `analysis`. What stands at this door is loaded when it
-is asked for: who only checks a program needs the limits of the solver (`settings`) and neither the solver nor
-numpy.
+`levels` (all groups of a depth), `riding`, `hierarchy` (`solve`); `refuting`, `conflicts`. What is said of a
+solution afterwards is in `analysis`. What stands at this door is loaded when it is asked for: who only checks
+a program needs the limits of the solver (`settings`) and neither the solver nor numpy.
 """
 
 from __future__ import annotations
