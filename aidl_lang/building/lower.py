@@ -480,12 +480,13 @@ def _is_bound(part: Comparison) -> bool:
 
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
-    """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
-    drawings beside parts; but none that stands still, as its place was given in the frame of the root.
+    """Returns the children that belong to the drawing around them: all that lie in a part or in an assembly
+    within another, and in the root holes and drawings beside parts; but none that stands still, as its place
+    was given in the frame of the root.
     """
     frames = [(c, c.frame) for c in parent.children]
     children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
-    if parent.plan or any(not geometry.construction for geometry in parent.own()):
+    if parent.plan or parent.parent or any(not geometry.construction for geometry in parent.own()):
         return children
     without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()

@@ -72,7 +72,7 @@ STRUCTURE: Mapping[str, Type] = {
 
 PATTERN: Mapping[str, Mapping[str, Type]] = {
     "linear_array": _fields("center start", "pitch", "angle"),
-    "along": _fields("", "pitch inset"),
+    "along": _fields("", "pitch inset margin"),
     "grid": _fields("center start", "pitch pitch_x pitch_y"),
     "polar_array": _fields("center", "radius", "start sweep"),
 }
@@ -208,8 +208,8 @@ linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start:
 linear_array(x, n: integer, by: point, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
-along(x, curve, n: integer, inset: length?, turn: bool?)
-along(x, curve, pitch: length, inset: length?, turn: bool?)
+along(x, curve, n: integer, inset: length?, turn: bool?, margin: length?)
+along(x, curve, pitch: length, inset: length?, turn: bool?, margin: length?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
@@ -277,7 +277,23 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"coil", "spring", "chain", "cord", "hose", "hose_way", "ray_lines"})
+CONNECTING = frozenset(
+    {
+        "ram",
+        "link",
+        "hinge",
+        "bracket",
+        "strip",
+        "coil",
+        "spring",
+        "chain",
+        "cord",
+        "wire",
+        "hose",
+        "hose_way",
+        "ray_lines",
+    }
+)
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
