@@ -37,9 +37,7 @@ def state_clip(it: Interpreter, s: Structure, stated: StatedClip) -> None:
 
 
 def settle_clips_in(it: Interpreter, parent: Structure) -> None:
-    """Clips the structures in one whose body has been run to outlines of its own, or to itself: boxes leave
-    out what is cut off.
-    """
+    """Clips the structures in one to its own outlines or itself, before boxes are asked for."""
     for s in parent.children:
         if (stated := it.clips.get(s)) is not None and _names_own(stated, parent):
             _settle(it, s, stated)

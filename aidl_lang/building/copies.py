@@ -182,9 +182,7 @@ class Copier:
     # --- Values --------------------------------------------------------------------------------
 
     def value(self, name: str, value: Value, owner: Structure) -> Value:
-        """Returns the counterpart of a value of the source in the copy. `name`: angles that are directions
-        turn.
-        """
+        """Returns the counterpart of a value of the source in the copy. `name`: directions turn."""
         match value:
             case Geometry():
                 return self._operand(value)

@@ -407,9 +407,7 @@ def _edited_point(
 
 @record(frozen=False)
 class _Editing:
-    """The making of one geometry that is placed or edited: `first` is its value without that, `cause` the
-    node that asks for it.
-    """
+    """The making of a placed or edited geometry; `first` is its value without that, `cause` what asks."""
 
     it: Interpreter
     node: ast.Assign

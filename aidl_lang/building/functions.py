@@ -369,9 +369,7 @@ def _mark(status: Exactness) -> Function:
 
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the candidate nearest to a value as written, or on request one further off; the choice is part
-    of the report.
-    """
+    """Returns the candidate nearest to a value as written, or if asked one further off, which is reported."""
     value = _num(it, a, "value", node, env)
     candidates = _numbers(it, a, "candidates", node, env)
     if value is None or not candidates:

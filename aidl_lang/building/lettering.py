@@ -150,9 +150,7 @@ _BRIDGE = 0.1
 
 
 def bridge(it: Interpreter, a: Arguments) -> Num | None:
-    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for no bridges, and after an
-    error, reported here.
-    """
+    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for none or an error."""
     stencil, node = a["stencil"], it.call_sites[-1]
     if stencil is False:
         return None

@@ -74,9 +74,7 @@ class _Step(NamedTuple, Generic[N]):
 
 @record(frozen=False)
 class Placing(Generic[N]):
-    """A converter of points to the frame of the root. `number` evaluates an expression, `arithmetic` computes
-    with the results.
-    """
+    """A converter of points to the frame of the root; `number` evaluates, `arithmetic` goes on from there."""
 
     number: Callable[[Expression], N]
     arithmetic: Arithmetic[N]

@@ -84,7 +84,7 @@ class Frame:
 
 @record(frozen=False, eq=False)
 class Geometry:
-    """A primitive (see `checking.registry`) or a compound shape.
+    """A primitive (see `checking.types`) or a compound shape.
 
     fields     the numbers and points that define a primitive
     scope      names of a compound shape: its parts, arguments and lets (see scopes)

@@ -214,9 +214,7 @@ def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> li
 
 
 def remember(result: Value, name: str, arguments: Arguments) -> None:
-    """Notes the source of an outline that the library makes by an operation: the same exact geometry draws
-    it.
-    """
+    """Notes the source of an outline that the library makes by an operation: the same geometry draws it."""
     if name not in OUTLINES or not isinstance(result, Geometry) or result.recipe or result.name:
         return
     sources = tuple(v for v in arguments.values() if isinstance(v, Geometry))

@@ -407,9 +407,7 @@ class Interpreter:
             self._stop(None, f"this program states more than {self.limits.constraints} constraints")
 
     def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
-        """Tells whether a call may be entered; `leave` ends it. A definition that ran too deep is refused
-        from then on.
-        """
+        """Tells whether a call may be entered; `leave` ends it. What ran too deep is refused from then on."""
         self.check_time(node)
         if definition in self.runaway:
             return False

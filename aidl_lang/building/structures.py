@@ -316,9 +316,7 @@ def _plan(it: Interpreter, s: Structure) -> None:
 
 
 def run_module(it: Interpreter) -> Structure:
-    """Runs the main module. Returns its root structure, or an implicit assembly around the statements at file
-    level.
-    """
+    """Runs the main module. Returns its root, or an implicit assembly around the statements at file level."""
     module = it.program.main
     statements = module.statements
     scope = _file_scope(it, module, _library_scope(it.program.library), {})

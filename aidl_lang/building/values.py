@@ -38,9 +38,7 @@ T = TypeVar("T")
 
 
 class Exactness(IntEnum):
-    """The exactness that a number is meant to have, weakest first; it travels with the value (the exactness
-    table).
-    """
+    """The exactness that a number is meant to have, weakest first; it travels with the value."""
 
     GUESS = 0
     NUMBER = 1

@@ -246,9 +246,7 @@ def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> B
 
 
 def _unambiguous(fits: Sequence[Binding], given: Sequence[GivenArgument]) -> list[Binding | Mismatch]:
-    """Returns the candidates that fit; a mismatch instead if a word means one parameter here and another
-    there.
-    """
+    """Returns the candidates that fit; a mismatch if a word means one parameter here and another there."""
     for index, argument in enumerate(given):
         if argument.name is None or isinstance(argument.type, AnyType):
             continue

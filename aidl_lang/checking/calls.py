@@ -126,9 +126,7 @@ def check_unused_geometry(check: Inference) -> None:
 
 
 def check_unused_params(check: Inference) -> None:
-    """Notes a `param` of the program itself that nothing refers to; not after an error, which may have hidden
-    a use.
-    """
+    """Notes a `param` of the program that nothing refers to; not after an error, which may hide a use."""
     resolution = check.resolution
     if has_errors([*resolution.diagnostics, *check.diagnostics]):
         return

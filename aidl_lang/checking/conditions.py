@@ -213,9 +213,7 @@ def check_item(infer: Inference, node: ast.Expression) -> None:
 
 
 def _turned(infer: Inference, node: ast.Expression) -> str | None:
-    """Returns the equation that `rotate(r, 30)` among constraints is meant to be; None for what has no
-    angle.
-    """
+    """Returns the equation that `rotate(r, 30)` among constraints means; None for what has no angle."""
     given = arguments(infer, node) if isinstance(node, ast.Call) else []
     if len(given) not in (2, 3):
         return None

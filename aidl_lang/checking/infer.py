@@ -68,9 +68,7 @@ class Inference:
         secondary: Sequence[Label] = (),
         fix: Fix | None = None,
     ) -> Fact:
-        """Reports a mistake in a program (the library has its own tests). Returns the fact of an unknown
-        result.
-        """
+        """Reports a mistake in a program (the library has tests). Returns the fact of an unknown result."""
         if not self.is_standard(node) and self._errors <= MOST_ERRORS:
             found = Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
             self.diagnostics.append(found)
@@ -92,9 +90,7 @@ class Inference:
         return self.misfit(rules.needed(what, fact.type), node)
 
     def known(self, node: ast.Expression, what: str) -> bool:
-        """Reports an expression whose value the solver finds, but which is needed while building. Returns
-        whether it is known.
-        """
+        """Reports an expression needed while building and not known by then. Returns whether it is."""
         if not self.fact(node).reads:
             return True
         self.misfit(rules.unknown_yet(what, shown(node)), node)

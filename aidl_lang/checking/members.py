@@ -352,9 +352,7 @@ def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
 
 
 def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[str]) -> Fact | None:
-    """Reports `plate.area`, which is a function here, and `c.x` of something with a width. None for other
-    names.
-    """
+    """Reports `plate.area`, a function here, and `c.x` of something with a width. None for other names."""
     name, of = node.name.text, node.value.span.text
     if fold(name) in ("area", "perimeter", "circumference"):
         function = "area" if fold(name) == "area" else "perimeter"

@@ -125,9 +125,7 @@ def example_of(signature: Signature) -> str | None:
 
 
 def _closeness(miss: Mismatch, given: Sequence[GivenArgument]) -> tuple[int, int, int, int, int]:
-    """Returns how near a candidate comes: named arguments it knows, best by these names, then what is
-    missing.
-    """
+    """Returns how near a candidate comes: named arguments it knows, best by name, then what is missing."""
     names = [g.name for g in given if g.name is not None]
     known = sum(1 for name in names if _knows(miss.signature, name))
     same = sum(1 for name in names if fold(name) in miss.signature.by_fold)
@@ -147,9 +145,7 @@ def _knows(signature: Signature, word: str) -> bool:
 def _ambiguous(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports a word, or an argument by its place, that may mean several parameters. Returns whether there is
-    one.
-    """
+    """Reports a word or a place that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
         return False
@@ -196,9 +192,7 @@ def _filled_twice(
 def _loose_coordinates(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether there are
-    any.
-    """
+    """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether it did."""
     if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
         return False
     if not all(isinstance(g.type, NumberType) for g in given):
@@ -241,9 +235,7 @@ def _loose_coordinates(
 def _pair_for_one(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether there are
-    any.
-    """
+    """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether it did."""
     pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
     if len(given) != len(node.arguments) or len(pairs) != 1:
         return False
@@ -308,9 +300,7 @@ def _half_or_double(
 def _not_together(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports named arguments that some overloads know, but none all of them. Returns whether there are
-    any.
-    """
+    """Reports named arguments that some overloads know, but none all of them. Returns whether it did."""
     written = [a.name for a in node.arguments if a.name is not None]
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
         return False

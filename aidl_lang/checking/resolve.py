@@ -53,9 +53,7 @@ if TYPE_CHECKING:
 
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
-    """Finds the meaning of every name in a file and in the files it imports. Never raises for what they
-    say.
-    """
+    """Finds the meaning of all names in a file and in those it imports. Never raises for what they say."""
     module, misplaced = with_inner_imports(with_placed_cuts(module))
     loaded = load_imports(module, world)
     main, notes = without_idle(module, loaded.modules)

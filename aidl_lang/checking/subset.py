@@ -237,9 +237,7 @@ class _Walker:
                 return False
 
     def _constrains(self, value: ast.Expression) -> bool:
-        """Tells whether a bare expression is a constraint; a call that no overload fits is judged by its
-        name.
-        """
+        """Tells whether a bare expression is a constraint; a call that fits no overload is judged by name."""
         kind = self._type(value)
         if not isinstance(value, ast.Call):
             return isinstance(kind, TruthType)

@@ -151,9 +151,7 @@ def offered(kind: str) -> tuple[str, ...]:
 
 @record()
 class AnyType:
-    """The type of a value unknown before the program is built: accepted everywhere, checked again when values
-    are there.
-    """
+    """The type of a value unknown before building: accepted everywhere, checked again when it is there."""
 
     def __str__(self) -> str:
         return "anything"
@@ -215,9 +213,7 @@ class ListType:
 
 @record()
 class GeometryType:
-    """The type of geometry: `kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or ""
-    for any.
-    """
+    """The type of geometry: `kind` is a primitive (`line`, `arc`, …), the name of a shape, or "" for any."""
 
     kind: str
 
@@ -307,9 +303,7 @@ def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
 
 
 def accepts(wanted: Type, given: Type) -> int | None:
-    """Returns how far `given` is from the wanted type: 0 exact, more for a conversion, None if it does not
-    fit.
-    """
+    """Returns how far `given` is from the type: 0 exact, more for a conversion, None if it does not fit."""
     if isinstance(wanted, AnyType):
         return 4
     if isinstance(given, AnyType):
@@ -546,9 +540,7 @@ def _fitted(
     gathered: str | None,
     positional: tuple[int, ...],
 ) -> Binding | Mismatch:
-    """Returns the binding with its distance from the wanted types, or the parameter that gets nothing that
-    fits.
-    """
+    """Returns the binding with its distance from the types, or the parameter that gets nothing that fits."""
     distance, turned, defaulted = (_GATHERED if gathered is not None else 0), 0, 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:

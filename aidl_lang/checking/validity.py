@@ -43,9 +43,7 @@ def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
 
 
 class _Walker:
-    """Collects the breaches in the bodies of structures; the body of a definition is judged where it is
-    called.
-    """
+    """Collects the breaches in the bodies of structures; a definition's body is judged where it is called."""
 
     def __init__(self, infer: Inference) -> None:
         self.infer = infer
@@ -156,9 +154,7 @@ class _Walker:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
 
     def _is_thing(self, node: ast.Expression) -> bool:
-        """Tells whether an expression may be a thing to copy, or a line to mirror about: no number, no
-        coordinates.
-        """
+        """Tells whether an expression may be a thing to copy, or a line: no number, no coordinates."""
         return not isinstance(self.infer.fact(node).type, NumberType | PointType)
 
     def _targets(
@@ -184,9 +180,7 @@ class _Walker:
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
-        """Returns a point as target, or the one coordinate of it that reads too far, so that the other stays
-        as it is.
-        """
+        """Returns a point as target, or the one coordinate that reads too far: the other stays as it is."""
         if self._reads(node.x) and self._reads(node.y):
             return [FarReference(node, path, is_point=True)]
         return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]

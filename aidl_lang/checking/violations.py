@@ -52,9 +52,7 @@ class StatementSite:
 
 
 class Relocation:
-    """A move of expressions from a site to an ancestor of its structure, behind the statement that holds the
-    site.
-    """
+    """A move of expressions from a site to an ancestor of its structure, behind the site's statement."""
 
     def __init__(self, site: StatementSite, ancestor: ast.Node, infer: Inference) -> None:
         self.site = site
@@ -72,9 +70,7 @@ class Relocation:
         return all(isinstance(n, ast.Structure) and n.parameters is None for n in self.between)
 
     def path(self, to: ast.Node | None = None) -> str:
-        """Returns the path from the ancestor to the site's structure, or to one around it; empty for
-        itself.
-        """
+        """Returns the path from the ancestor to the site's structure or one around it; empty for itself."""
         steps: list[str] = []
         for node in self.between:
             assert isinstance(node, ast.Structure)
@@ -100,9 +96,7 @@ class Relocation:
         return text
 
     def expression(self, node: ast.Node) -> str | None:
-        """Returns the text of an expression for the ancestor; None if the ancestor cannot name everything in
-        it.
-        """
+        """Returns the text of an expression for the ancestor; None if that cannot name all in it."""
         edits: list[tuple[int, int, str]] = []
         resolution = self.infer.resolution
         for part in ast.walk(node):
@@ -265,9 +259,7 @@ class Violation:
         return min(holders, key=self.site.homes.index)
 
     def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
-        """Returns the diagnostic of the breach. `written`: the values of `nodes` at the first guesses, if
-        known.
-        """
+        """Returns the diagnostic. `written`: the values of `nodes` at the first guesses, if known."""
         home, culprit = _name(self.site.home), self._culprit()
         owner = self._owner(culprit)
         subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"

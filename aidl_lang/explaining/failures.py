@@ -126,9 +126,7 @@ class _StatedMember:
 
 
 class Explanation:
-    """The reason why a group could not be solved, and remedies, which may be those of an `earlier`
-    explanation.
-    """
+    """Why a group could not be solved, and remedies, which may be those of an `earlier` explanation."""
 
     def __init__(
         self,
@@ -192,9 +190,7 @@ class Explanation:
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _size(self, index: int) -> Unknown:
-        """Returns the size that a constraint which nobody wrote keeps from vanishing: `least - size <= 0` or
-        `-size <= 0`.
-        """
+        """Returns the size that an unwritten constraint, `least - size <= 0`, keeps from vanishing."""
         problem = self.lowered.problem
         operands = problem.tape.operand_lists
         *_, size = operands[problem.constraints[index].rows[0].expression]
@@ -204,9 +200,7 @@ class Explanation:
 
     @cached_property
     def _remedies(self) -> list[Remedy]:
-        """The remedies: numbers that would fit in the parties, one for each place, and in place of exact
-        ones.
-        """
+        """Numbers that would fit in the parties, one for each place, and in place of exact ones."""
         if not self.is_proven:
             return []
         searches = list(self._searches())
@@ -303,9 +297,7 @@ class Explanation:
         return found.dial.is_exact or all(any(s.overlaps(place) for s in spans) for spans in proven)
 
     def _once(self, found: Remedy) -> Fix:
-        """Returns the fix, or the one that leaves the statement out if the changed statement would repeat
-        another party.
-        """
+        """Returns the fix; one that leaves the statement out if, changed, it would repeat another party."""
         for party in self.parties:
             span = party.stated.span
             if party.node is None or not span.overlaps(found.dial.place):
@@ -320,9 +312,7 @@ class Explanation:
         return found.fix
 
     def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
-        """Returns the sort key of remedies, cheapest first: numbers in other failures too come first, as one
-        cause has several.
-        """
+        """Returns the sort key of remedies, cheapest first: before all, numbers in other failures, too."""
         shared = self._shares(found.dial.place)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
@@ -349,9 +339,7 @@ class Explanation:
 
     @cached_property
     def _chief(self) -> _StatedMember:
-        """The party that the message is about: the one that the fix changes, else the last that has a
-        remedy.
-        """
+        """The party that the message is about: that which the fix changes, else the last with a remedy."""
         if not self.is_proven:
             return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
         places = [edit.span for edit in self._fix.edits] if self._fix else []
@@ -384,9 +372,7 @@ class Explanation:
                 return "E0603", f"the time for solving ran out before {names} held"
 
     def _claim(self, chief: _StatedMember) -> str:
-        """Returns the label of the party that the message is about: what would fit, or what is wrong with
-        it.
-        """
+        """Returns the label of the party that the message is about: what would fit, or what is wrong."""
         if (would_fit := self._would_fit(chief)) != "":
             return would_fit
         off = chief.member.off
@@ -409,9 +395,7 @@ class Explanation:
         )
 
     def _labels(self, chief: _StatedMember) -> Iterator[Label]:
-        """Yields labels at the other places, each once; if there are too many, first those at which something
-        would fit.
-        """
+        """Yields labels at the other places, each once; of too many those at which something would fit."""
         text = "conflicts with this" if self.is_proven else "takes part"
         spans = [span for span in self.turns if span != chief.stated.span]
         fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
@@ -458,9 +442,7 @@ class Explanation:
 
 
 def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
-    """Returns hints on the difference of the sides of `a == b` where the other parties hold; none for any
-    other statement.
-    """
+    """Returns hints on the difference of the sides of `a == b` where the other parties hold; else none."""
     node, stated = party.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
         return ()

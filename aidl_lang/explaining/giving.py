@@ -258,9 +258,7 @@ _SECONDS = 1.0
 
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
-    """Returns a note for each written constraint that follows from others, and for each part that is
-    undecided.
-    """
+    """Returns a note for each written constraint that follows from others, and each undecided part."""
     redundant = [found for found in freedom.redundant if _stated(lowered, found.constraint)]
     times = Counter(stated.span for stated in lowered.stated if stated is not None)
     can_go = [found.constraint for found in redundant if _is_single(lowered.stated[found.constraint], times)]
@@ -306,9 +304,7 @@ def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:
-    """Tells whether the solution stays the same without these constraints: they may have decided what moves
-    first.
-    """
+    """Tells whether the solution is the same without these constraints: they may decide what moves first."""
     problem = lowered.problem
     if not left_out or len(problem.initial) > _LARGEST:
         return False
@@ -383,9 +379,7 @@ def _are_redundant(
 def _can_be_broken(
     problem: Problem, solution: Solution, others: Sequence[SolverConstraint], inequality: SolverConstraint
 ) -> bool:
-    """Tells whether the others hold somewhere where an inequality does not; True as well if the time runs
-    out.
-    """
+    """Tells whether the others hold where an inequality does not; True as well if the time runs out."""
     (row,), tape = inequality.rows, problem.tape
     node, level = len(tape), tape.levels[row.expression] + 1
     longer = replace(  # by a difference that is at most zero where the inequality is off

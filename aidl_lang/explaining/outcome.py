@@ -47,9 +47,7 @@ def solution_notes(
     given: Sequence[GaveWay],
     failures: Sequence[Explanation],
 ) -> list[Diagnostic]:
-    """Returns failures as errors; for a model that solved, notes on what gave way and on redundant
-    constraints.
-    """
+    """Returns failures as errors; for a model that solved, notes on what gave way and what is redundant."""
     found = [failure.diagnostic for failure in failures]
     if solution.status is not Status.SOLVED:
         return found
@@ -88,9 +86,7 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
 def assertion_notes(
     model: Model, solved: SolvedModel, drawing: Drawing, evaluator: Evaluator, *, solved_fully: bool
 ) -> list[Diagnostic]:
-    """Returns a diagnostic for each assertion that does not hold on the solved model; none if it did not
-    solve.
-    """
+    """Returns a diagnostic for each assertion that does not hold; none for a model that did not solve."""
     if not solved_fully:
         return []
     evaluator.measure = measure = _Measure(solved.root, drawing)
@@ -99,9 +95,7 @@ def assertion_notes(
 
 
 def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
-    """Returns a diagnostic for an assertion that does not hold at the values of the evaluator, with the
-    numbers; None if it holds.
-    """
+    """Returns a diagnostic, with numbers, for an assertion that does not hold at some values; else None."""
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
     if assertion.is_followed:
@@ -195,9 +189,7 @@ def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) ->
 
 
 def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
-    """Returns a hint on an assertion that does not hold; it proposes nothing that would be an error in its
-    turn.
-    """
+    """Returns a hint on an assertion that does not hold; it proposes nothing that would be an error."""
     if assertion.shape:
         return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
     if not false and isinstance(assertion.condition, bool):
@@ -289,9 +281,7 @@ class _Measure:
         return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
 
     def _side(self, payload: Measurement) -> float:
-        """Returns a side of the box of an outline that was worked out after solving, in the frame of a
-        structure.
-        """
+        """Returns a side of the box of an outline worked out after solving, in the frame of a structure."""
         assert payload.here is not None
         curves = self._curves(payload.of[0].path)
         frames, here = [], self.root
@@ -316,9 +306,7 @@ class _Measure:
         return [c for g in found for c in replace(g, construction=False).curves()]
 
     def _region(self, thing: Structure | Geometry) -> Region:
-        """Returns the region that a structure covers in the drawing, or that a geometry would cover as a
-        solid of its own.
-        """
+        """Returns what a structure covers in the drawing, or what a geometry would cover as a solid."""
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
         return region_alone(self.root, thing.path)

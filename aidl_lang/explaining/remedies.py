@@ -94,17 +94,13 @@ class Remedy:
     flat_at: str = ""
 
     def would_fit(self, numbers: int = 1) -> str:
-        """Returns the words of a message; they name the number if several `numbers` are written at its
-        place.
-        """
+        """Returns the words of a message; they name the number if its place has several `numbers`."""
         instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
         return f"{self.shown}{instead} would fit"
 
 
 def dear(dial: Dial, share: float, plain: bool) -> float:
-    """Returns the cost of changing a number by a `share` of itself; `plain` if the new number has few
-    digits.
-    """
+    """Returns the cost of changing a number by a `share` of itself; `plain` if the new one has few digits."""
     return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
 
 
@@ -156,9 +152,7 @@ class RemedySearch:
 
     @cached_property
     def reach(self) -> float:
-        """The relative change of the number that its influence predicts, times its cost; infinite if nothing
-        is predicted.
-        """
+        """The relative change of the number that its influence predicts, times its cost; or infinite."""
         value = self.dial.value
         if self.is_late:
             return np.inf
@@ -192,9 +186,7 @@ class RemedySearch:
 
     @cached_property
     def _even_target(self) -> float | None:
-        """The value at which the violation would vanish if it fell linearly with the number; None if
-        unknown.
-        """
+        """The value at which the violation would vanish if it fell linearly with it; None if unknown."""
         value = self.dial.value
         if not (off := self._lack(value)):
             return None
@@ -333,9 +325,7 @@ class RemedySearch:
         return written if written and self._is_sharp(written, step) else None
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
-        """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;
-        else `written`.
-        """
+        """Returns the short number at a `target`, found going `onward`, if it is an end; else `written`."""
         limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
         near = 0.1 * _NUDGE * max(abs(target), 1.0)
         limit = next((limit for limit in limits if abs(limit.value - target) <= near), written)
@@ -367,9 +357,7 @@ class RemedySearch:
         return self.trials.lack(self._at(value), self.failure)
 
     def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
-        """Returns the first spelling of a number that fits. If one fails for other reasons than its digits,
-        no other is tried.
-        """
+        """Returns the first spelling of a number that fits; no other if digits are not the reason."""
         for written in spelled:
             if self._fits(written):
                 return written
@@ -438,9 +426,7 @@ _ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(const
 
 
 def left_out(constraint: Constraint) -> Fix | None:
-    """Removes a statement that has a line for itself, or stands between semicolons, with the `@allow(…)` that
-    is said of it.
-    """
+    """Removes a statement that stands alone on a line or between semicolons, with `@allow(…)` said of it."""
     span, text = constraint.span, constraint.span.source.text
     allowing = _ALLOWING.search(text, 0, span.start)
     if allowing is not None:
@@ -482,9 +468,7 @@ _PLACES = 5
 
 
 def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
-    """Returns the solution of a problem that states constants, with each of them that does not hold as a
-    failure of its own.
-    """
+    """Returns the solution of a problem that states constants, each that does not hold being a failure."""
     found = []
     for index, stated in enumerate(lowered.stated):
         sides = (side for part in stated.comparisons for side in (part.left, part.right)) if stated else ()

@@ -43,9 +43,7 @@ _LOOK = "look whether this is how it is meant"
 
 @record()
 class Rereading:
-    """A program that solved with some ambiguous calls read differently; `calls` are their places and
-    readings.
-    """
+    """A program that solved with ambiguous calls read differently; `calls` are their places and readings."""
 
     built: Interpretation
     lowered: Lowered

@@ -117,9 +117,7 @@ class Mobility:
 
 @record()
 class Watch:
-    """The visibility of observables: pairs of a group (p,) and a row (p,) of the observables' Jacobian, each
-    once.
-    """
+    """The visibility of observables: pairs of a group (p,) and a row (p,) of their Jacobian, each once."""
 
     groups: Ints
     rows: Ints
@@ -464,9 +462,7 @@ def _mobility(
 
 
 def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:
-    """Returns the first of each set of equal rows, and for each row the place of its set in this list; -1 for
-    an empty row.
-    """
+    """Returns the first of each set of equal rows, and for each row the place of its set; -1 for none."""
     known: dict[tuple[object, ...], int] = {}
     firsts: list[int] = []
     places: list[int] = []

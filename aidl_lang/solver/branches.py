@@ -72,9 +72,7 @@ class Verdict:
 
 
 def violation_of(row: Row, values: Valuation) -> float:
-    """Returns the violation of a row at the current values, in the row's units; infinite if it has no
-    value.
-    """
+    """Returns the violation of a row at the current values, in its units; infinite if it has no value."""
     value = values.nodes[row.expression]
     violation = max(value, 0.0) if row.relation is Relation.AT_MOST else abs(value)
     return violation if violation == violation else np.inf
@@ -160,9 +158,7 @@ class _Attempt:
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]
     ) -> tuple[Verdict, tuple[Branch, ...], bool]:
-        """Solves with the branches active at `base`; returns these branches too, and whether the result lies
-        in others.
-        """
+        """Solves with the branches active at `base`; returns these, and whether the result lies in others."""
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
         choice = self.freezer.choice(flipped)

@@ -58,9 +58,7 @@ SEED = 1
 
 @record()
 class _SearchResult:
-    """The result of a search: how it ended, the values of the free unknowns there, and the greatest
-    violation.
-    """
+    """The end of a search: how it came, the values of the free unknowns, and the greatest violation."""
 
     end: End
     reached: dict[int, float]
@@ -92,9 +90,7 @@ def explain(
 
 
 def is_refuted(hierarchy: Hierarchy, scope: Scope) -> bool:
-    """Tells whether a proof exists that the constraints of `scope` cannot hold together with its unknowns
-    free.
-    """
+    """Tells whether it is proved that the constraints of `scope` cannot hold with its unknowns free."""
     hierarchy.refresh(scope.constraints)
     rows = hierarchy.rows(scope.constraints)
     return Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance).is_refuted
@@ -210,9 +206,7 @@ class _ConflictSearch:
         return sum(off <= ALIKE * least for off in self.ended) >= STARTS / 2
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
-        """Yields places about the first guesses: directions anywhere, sizes between a third and three
-        times.
-        """
+        """Yields places about the first guesses: directions anywhere, sizes from a third to three times."""
         problem, random = self.hierarchy.problem, np.random.default_rng(SEED)
         size = float(problem.rows.scale.max(initial=1.0))
         for turn in range(STARTS):
@@ -268,15 +262,11 @@ class _ConflictSearch:
         return self._needed(said)
 
     def _needed(self, found: list[int]) -> list[int]:
-        """Returns a smallest part of a failing set that still fails, or what was left of the set when the
-        budget was spent.
-        """
+        """Returns a smallest failing part of a failing set, or what was left when the budget was spent."""
         return needed(found, lambda part: self._spent or self._holds(part))
 
     def _refuted(self, constraints: Sequence[int]) -> list[int]:
-        """Returns constraints among these that are proved never to hold together; empty if there is no
-        proof.
-        """
+        """Returns constraints among these that provably never hold together; empty if there is no proof."""
         relaxation = self._relaxation(constraints)
         owner = self.hierarchy.owners(constraints)
         return sorted({owner[row] for row in relaxation.smallest()})
@@ -455,9 +445,7 @@ def _bound(
     concession: Concession,
     solved: Floats,
 ) -> frozenset[int]:
-    """Returns the unknowns that the constraints hold at the solution: put back to its value before, each of
-    them breaks one.
-    """
+    """Returns the unknowns that the constraints hold at the solution: put back, each breaks one."""
     if len(unknowns) < 2:
         return unknowns
     kept = hierarchy.save(range(len(solved)))

@@ -443,9 +443,7 @@ class Program:
         return np.array([values[root] for root in self._roots])
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
-        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
-        factors.
-        """
+        """Returns the (r, k) partial derivatives where `residuals` was evaluated last, by these factors."""
         values, weights = self._values, self._weights
         for partial, operands, out, edges in self._partials:
             slopes = partial(*[values[i] for i in operands], values[out])
@@ -473,9 +471,7 @@ class Program:
         return matrix
 
     def _accumulate_with_care(self, sweep: Sweep, adjoints: list[float]) -> None:
-        """Accumulates slopes so that those that cancel become zero: a frame that moves all of a row moves
-        nothing in it.
-        """
+        """Adds up slopes so that those that cancel are zero: what moves all of a row moves nothing in it."""
         weights, sizes = self._weights, dict.fromkeys(sweep.touched, 0.0)
         for parent, child, edge in sweep.edges:
             slope = adjoints[parent]

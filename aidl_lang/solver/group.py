@@ -105,9 +105,7 @@ class Group:
             self.tiers.forget()
 
     def _leave_out(self) -> int | None:
-        """Returns the constraint to go on without after a failure; None if it is not known which would
-        help.
-        """
+        """Returns the constraint to go on without after a failure; None if none is known to help."""
         failure = self.hierarchy.failures[-1]
         own = [index for index in failure.conflict if index in self.hard]
         known = failure.minimal and own and not self.hierarchy.clock.expired
@@ -120,9 +118,7 @@ class Group:
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
-        """Returns the tier of the dearest thing that had to be freed to satisfy everything; None if nothing
-        does.
-        """
+        """Returns the tier of the dearest thing that had to be freed to satisfy all; None if nothing does."""
         hierarchy = self.hierarchy
         everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
@@ -213,9 +209,7 @@ class Group:
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]
     ) -> Tier | None:
-        """Returns the stage that satisfies everything from the place at which the failed constraints hold;
-        None if none does.
-        """
+        """Returns the stage that satisfies all from where the failed constraints hold; None if none does."""
         hierarchy = self.hierarchy
         for tier in (POSITIONS, ENDLESS) if failure.holds_elsewhere else ():
             scope = self.tiers.scope(tier, part)

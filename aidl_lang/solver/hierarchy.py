@@ -176,9 +176,7 @@ class Hierarchy:
                 recollection.note(depth, self.reached)
 
     def _solve_together(self, depth: int, known: Bools) -> None:
-        """Solves the groups at `depth`, but for those `known` (g,), at once; then, one by one, those that
-        remain unsolved.
-        """
+        """Solves the groups at `depth`, but for `known` (g,), at once; then one by one those that remain."""
         if self._levels is None:
             from aidl_lang.solver.levels import Levels
 
@@ -201,9 +199,7 @@ class Hierarchy:
             self.reached[:] = self.values.unknowns
 
     def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
-        """Reports the stages, but for those that are tried again; returns the last stage that helped each
-        group.
-        """
+        """Reports the stages but those that are tried again; returns the last that helped each group."""
         passed: dict[int, Tier] = {}
         for stage in stages:
             name = stage_name(stage.tier)
@@ -216,9 +212,7 @@ class Hierarchy:
         return passed
 
     def violations(self) -> Floats:
-        """Returns the violation of each row (r,) at the end, in the row's units; infinite if it has no
-        value.
-        """
+        """Returns the violation of each row (r,) at the end, in its units; infinite if it has no value."""
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
         self.values.assign(enumerate(self.reached.tolist()))
@@ -279,9 +273,7 @@ class Hierarchy:
         return self._held_by.get(group, [])
 
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
-        """Yields the constraints of `group` and its descendants that mention an unknown, without those that
-        could not be met.
-        """
+        """Yields the constraints of `group` and below it that mention an unknown, without those not met."""
         constraints, broken = self.problem.constraints, self._broken
         return (
             index

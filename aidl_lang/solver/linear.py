@@ -97,9 +97,7 @@ def _least_norm_of_one(jacobian: Floats, y: Floats) -> LeastNorm:
 
 
 def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
-    """Solves the normal equations and refines the solution once; returns None if they are not to be
-    trusted.
-    """
+    """Solves the normal equations and refines the solution once; None if they are not to be trusted."""
     if len(y) > jacobian.shape[1]:
         return None
     gram = jacobian @ jacobian.T

@@ -91,9 +91,7 @@ class _Rest:
         return float(np.linalg.norm(self.rest))
 
     def left(self, chosen: Sequence[int]) -> float:
-        """Returns the part of the rest that is left when some columns have taken up what they can; 0 if that
-        is nothing.
-        """
+        """Returns the part of the rest that some columns cannot take up; 0 if that is nothing."""
         basis = _basis(self.columns[:, chosen])
         left = float(np.linalg.norm(self.rest - basis @ (basis.T @ self.rest))) / self.size
         return left if left > NOTHING else 0.0
@@ -342,9 +340,7 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
 
 
 def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
-    """Tells whether unknowns in curved rows moved about as far as the slopes promised, not through a singular
-    place.
-    """
+    """Tells whether unknowns in curved rows moved about as far as the slopes promised."""
     off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 

@@ -146,9 +146,7 @@ def cubic_maximiser(p0: float, p1: float, p2: float, p3: float) -> float:
 
 
 def _quadratic_roots(a: float, half_b: float, c: float) -> tuple[float, ...]:
-    """Returns the real roots of a t² + 2 half_b t + c, without cancellation (Numerical Recipes, section
-    5.6).
-    """
+    """Returns the real roots of a t² + 2 half_b t + c without cancellation (Numerical Recipes, 5.6)."""
     discriminant = half_b * half_b - a * c
     if not (discriminant >= 0.0 and math.isfinite(discriminant)):
         return ()

@@ -258,18 +258,14 @@ class Failure(StrEnum):
     CONTRADICTORY = "contradictory"
     """A proof refuted it, or the search for the conflict failed from many places."""
     OVERDETERMINED = "over-determined"
-    """The same, but there are more equations than unknowns and some are curved: other values would not
-    help.
-    """
+    """The same, with more equations than unknowns, some of them curved: other values would not help."""
     NOT_CONVERGED = "not converged"
     TIMED_OUT = "timed out"
 
 
 @record()
 class Member:
-    """A constraint in a conflict. `off` is its greatest violation where the search came nearest, in the units
-    of its row.
-    """
+    """A constraint in a conflict; `off` is its violation where the search came nearest, in row units."""
 
     index: int
     off: float

@@ -85,9 +85,7 @@ class Relaxation:
         return found.off / max(map(abs, found.factors.values()), default=1.0)
 
     def gaps(self) -> dict[int, float]:
-        """Returns the residual of each row that equations alone refute where the others hold; empty if
-        inequalities take part.
-        """
+        """Returns the residual of each row where the others hold; empty if inequalities take part."""
         found = self._refuted(self._all)
         return {i: found.off / factor for i, factor in found.factors.items()} if found.is_even else {}
 
@@ -189,9 +187,7 @@ class Relaxation:
         return [slot for slot in form.terms if slot in self._parts] if isinstance(form, Affine) else []
 
     def _bounds(self, forms: Iterable[Form]) -> list[Form]:
-        """Returns forms that are never positive, for the knots in some forms, for those in their parts, and
-        so on.
-        """
+        """Returns forms that are never positive, for the knots in some forms and their parts."""
         found: list[Form] = []
         waiting, known = list(forms), set[int]()
         while waiting:
@@ -271,9 +267,7 @@ def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Float
 
 
 def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
-    """Returns the multipliers for many rows, by a linear program that minimises the sum of their
-    violations.
-    """
+    """Returns the multipliers for many rows by a linear program: the sum of violations is least."""
     if len(constant) <= SOME and plainly_hold(jacobian, -constant, inequality):
         return None
     from scipy.optimize import linprog
@@ -450,9 +444,7 @@ def shortfall(
 def nearby_solution(
     problem: Problem, settings: Settings, constraints: Collection[int], start: Mapping[int, float]
 ) -> dict[int, float] | None:
-    """Returns values near those of `start` at which constraints hold with its unknowns free; None if no
-    search found any.
-    """
+    """Returns values near `start` at which constraints hold with its unknowns free; None if not found."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.values.assign(start.items())
     verdict = hierarchy.attempt(Scope(frozenset(start), tuple(sorted(constraints))), RESTARTS)

@@ -82,9 +82,7 @@ def groups_riding(problem: Problem) -> Riding:
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
-    """Returns the mask of unknowns drawn by groups that are only named as a whole and that do not move with
-    their frame.
-    """
+    """Returns the mask of unknowns drawn by groups only named as a whole that leave their frame."""
     axis = np.full(len(movable), -1) if problem.axis is None else problem.axis
     moved = np.where(movable, problem.frame_of, -1)
     shifts = np.zeros((3, len(named.whole)), dtype=np.bool_)  # along x, along y, anyhow

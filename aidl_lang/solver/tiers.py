@@ -165,9 +165,7 @@ class Tiers:
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def independent(self, constraints: Iterable[int]) -> list[list[int]]:
-        """Returns the constraints in independent parts, by the unknowns they share that could ever move, in
-        their order.
-        """
+        """Returns the constraints in independent parts, by the unknowns they share that could ever move."""
         parts: list[list[int]] = []
         left = list(constraints)
         while left:

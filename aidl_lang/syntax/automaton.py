@@ -40,9 +40,7 @@ class Automaton:
         self.tree: Tree[Token] | None = None  # of the whole text, when its end was taken
 
     def feed(self, token: Token) -> bool:
-        """Takes one token. Returns False if it cannot stand here; the statement before it may be complete by
-        then.
-        """
+        """Takes one token. Returns False if it cannot stand here; what is before may be complete."""
         if token.kind in self.tables.soft_words:
             token.type = self._type(self.states, token.kind)
         try:
@@ -125,9 +123,7 @@ class Automaton:
         return sum(1 for token in self.open_brackets() if token.kind == "{")
 
     def accepts(self, kinds: Iterable[str], from_statement: bool = False) -> bool:
-        """Tells whether tokens of these kinds could come next, or in the place of the whole statement under
-        way.
-        """
+        """Tells whether tokens of these kinds could come next, or in place of the statement under way."""
         states = list(self.states)
         while from_statement and states[-1] not in self.tables.statement_states:
             states.pop()
@@ -159,9 +155,7 @@ class TokenRepair:
 
 @record()
 class SyntaxProblem:
-    """A diagnostic and its repair. `with_block`: if there is no repair, the block of the statement is left
-    out as well.
-    """
+    """A diagnostic and its repair. `with_block`: without one, the statement's block is left out as well."""
 
     diagnostic: Diagnostic
     repair: TokenRepair | None = None
@@ -170,9 +164,7 @@ class SyntaxProblem:
 
 @record()
 class Trouble:
-    """The token number `position`, which cannot stand in the automaton's state; `begin` is the first of its
-    statement.
-    """
+    """The token number `position`, which cannot stand where it does; `begin` is its statement's first."""
 
     source: SourceFile
     tokens: list[Token]
@@ -302,9 +294,7 @@ def line_end(text: str, offset: int) -> int:
 
 
 def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> int:
-    """Returns the number of the token behind the statement at `begin`, which ends with its line at the
-    latest.
-    """
+    """Returns the number of the token behind the statement at `begin`; its line is the latest end."""
     stop = min(begin, len(tokens) - 1)
     end = line_end(source.text, tokens[stop].start)
     last = min(begin + LONGEST, len(tokens) - 1)

@@ -161,9 +161,7 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
 
 
 def unclosed_block(t: Trouble) -> SyntaxProblem | None:
-    """Recognises a block left open at the end of the file; indentation tells which one was to end, and
-    where.
-    """
+    """Recognises a block left open at the end of the file; indentation tells which was to end, and where."""
     if t.token.kind != END or not t.between:
         return None
     blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]

@@ -80,9 +80,7 @@ _EXPECTED = (
 
 
 def explain(trouble: Trouble) -> SyntaxProblem:
-    """Returns the first answer to the questions, or else a problem that names the token and what could stand
-    here.
-    """
+    """Returns the first answer to the questions, or a problem that names the token and what could stand."""
     for question in _QUESTIONS:
         if (problem := question(trouble)) is not None:
             return problem
@@ -110,9 +108,7 @@ def _unexpected(t: Trouble) -> SyntaxProblem:
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
-    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call it was meant to
-    be.
-    """
+    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call that was meant."""
     name = token.text[:-1]
     gap = Span(source, token.start + len(name), token.end - 1)
     return Diagnostic(

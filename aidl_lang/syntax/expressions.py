@@ -224,9 +224,7 @@ class _Generator:
 
 
 def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
-    """Returns the arguments of a call; a comprehension may be its only one without brackets: `sum(a for a in
-    b)`.
-    """
+    """Returns the arguments of a call; its only one may be a bare comprehension: `sum(a for a in b)`."""
     if isinstance(value, _Generator):
         return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
     return tuple(value)

@@ -68,9 +68,7 @@ _LOOP = re.compile(
 
 
 def foreign_loop(t: Trouble) -> SyntaxProblem | None:
-    """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0
-    to 3`.
-    """
+    """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for i of list` and the like."""
     if t.first.kind != "for" or t.between:
         return None
     end = min(line_end(t.source.text, t.first.start), t.first.start + LONGEST)

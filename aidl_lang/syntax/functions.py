@@ -70,9 +70,7 @@ def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint:
 
 
 def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
-    """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a
-    remark.
-    """
+    """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: the rest of the line is a remark."""
     word, after = tokens[at], tokens[at + 1]
     before = tokens[at - 1].kind if at else ";"
     if before not in ("{", "}", ";") and not begins_line(source.text, word.start):

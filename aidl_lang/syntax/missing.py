@@ -41,9 +41,7 @@ def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
 
 
 def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
-    """Returns the fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] =
-    b()`.
-    """
+    """Returns fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p`, `ribs[1] = b()`."""
     name, after = t.first, t.tokens[close + 1]
     is_list = [token.kind for token in t.tokens[t.begin : opening + 1]] == ["NAME", "=", "["]
     is_last = after.kind in ("}", ";", END) or begins_line(t.source.text, after.start)

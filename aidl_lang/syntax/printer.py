@@ -88,9 +88,7 @@ class CommentedLines:
         self.lines[mark:mark] = moved
 
     def _trailing_comment(self, place: int) -> int:
-        """Puts a comment that follows on the same line behind the last line. Returns the offset to go on
-        from.
-        """
+        """Puts a comment that follows on the same line behind the last one. Returns where to go on."""
         comment = self._peek(len(self.source) + 1)
         if comment is None or comment.span.start < place or "\n" in comment.text:
             return place
@@ -290,9 +288,7 @@ class _Printer(CommentedLines):
         return comment is not None and comment.span.start >= start
 
     def _one_line(self, node: ast.Statement, constraints: bool) -> str | None:
-        """Returns the statement on one line, without attributes; None if its blocks were not written on
-        one.
-        """
+        """Returns the statement on one line, without attributes; None if its blocks were on several."""
         for block in self._blocks(node):
             if "\n" in block.span.text or self._has_comment(node.span.start, block.span.end):
                 return None

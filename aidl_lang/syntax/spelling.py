@@ -286,9 +286,7 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
 
 
 def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
-    """Tells whether the statement could be read up to and with the trouble if its first word were
-    exchanged.
-    """
+    """Tells whether the statement could be read through the trouble if its first word were exchanged."""
     rest = [*stand_in, *t.tokens[t.begin + 1 : t.position + 1]]
     return t.automaton.accepts((token.kind for token in rest), from_statement=True)
 

@@ -24,9 +24,7 @@ _OPERANDS = frozenset({"NAME", "NUMBER", "STRING"})
 
 
 def begins_with_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
-    """Tells whether a token is a `-` that begins a line, touches its operand and stands before a
-    comparison.
-    """
+    """Tells whether a token is a `-` that begins a line, touches its operand and precedes a comparison."""
     if not _is_sign(text, tokens, position):
         return False
     depth, after_operand = 0, False
@@ -63,9 +61,7 @@ class _Parsed(Protocol):
 def lines_joined_by_sign(
     module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
 ) -> list[Diagnostic]:
-    """Returns W0101 for each line that begins with a sign if it and the lines above read as whole
-    statements.
-    """
+    """Returns W0101 for each line that begins with a sign if it and what is above read as statements."""
     source, text = module.source, module.source.text
     places = [
         t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start) and text[: t.start].strip()

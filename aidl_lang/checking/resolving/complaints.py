@@ -288,9 +288,7 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
 
 
 def _is_spelled_right(name: str, meant: str, scope: SymbolScope) -> bool:
-    """Tells whether a word in which two names differ is a known one: `same_side` is no slip for
-    `same_size`.
-    """
+    """Tells whether a word by which two names differ is known: `same_side` is no slip for `same_size`."""
     known = {word for other in scope.callable_names() for word in other.casefold().split("_")}
     known |= PARAMETERS.keys() | FIELDS
     words, others = name.casefold().split("_"), meant.casefold().split("_")
@@ -393,9 +391,7 @@ def is_below(node: ast.Name, symbol: Symbol, scope: SymbolScope) -> bool:
 
 
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: SymbolScope) -> None:
-    """Reports geometry and unknowns used above their line; those of other structures are judged by
-    validity.
-    """
+    """Reports geometry and unknowns used above their line; validity judges those of other structures."""
     if is_below(node, symbol, scope):
         hint = "write a first guess here, and the relation in `constrain`, which is read after the rest"
         used_early(resolver.report, node, symbol, *(meant_outside(symbol, node) or (hint,)))

@@ -33,9 +33,7 @@ def is_definition(node: ast.Node) -> bool:
 
 
 def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
-    """Returns the kind of symbol that `name = value` declares: geometry, a structure, or only an
-    expression.
-    """
+    """Returns the kind of symbol that `name = value` declares: geometry, a structure, an expression."""
     match value:
         case ast.Point():
             return SymbolKind.GEOMETRY

@@ -50,9 +50,7 @@ def hole_calls(module: ast.Module) -> frozenset[ast.Call]:
 
 
 def meant(candidates: Sequence[Signature], is_hole: bool) -> Sequence[Signature]:
-    """Returns the overloads of a ready-made cut that are meant: templates for a hole, else those that make an
-    outline.
-    """
+    """Returns the overloads of a ready-made cut that are meant: templates for a hole, else outlines."""
     templates = [c.kind is ast.Structure for c in candidates if c.standard]
     if all(templates) or not any(templates):
         return candidates
