@@ -206,7 +206,6 @@ def _take_over(
 
 
 def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
-    """Returns the attribute of a name by which the order of a structure is stated, or that of its source."""
     here: Structure | None = s
     while here is not None:
         for order in it.orders.get(here, ()):
@@ -395,7 +394,6 @@ def _worded(words: Sequence[str], wanted: str) -> Callable[[list[Value]], str]:
 
 
 def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
-    """Tells whether the one value is one of some words, and corrects its spelling."""
     word = values[0] if len(values) == 1 else None
     meant = find(word.value, dict.fromkeys(words)) if isinstance(word, TextVal) else None
     if meant is not None:

@@ -276,7 +276,6 @@ def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool
 
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
-    """Yields candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
         return _made(primitive, primitive.recipe, here, side)
     return curves.reach(primitive, here, side)

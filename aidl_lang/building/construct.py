@@ -238,7 +238,6 @@ def _beyond(
 
 
 def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
-    """Returns the distance and the direction from one literal point to another."""
     x, y = b.x.value - a.x.value, b.y.value - a.y.value
     return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
 

@@ -67,7 +67,6 @@ def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
 
 
 def _target(call: ast.Call) -> ast.Expression | None:
-    """Returns the target of an edit call: `a` in `move(a, …)` and in `a.move(…)`."""
     if call.receiver is not None:
         return call.receiver
     named = (a.value for a in call.arguments if a.name is None or fold(a.name.text) == "x")

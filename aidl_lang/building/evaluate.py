@@ -94,7 +94,6 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 def _of_turns(
     it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
-    """Returns a list of what is made in all turns, one after the other."""
     turns = iterate(it, node.iterable, env)
     if turns is None:
         return NOTHING
@@ -320,7 +319,6 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
-    """Reports why an operation on constants has no value."""
     if op == "^" and a.value < 0 and not b.value.is_integer():
         return _no_value(it, node, "it takes the root of a negative number")
     divisor = {"/": b, "^": a}.get(op)

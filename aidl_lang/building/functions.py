@@ -159,7 +159,6 @@ def _rgb(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _channels(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns red, green and blue of a colour, from 0 to 255."""
     color = color_of(it, [a["color"]], node)
     return ListVal(tuple(number(float(part), PLAIN) for part in rgb(color))) if color is not None else NOTHING
 
@@ -319,7 +318,6 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns a word, checked to be one of those that are allowed."""
     word = a["word"]
     words = [w.value for w in members(a["words"]) or () if isinstance(w, TextVal)]
     assert isinstance(word, TextVal)

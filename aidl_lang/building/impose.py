@@ -362,7 +362,6 @@ def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) 
 
 
 def _boxes_of(g: Geometry) -> set[Structure]:
-    """Returns the structures whose boxes a geometry is in."""
     around: set[Structure] = set()
     structure = None if g.construction else g.owner
     while structure is not None:

@@ -98,7 +98,6 @@ class Placing(Generic[N]):
         return x, y
 
     def _way(self, s: Structure) -> tuple[_Step[N], ...]:
-        """Returns the frames from that of a structure to the one in the root."""
         if (known := self._ways.get(s)) is None:
             known = () if s.parent is None else (self._step(s), *self._way(s.parent))
             self._ways[s] = known
@@ -327,7 +326,6 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        """Returns the number of an expression on the tape."""
         known, make, leaf = self.node_of, self.make, self._leaf
         if root in known:
             return known[root]
@@ -358,7 +356,6 @@ class _Lowering:
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 
     def _observed(self) -> Iterator[Expression]:
-        """Yields the expressions of the numbers that define the drawing."""
         for s, found in self.seen.items():
             for at in found:
                 yield from at

@@ -226,7 +226,6 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
 
 
 def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
-    """Returns a member; None if there is none of that name."""
     found: Value | None = None
     match value:
         case Nothing():
@@ -310,7 +309,6 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
 
 
 def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
-    """Returns the turn of a structure; a constraint on it lets the structure turn."""
     turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
     if not may_read(it, s, node, env):
         return as_written(turn)

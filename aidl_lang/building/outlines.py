@@ -149,7 +149,6 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
 
 
 def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env) -> list[Geometry] | None:
-    """Returns the geometry in an argument; None after an error."""
     found: list[Geometry] = []
     for item in _flat(value):
         if isinstance(item, PointVal) and kind == "hull":

@@ -377,7 +377,6 @@ def _way(call: _Call) -> Way | None:
 
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
-    """Returns the number of members and the way from each to the next."""
     if "n" in call.a:
         n = call.count("n")
         if n is None:

@@ -328,7 +328,6 @@ def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
 
 
 def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:
-    """Yields the named parts of a calculation."""
     match node:
         case ast.Binary(left=left, right=right):
             yield from _leaves(left)

@@ -72,7 +72,6 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
 
 
 def _is_still(modules: Iterable[ast.Module]) -> bool:
-    """Tells whether a program has no params."""
     return not any(isinstance(node, ast.Param) for module in modules for node in ast.walk(module))
 
 
@@ -98,7 +97,6 @@ def _without_code(attribute: ast.Attribute) -> Diagnostic:
 
 
 def _unknown(code: str, place: Span) -> Diagnostic:
-    """Returns what is wrong with a code that cannot be allowed."""
     if code in resources.codes():
         message = f"`{code}` is an error, and only notes and warnings can be allowed"
         return Diagnostic("E0216", message, place, hints=(f"mend it: `aidl explain {code}` tells how",))
@@ -133,7 +131,6 @@ def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diag
 
 
 def _without(allowed: Allowance) -> Fix | None:
-    """Returns the fix that removes an attribute of one code."""
     if not allowed.is_alone:
         return None
     text, end = allowed.attribute.source.text, allowed.attribute.end

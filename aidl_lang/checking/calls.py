@@ -202,7 +202,6 @@ def _not_degrees(
 
 
 def _called(check: Inference, node: ast.Expression) -> str | None:
-    """Returns the name that an expression calls, with aliases resolved."""
     if not isinstance(node, ast.Call):
         return None
     return check.resolution.canonical.get(node.callee, node.callee.text)

@@ -330,22 +330,18 @@ def _loose(kind: Type) -> Type:
 
 
 def _loose_number(x: NumberType, y: NumberType) -> Type:
-    """Returns the common type of two numbers."""
     if x.dimension == y.dimension:
         return NumberType(x.dimension, x.whole or y.whole)
     return ANY
 
 
 def _begins_line(node: ast.Index) -> bool:
-    """Tells whether the `[` of an index stands on a line of its own."""
     return "\n" in _between(node).partition("[")[0]
 
 
 def _between(node: ast.Index) -> str:
-    """Returns the text between a value and its index."""
     return node.span.source.text[node.value.span.end : node.index.span.start]
 
 
 def _at(node: ast.Node) -> Span:
-    """Returns the empty span before a node."""
     return Span(node.span.source, node.span.start, node.span.start)

@@ -74,7 +74,6 @@ def _files() -> list[Path]:
 
 
 def _inputs() -> list[Path]:
-    """Returns the files that the data depends on."""
     here = Path(__file__).parents[1]
     code = [here / name for name in ("checking/library.py", "common/source.py", "parser.py")]
     code += sorted((here / "syntax").glob("*.py"))

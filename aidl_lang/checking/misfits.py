@@ -272,7 +272,6 @@ def _may_be_size(argument: ast.Argument) -> bool:
 def _half_or_double(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports a diameter in place of a radius, or the reverse. Returns whether there is one."""
     for argument in node.arguments:
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
@@ -316,14 +315,12 @@ def _not_together(
 
 
 def _meanings(word: str, names: Sequence[str]) -> list[str]:
-    """Returns the parameters that a synonym may stand for."""
     return [meaning for meaning in PARAMETERS[word] if meaning in names]
 
 
 def _unknown_parameter(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
-    """Reports argument names that no overload knows. Returns whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     free = [name for name in names if fold(name) not in taken]

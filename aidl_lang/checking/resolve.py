@@ -334,7 +334,6 @@ class Resolver:
                     self.expression(child, scope)
 
     def _argument_block(self, block: ast.ArgumentBlock, scope: SymbolScope) -> None:
-        """Resolves a block among arguments. The names in it are its own."""
         inner = SymbolScope(block, scope, scope.homes)
         self.resolution.scopes[block] = inner
         lets = [item for item in block.items if isinstance(item, ast.Let)]

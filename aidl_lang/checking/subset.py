@@ -225,7 +225,6 @@ class _Walker:
                 stack += ast.children(node)
 
     def _states(self, node: ast.Node) -> bool:
-        """Reports a statement of constraints as a whole. Returns whether it is one."""
         match node:
             case ast.Constrain() | ast.Prefer():
                 return self._report(Construct.CONSTRAINT, node.span)
@@ -311,7 +310,6 @@ class _Walker:
         return any(s.kind is kind for s in self.infer.resolution.candidates.get(node, ()))
 
     def _report(self, construct: Construct, span: Span, name: str = "", fix: Fix | None = None) -> bool:
-        """Reports a construct that the variant lacks; false if it has it."""
         if (rule := self.rules.get(construct)) is not None:
             message, hint = (text.replace("{name}", name) for text in (rule.message, rule.hint))
             self.diagnostics.append(Diagnostic(rule.code, message, span, hints=(hint,), fix=fix))

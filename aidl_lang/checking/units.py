@@ -130,7 +130,6 @@ def length(text: str) -> float:
 
 
 def _millimetres(number: str, unit: str) -> float:
-    """Returns millimetres; NaN for an invalid length."""
     factor, dimension = UNITS.get(unit or "mm", (math.nan, LENGTH))
     try:
         return float(number) * factor if dimension == LENGTH else math.nan

@@ -447,7 +447,6 @@ def _name(node: ast.Node) -> str:
 
 
 def _root(node: ast.Node) -> ast.Node:
-    """Returns the name that a path begins with."""
     while isinstance(node, ast.Member | ast.Index):
         node = node.value
     return node

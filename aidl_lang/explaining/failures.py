@@ -322,7 +322,6 @@ class Explanation:
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     def _is_like(self, found: Remedy, cheaper: Remedy) -> bool:
-        """Tells whether a remedy is hardly dearer than a cheaper one."""
         *kind, share, _ = self._dearness(found)
         *least, lesser, _ = self._dearness(cheaper)
         return kind == least and share <= _LIKE * lesser
@@ -403,7 +402,6 @@ class Explanation:
             yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
-        """Yields labels at the exact numbers that have a remedy."""
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
@@ -459,7 +457,6 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
 
 
 def _structures(comparison: Comparison) -> Iterator[Structure]:
-    """Yields the structures that a comparison speaks of."""
     yield from comparison.boxes
     yield from (u.owner for u in unknowns([comparison.left, comparison.right]))
 

@@ -70,7 +70,6 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
 
 
 def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container[int]) -> GaveWay:
-    """Returns what gave way for a reason, without what was `told` before."""
     moved = {}
     for index in sorted(reason.unknowns):
         before, now = float(lowered.problem.initial[index]), float(solution.values[index])
@@ -135,7 +134,6 @@ def _is_asked(unknown: Unknown, given: GaveWay) -> bool:
 
 
 def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
-    """Returns a note on changed sizes; a warning if one changed by more than a tenth."""
     chief = max(sizes, key=lambda c: (round(_share(c), 6), -c.span.start if c.span else 0))
     rest = [c for c in sizes if c is not chief]
     written, solved = short(chief.written), short(chief.solved)
@@ -210,7 +208,6 @@ def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay)
 
 
 def _is_named(structure: Structure, given: GaveWay) -> bool:
-    """Tells whether one of the constraints mentions something in a structure."""
     parts = [part for c in given.because for part in c.comparisons]
     spoken = {s for part in parts for s in part.boxes}
     spoken.update(u.frame_of or u.owner for part in parts for u in part.spoken_of)
@@ -218,7 +215,6 @@ def _is_named(structure: Structure, given: GaveWay) -> bool:
 
 
 def _whose(given: GaveWay) -> tuple[str, ...]:
-    """Returns a sentence on the constraints that ask for it."""
     if not given.because:
         return ()
     names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]
@@ -269,7 +265,6 @@ def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> 
 
 
 def _stated(lowered: Lowered, index: int) -> Constraint | None:
-    """Returns the constraint if somebody wrote it; else None."""
     stated = lowered.stated[index]
     return stated if stated is not None and stated.wording is not None else None
 

@@ -65,7 +65,6 @@ def solution_notes(
 
 
 def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
-    """Yields a note for each wish that is not met."""
     for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
         if stated is None or stated.weight is None or is_met:
             continue

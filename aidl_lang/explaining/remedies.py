@@ -211,7 +211,6 @@ class RemedySearch:
         return _NUDGE * max(abs(self.dial.value), 1.0)
 
     def _pinned(self) -> _Written | None:
-        """Returns a number that fits where the other members hold; None if there is none."""
         if self._member is None or self._pinned_target is None:
             return None
         target = self._rounded(self._pinned_target)
@@ -221,7 +220,6 @@ class RemedySearch:
         return 0.0 if abs(target) <= _VANISHES * max(abs(self.dial.value), 1.0) else target
 
     def _may_be(self, target: float) -> bool:
-        """Tells whether the author can have meant a number."""
         value = self.dial.value
         return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
 

@@ -89,7 +89,6 @@ def reread(
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
-    """Returns the numbers of the readings that have a share in some constraints."""
     spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
     return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
 

@@ -225,12 +225,10 @@ def _lost_form(
 
 
 def _is_back(turn: float) -> bool:
-    """Tells whether a turn in degrees leads more back than on."""
     return math.cos(math.radians(turn)) < -_STILL
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:
-    """Yields the names of the members that a constraint speaks of."""
     if isinstance(constraint.wording, Wording):
         for node in ast.walk(constraint.wording.node):
             if isinstance(node, ast.Member):
@@ -315,7 +313,6 @@ def _fits(structure: Structure, lowered: Lowered) -> bool:
 
 
 def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> float:
-    """Returns the larger extent of some coordinates along an axis."""
     spans = []
     for axis in ("x", "y"):
         along = [written[u] for u in unknowns if u.field.rpartition(".")[2] == axis]

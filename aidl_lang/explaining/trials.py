@@ -114,7 +114,6 @@ class Trials:
         return [i for i in failure.within if hard[i] and i not in others]
 
     def _others(self, failure: GroupFailure) -> set[int]:
-        """Returns the constraints that only other failures are about."""
         others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
         return others.difference(failure.conflict)
 
@@ -299,7 +298,6 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
 
 
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
-    """Returns the paths of what gave way unasked."""
     moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
     gave = {u for stage in solution.stages if stage.concession is not None for u in stage.concession.unknowns}
     return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}

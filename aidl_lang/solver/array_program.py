@@ -455,7 +455,6 @@ class _Pending:
 
 
 def _table(ops: Iterable[int]) -> Bools:
-    """Tells whether each code of an operation is among `ops`."""
     found = np.zeros(64, dtype=np.bool_)
     found[list(ops)] = True
     return found

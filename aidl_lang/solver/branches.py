@@ -152,7 +152,6 @@ class _Attempt:
             base = self._current()
 
     def _active(self) -> tuple[Branch, ...]:
-        """Returns the branches active at the current values."""
         return self.freezer.freeze([self.task.rows[i].expression for i in self.considered]).branches
 
     def _solve_in_branch(

@@ -96,7 +96,6 @@ def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
 
 
 def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
-    """Returns the columns and entries of a row."""
     here = slice(matrix.starts[row], matrix.starts[row + 1])
     return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
 
@@ -129,7 +128,6 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
 
 
 def _connected_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
-    """Returns the connected parts of the rows."""
     if not len(matrix):
         return []
     links = matrix.links

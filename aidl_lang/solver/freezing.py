@@ -277,7 +277,6 @@ class Choice:
     # -- recipes
 
     def _slot(self, form: Form) -> int:
-        """Returns a slot that has the value of a form."""
         if isinstance(form, float):
             return self._new(NUMBER, (), (), form)
         if len(form.terms) == 1 and form.constant == 0.0:

@@ -107,7 +107,6 @@ class Hierarchy:
 
     @cached_property
     def _depth(self) -> list[int]:
-        """The depth of the group of each unknown."""
         return list(map(int, self._group_depths[self.problem.group]))
 
     @cached_property
@@ -392,7 +391,6 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
 
 
 def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
-    """Returns the status by which of the hard constraints hold."""
     if satisfied.all():
         return Status.SOLVED
     if timed_out or not satisfied.any():

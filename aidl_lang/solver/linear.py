@@ -333,6 +333,5 @@ class _DualActiveSet:
 
 
 def _scaled(factors: Floats) -> Floats:
-    """Returns factors in units of the greatest."""
     scaled: Floats = factors / np.abs(factors).max()
     return scaled

@@ -274,7 +274,6 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
 
 
 def _node_keys(problem: Problem) -> list[int]:
-    """Returns a hash for each node of the tape of everything below it."""
     tape = problem.tape
     keys: list[int] = []
     for op, operands, constant in zip(tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True):

@@ -167,7 +167,6 @@ class ExpressionPrinter:
         return doc(self._argument_block(" else ", block))
 
     def _print(self, node: ast.Expression) -> tuple[int, PrintDocument]:  # noqa: C901 (one case a node)
-        """Returns how tightly a node binds, and its text."""
         match node:
             case ast.Number():
                 return ATOM, doc(node.text + (node.unit or ""))

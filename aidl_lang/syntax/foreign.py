@@ -281,7 +281,6 @@ def inches(t: Trouble) -> SyntaxProblem | None:
 
 
 def _has_no_unit(token: Token) -> bool:
-    """Tells whether a token is a number to which a unit could be added."""
     return token.kind == "NUMBER" and token.text[-1].isdigit()
 
 

@@ -138,7 +138,6 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
 
 
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
-    """Recognises `x between 3 and 5`."""
     end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
     middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
     if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in _VALUE_ENDS:

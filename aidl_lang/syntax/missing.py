@@ -79,7 +79,6 @@ def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
 
 
 def _call_start(tokens: Sequence[Token], close: int) -> int:
-    """Returns the number of the token that opens the bracket closed at `close`."""
     depth = 0
     for n in range(close, -1, -1):
         depth += (tokens[n].kind in _CLOSING) - (tokens[n].kind in _OPENING)

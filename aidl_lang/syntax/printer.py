@@ -60,7 +60,6 @@ class CommentedLines:
         return "".join(line.rstrip() + "\n" for line in out)
 
     def _comments_before(self, offset: int, place: int, indent: int, first: bool) -> tuple[int, bool]:
-        """Prints the comments up to an offset on lines of their own."""
         while (comment := self._peek(offset)) is not None:
             self._blank_line(place, comment.span.start, first)
             first = False
@@ -70,7 +69,6 @@ class CommentedLines:
         return place, first
 
     def _peek(self, before: int) -> ast.Comment | None:
-        """Returns the next comment, if it begins before an offset."""
         if self.next_comment < len(self.comments) and self.comments[self.next_comment].span.start < before:
             return self.comments[self.next_comment]
         return None
@@ -277,7 +275,6 @@ class _Printer(CommentedLines):
         self.lines += [Line(line) for line in (" " * indent + text).split("\n")]
 
     def _block(self, block: ast.Block, indent: int, constraints: bool) -> None:
-        """Prints the inside of the braces."""
         start, end = block.span.start + 1, max(block.span.end - 1, block.span.start + 1)
         # Comments of the head stand before its brace in the text; they move into the block.
         place = self._trailing_comment(start) if self._first_line_comment(start, end) else start
@@ -317,7 +314,6 @@ class _Printer(CommentedLines):
         return "{ " + "; ".join(parts) + " }" if parts else "{}"
 
     def _blocks(self, node: ast.Statement) -> list[ast.Block]:
-        """Returns the blocks of a statement, in order."""
         match node:
             case ast.Structure() | ast.For() | ast.ShapeDefinition() | ast.ConstraintDefinition():
                 return [node.body]
@@ -410,7 +406,6 @@ class _Printer(CommentedLines):
         return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
 
     def _constrain(self, node: ast.Constrain) -> PrintDocument:
-        """Returns `constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
             return doc("constrain ", self._equation(item))

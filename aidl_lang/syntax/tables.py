@@ -76,7 +76,6 @@ def load_tables() -> Tables:
 
 
 def _inputs() -> Iterator[Path]:
-    """Yields the files that the tables depend on."""
     yield Path(__file__)
     yield Path(lark.__file__)
     yield resource("grammar/aidl.lark")

@@ -167,7 +167,6 @@ class _Reader:
 
 
 def _used_as_outlines(body: ast.Block) -> frozenset[str]:
-    """Returns the names in a body of which other outlines are made there."""
     calls = (n for n in ast.walk(body) if isinstance(n, ast.Call) and n.callee.text in OUTLINES)
     return frozenset(n.text for call in calls for n in ast.walk(call) if isinstance(n, ast.Name))
 
