@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -11,6 +12,20 @@ from aidl_lang.syntax.tables import Token
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
 _UNITS = ("turn", "deg", "rad", "mm", "cm", "in", "ft", "m", "°")
+
+
+def makes(kind: type[ast.Node], *first: object) -> Callable[..., Any]:
+    """Returns a method that makes a node of what a rule has, behind some fields that are always the same."""
+    return lambda self, at, *parts: kind(*first, *parts, span=at)
+
+
+def under(word: str) -> Callable[..., tuple[str, Any]]:
+    """Returns a method that hands on what a rule has under a word."""
+    return lambda self, at, value: (word, value)
+
+
+def handed_on(self: ExpressionBuilder, at: Span, value: Any) -> Any:
+    return value
 
 
 class ExpressionBuilder:
@@ -30,179 +45,141 @@ class ExpressionBuilder:
 
     # --- Names and literals ---
 
-    def name(self, start: int, end: int, token: Token) -> ast.Name:
-        return ast.Name(token.text, span=Span(self.source, start, end))
+    def name(self, at: Span, token: Token) -> ast.Name:
+        return ast.Name(token.text, span=at)
 
-    def number(self, start: int, end: int, token: Token) -> ast.Number:
+    def number(self, at: Span, token: Token) -> ast.Number:
         digits, unit = number_parts(token.text)
-        return ast.Number(float(digits), unit, digits, span=Span(self.source, start, end))
+        return ast.Number(float(digits), unit, digits, span=at)
 
-    def string(self, start: int, end: int, token: Token) -> ast.String:
-        return ast.String(string_value(token.text), span=Span(self.source, start, end))
+    def string(self, at: Span, token: Token) -> ast.String:
+        return ast.String(string_value(token.text), span=at)
 
-    def true(self, start: int, end: int) -> ast.Boolean:
-        return ast.Boolean(True, span=Span(self.source, start, end))
+    true, false = makes(ast.Boolean, True), makes(ast.Boolean, False)
+    point = makes(ast.Point)
 
-    def false(self, start: int, end: int) -> ast.Boolean:
-        return ast.Boolean(False, span=Span(self.source, start, end))
-
-    def point(self, start: int, end: int, x: ast.Expression, y: ast.Expression) -> ast.Point:
-        return ast.Point(x, y, span=Span(self.source, start, end))
-
-    def list(self, start: int, end: int, *items: Any) -> ast.List | ast.Comprehension:
+    def list(self, at: Span, *items: Any) -> ast.List | ast.Comprehension:
         if items and isinstance(items[0], _Generator):
-            return items[0].comprehension(self.span(start, end))
-        return ast.List(items, span=Span(self.source, start, end))
+            return items[0].comprehension(at)
+        return ast.List(items, span=at)
 
     # --- Places and calls ---
 
-    def member(self, start: int, end: int, value: ast.Expression, name: Token) -> ast.Member:
-        return ast.Member(value, self.identifier(name), span=Span(self.source, start, end))
+    def member(self, at: Span, value: ast.Expression, name: Token) -> ast.Member:
+        return ast.Member(value, self.identifier(name), span=at)
 
-    def index_of(self, start: int, end: int, value: ast.Expression, *indices: ast.Expression) -> ast.Index:
+    def index_of(self, at: Span, value: ast.Expression, *indices: ast.Expression) -> ast.Index:
         """Builds `a[i, j]` as `a[i][j]`."""
-        span = Span(self.source, start, end)
         for index in indices[:-1]:
-            value = ast.Index(value, index, span=span)
-        return ast.Index(value, indices[-1], span=span)
+            value = ast.Index(value, index, span=at)
+        return ast.Index(value, indices[-1], span=at)
 
-    def call(self, start: int, end: int, callee: Token, arguments: Any = ()) -> ast.Call:
-        return ast.Call(
-            self.identifier(callee), None, arguments_of(arguments), span=Span(self.source, start, end)
-        )
+    def call(self, at: Span, callee: Token, arguments: Any = ()) -> ast.Call:
+        return ast.Call(self.identifier(callee), None, arguments_of(arguments), span=at)
 
-    def method(
-        self, start: int, end: int, receiver: ast.Expression, callee: Token, arguments: Any = ()
-    ) -> ast.Call:
-        return ast.Call(
-            self.identifier(callee), receiver, arguments_of(arguments), span=self.span(start, end)
-        )
+    def method(self, at: Span, receiver: ast.Expression, callee: Token, arguments: Any = ()) -> ast.Call:
+        return ast.Call(self.identifier(callee), receiver, arguments_of(arguments), span=at)
 
-    def arguments(self, start: int, end: int, *items: Any) -> tuple[ast.Argument, ...]:
+    def arguments(self, at: Span, *items: Any) -> tuple[ast.Argument, ...]:
         return tuple(
             item if isinstance(item, ast.Argument) else ast.Argument(None, item, span=item.span)
             for item in items
         )
 
-    def argument(self, start: int, end: int, value: ast.Expression) -> ast.Argument:
-        return ast.Argument(None, value, span=Span(self.source, start, end))
+    argument = makes(ast.Argument, None)
 
-    def named_argument(self, start: int, end: int, name: Token, value: ast.Expression) -> ast.Argument:
-        return ast.Argument(self.identifier(name), value, span=Span(self.source, start, end))
+    def named_argument(self, at: Span, name: Token, value: ast.Expression) -> ast.Argument:
+        return ast.Argument(self.identifier(name), value, span=at)
 
     # --- Blocks of arguments ---
 
-    def argument_block(self, start: int, end: int, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
-        return ast.ArgumentBlock(items, span=self.span(start, end))
+    def argument_block(self, at: Span, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
+        return ast.ArgumentBlock(items, span=at)
 
     def for_arguments(
-        self,
-        start: int,
-        end: int,
-        variables: tuple[ast.Identifier, ...],
-        iterable: ast.Expression,
-        *rest: Any,
+        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
     ) -> ast.ForArguments:
         """Builds `for x in a, y in b { … }` as one loop in another."""
-        span, body = self.span(start, end), rest[-1]
+        body = rest[-1]
         if len(rest) > 1:
-            body = ast.ArgumentBlock((self.for_arguments(start, end, *rest),), span=body.span)
-        return ast.ForArguments(variables, iterable, body, span=span)
+            body = ast.ArgumentBlock((self.for_arguments(at, *rest),), span=body.span)
+        return ast.ForArguments(variables, iterable, body, span=at)
 
     def if_arguments(
         self,
-        start: int,
-        end: int,
+        at: Span,
         test: ast.Expression,
         then: ast.ArgumentBlock,
         other: ast.ArgumentBlock | ast.IfArguments | None = None,
     ) -> ast.IfArguments:
         if isinstance(other, ast.IfArguments):
             other = ast.ArgumentBlock((other,), span=other.span)
-        return ast.IfArguments(test, then, other, span=self.span(start, end))
+        return ast.IfArguments(test, then, other, span=at)
 
     # --- Operators ---
 
-    def comparison_operator(self, start: int, end: int, token: Token) -> str:
+    def comparison_operator(self, at: Span, token: Token) -> str:
         return token.text
 
     add_operator = multiply_operator = comparison_operator
 
-    def binary(
-        self, start: int, end: int, left: ast.Expression, operator: str, right: ast.Expression
-    ) -> ast.Binary:
-        return ast.Binary(operator, left, right, span=Span(self.source, start, end))
+    def binary(self, at: Span, left: ast.Expression, operator: str, right: ast.Expression) -> ast.Binary:
+        return ast.Binary(operator, left, right, span=at)
 
-    def power(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
-        return ast.Binary("^", left, right, span=Span(self.source, start, end))
+    power = makes(ast.Binary, "^")
+    conjunction = makes(ast.Binary, "and")
+    disjunction = makes(ast.Binary, "or")
+    sign = makes(ast.Unary)
+    negated = makes(ast.Unary, "not")
 
-    def conjunction(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
-        return ast.Binary("and", left, right, span=Span(self.source, start, end))
+    def comparison(self, at: Span, *parts: Any) -> ast.Comparison:
+        return ast.Comparison(parts[::2], parts[1::2], span=at)
 
-    def disjunction(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
-        return ast.Binary("or", left, right, span=Span(self.source, start, end))
+    membership = makes(ast.Membership)
 
-    def sign(self, start: int, end: int, operator: str, operand: ast.Expression) -> ast.Unary:
-        return ast.Unary(operator, operand, span=Span(self.source, start, end))
-
-    def negated(self, start: int, end: int, operand: ast.Expression) -> ast.Unary:
-        return ast.Unary("not", operand, span=Span(self.source, start, end))
-
-    def comparison(self, start: int, end: int, *parts: Any) -> ast.Comparison:
-        return ast.Comparison(parts[::2], parts[1::2], span=Span(self.source, start, end))
-
-    def membership(
-        self, start: int, end: int, value: ast.Expression, container: ast.Expression
-    ) -> ast.Membership:
-        return ast.Membership(value, container, span=Span(self.source, start, end))
-
-    def not_membership(
-        self, start: int, end: int, value: ast.Expression, container: ast.Expression
-    ) -> ast.Unary:
-        return self.negated(start, end, self.membership(start, end, value, container))
+    def not_membership(self, at: Span, value: ast.Expression, container: ast.Expression) -> Any:
+        return self.negated(at, self.membership(at, value, container))
 
     def range(
         self,
-        start: int,
-        end: int,
+        at: Span,
         first: ast.Expression,
         last: ast.Expression,
         step: ast.Expression | None = None,
         *,
         exclusive: bool = False,
     ) -> ast.Range:
-        return ast.Range(first, last, exclusive, step, span=Span(self.source, start, end))
+        return ast.Range(first, last, exclusive, step, span=at)
 
-    def exclusive_range(self, start: int, end: int, *parts: ast.Expression) -> ast.Range:
-        return self.range(start, end, *parts, exclusive=True)
+    def exclusive_range(self, at: Span, *parts: ast.Expression) -> ast.Range:
+        return self.range(at, *parts, exclusive=True)
 
     # --- Comprehensions ---
 
-    def variables(self, start: int, end: int, *names: Token) -> tuple[ast.Identifier, ...]:
+    def variables(self, at: Span, *names: Token) -> tuple[ast.Identifier, ...]:
         return tuple(map(self.identifier, names))
 
-    def filter(self, start: int, end: int, test: ast.Expression) -> ast.Expression:
-        return test
+    filter = default = handed_on
 
-    def generator_clause(self, start: int, end: int, *parts: Any) -> tuple[int, tuple[Any, ...]]:
-        return start, parts
+    def generator_clause(self, at: Span, *parts: Any) -> tuple[int, tuple[Any, ...]]:
+        return at.start, parts
 
     def generator(
-        self, start: int, end: int, element: ast.Expression, *clauses: tuple[int, tuple[Any, ...]]
+        self, at: Span, element: ast.Expression, *clauses: tuple[int, tuple[Any, ...]]
     ) -> _Generator:
         """Builds `a for i in b for j in c` as the list for `i` of the members of the lists for `j`."""
         loops = []
-        for at, (*both, last) in clauses:
+        for begin, (*both, last) in clauses:
             condition = last if len(both) % 2 == 0 else None
             names = both if condition is not None else [*both, last]
             for k in range(0, len(names), 2):
                 is_last = k + 2 == len(names)
-                loops.append((at, names[k], names[k + 1], condition if is_last else None))
-        for at, variables, iterable, condition in reversed(loops[1:]):
-            span = self.span(at, end)
+                loops.append((begin, names[k], names[k + 1], condition if is_last else None))
+        for begin, variables, iterable, condition in reversed(loops[1:]):
+            span = self.span(begin, at.end)
             element = ast.Comprehension(element, variables, iterable, condition, True, span=span)
         _, variables, iterable, condition = loops[0]
-        return _Generator(element, variables, iterable, condition, self.span(start, end))
+        return _Generator(element, variables, iterable, condition, at)
 
 
 class _Generator:

@@ -17,7 +17,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold, is_slip, nearest
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
+from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of, makes, under
 from aidl_lang.syntax.tables import FOREIGN_WORDS, KIND_OF_WORD, KINDS, Token, kind_of
 
 
@@ -36,29 +36,28 @@ class Builder(ExpressionBuilder):
 
     # --- Files and blocks ---
 
-    def block(self, start: int, end: int, *statements: ast.Statement) -> ast.Block:
-        return ast.Block(statements, span=self.span(start, end))
+    def block(self, at: Span, *statements: ast.Statement) -> ast.Block:
+        return ast.Block(statements, span=at)
 
-    def module(self, start: int, end: int, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
+    def module(self, at: Span, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
         return statements
 
     # --- Structures and geometry ---
 
-    def structure(self, start: int, end: int, *parts: Any) -> ast.Structure:
+    def structure(self, at: Span, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
         kind, name = rest[0], rest[1]
         indices = tuple(i for p in rest if isinstance(p, tuple) and p[0] == "index" for i in p[1])
-        return self._structure(start, end, attributes, kind, name, indices, None, rest)
+        return self._structure(at, attributes, kind, name, indices, None, rest)
 
-    def template(self, start: int, end: int, *parts: Any) -> ast.Structure:
+    def template(self, at: Span, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
         parameters = next((p for p in rest if isinstance(p, tuple)), ())
-        return self._structure(start, end, attributes, rest[0], rest[1], (), parameters, rest)
+        return self._structure(at, attributes, rest[0], rest[1], (), parameters, rest)
 
     def _structure(
         self,
-        start: int,
-        end: int,
+        at: Span,
         attributes: tuple[ast.Attribute, ...],
         kind: Token,
         name: Token,
@@ -77,8 +76,8 @@ class Builder(ExpressionBuilder):
             placement,
             attributes,
             rest[-1],
-            self.docs.get(start),
-            span=self.span(start, end),
+            self.docs.get(at.start),
+            span=at,
         )
 
     def _unknown_kind(self, word: ast.Identifier) -> str:
@@ -108,51 +107,45 @@ class Builder(ExpressionBuilder):
         )
         return guess
 
-    def attribute(self, start: int, end: int, name: Token, arguments: Any = ()) -> ast.Attribute:
-        return ast.Attribute(self.identifier(name), arguments_of(arguments), span=self.span(start, end))
+    def attribute(self, at: Span, name: Token, arguments: Any = ()) -> ast.Attribute:
+        return ast.Attribute(self.identifier(name), arguments_of(arguments), span=at)
 
-    def allowed(self, start: int, end: int, *parts: Any) -> Any:
+    def allowed(self, at: Span, *parts: Any) -> Any:
         """Returns the statements behind `@allow`, which is said of the first of them."""
         attributes, (first, *others) = _split(parts)
         for attribute in attributes:
             if fold(attribute.name.text) != ast.ALLOW:
                 word = self.source.text[first.span.start : first.span.end].split(None, 1)[0]
                 self.diagnostics.append(out_of_place(attribute.span, f"`{word}`"))
-        doc = {"doc": self.docs.get(start)} if hasattr(first, "doc") else {}
-        span = self.span(start, first.span.end)
+        doc = {"doc": self.docs.get(at.start)} if hasattr(first, "doc") else {}
+        span = self.span(at.start, first.span.end)
         return [replace(first, allowing=(*attributes, *first.allowing), span=span, **doc), *others]
 
-    def at(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "at", value
+    at = under("at")
+    rotated = under("rotated")
 
-    def rotated(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "rotated", value
-
-    def placement(self, start: int, end: int, *parts: tuple[str, ast.Expression]) -> ast.Placement:
+    def placement(self, at: Span, *parts: tuple[str, ast.Expression]) -> ast.Placement:
         by_word = dict(parts)
-        return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=self.span(start, end))
+        return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=at)
 
-    def index(self, start: int, end: int, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
+    def index(self, at: Span, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
         return "index", values
 
-    def parameters(self, start: int, end: int, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
+    def parameters(self, at: Span, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
         return items
 
-    def parameter(self, start: int, end: int, name: Token, *parts: Any) -> ast.Parameter:
+    def parameter(self, at: Span, name: Token, *parts: Any) -> ast.Parameter:
         kind = next((p for p in parts if isinstance(p, ast.Identifier)), None)
         default = parts[-1] if parts and not isinstance(parts[-1], ast.Identifier) else None
-        return ast.Parameter(self.identifier(name), kind, default, span=self.span(start, end))
+        return ast.Parameter(self.identifier(name), kind, default, span=at)
 
-    def parameter_type(self, start: int, end: int, name: Token) -> ast.Identifier:
+    def parameter_type(self, at: Span, name: Token) -> ast.Identifier:
         return self.identifier(name)
 
-    def default(self, start: int, end: int, value: ast.Expression) -> ast.Expression:
-        return value
-
-    def construction(self, start: int, end: int) -> bool:
+    def construction(self, at: Span) -> bool:
         return True
 
-    def assign(self, start: int, end: int, *parts: Any) -> Any:
+    def assign(self, at: Span, *parts: Any) -> Any:
         attributes, rest = _split(parts)
         construction = rest[0] is True
         target, value = rest[1:3] if construction else rest[:2]
@@ -162,95 +155,85 @@ class Builder(ExpressionBuilder):
             indices.insert(0, target.index)
             target = target.value
         name = ast.Identifier(target.text, span=target.span)
-        doc = self.docs.get(start)
+        doc = self.docs.get(at.start)
 
         def make(value: ast.Expression, span: Span) -> ast.Assign:
             return ast.Assign(
                 name, tuple(indices), value, placement, construction, attributes, doc, span=span
             )
 
-        return self._ending_in(start, end, value, make)
+        return self._ending_in(at, value, make)
 
     def _ending_in(
-        self, start: int, end: int, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
+        self, at: Span, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
     ) -> ast.Statement | list[Any]:
         """Builds the statement that ends in `value`, and the `if` after it if there is one."""
         if isinstance(value, ThenIf):
-            return [make(value.value, self.span(start, value.value.span.end)), value.following]
-        return make(value, self.span(start, end))
+            return [make(value.value, self.span(at.start, value.value.span.end)), value.following]
+        return make(value, at)
 
     # --- Values ---
 
-    def param(self, start: int, end: int, name: Token, value: ast.Expression, *parts: Any) -> ast.Param:
+    def param(self, at: Span, name: Token, value: ast.Expression, *parts: Any) -> ast.Param:
         by_word = dict(parts)
         return ast.Param(
             self.identifier(name),
             value,
             by_word.get("in"),
             by_word.get("step"),
-            self.docs.get(start),
-            span=self.span(start, end),
+            self.docs.get(at.start),
+            span=at,
         )
 
-    def domain(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "in", value
+    domain = under("in")
+    step = under("step")
 
-    def step(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "step", value
+    def var(self, at: Span, name: Token, value: Any) -> Any:
+        doc = self.docs.get(at.start)
+        return self._ending_in(at, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span))
 
-    def var(self, start: int, end: int, name: Token, value: Any) -> Any:
-        doc = self.docs.get(start)
-        return self._ending_in(
-            start, end, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span)
-        )
+    def let(self, at: Span, name: Token, value: Any) -> Any:
+        doc = self.docs.get(at.start)
+        return self._ending_in(at, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span))
 
-    def let(self, start: int, end: int, name: Token, value: Any) -> Any:
-        doc = self.docs.get(start)
-        return self._ending_in(
-            start, end, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span)
-        )
-
-    def function(self, start: int, end: int, name: Token, *parts: Any) -> Any:
-        doc, parameters = self.docs.get(start), parts[0] if len(parts) > 1 else ()
+    def function(self, at: Span, name: Token, *parts: Any) -> Any:
+        doc, parameters = self.docs.get(at.start), parts[0] if len(parts) > 1 else ()
 
         def make(value: ast.Expression, span: Span) -> ast.FunctionDefinition:
             return ast.FunctionDefinition(self.identifier(name), parameters, value, doc, span=span)
 
-        return self._ending_in(start, end, parts[-1], make)
+        return self._ending_in(at, parts[-1], make)
 
-    def alias(self, start: int, end: int, name: Token, target: Token) -> ast.Alias:
-        return ast.Alias(
-            self.identifier(name), self.identifier(target), self.docs.get(start), span=self.span(start, end)
-        )
+    def alias(self, at: Span, name: Token, target: Token) -> ast.Alias:
+        return ast.Alias(self.identifier(name), self.identifier(target), self.docs.get(at.start), span=at)
 
-    def shape(self, start: int, end: int, name: Token, *parts: Any) -> ast.ShapeDefinition:
+    def shape(self, at: Span, name: Token, *parts: Any) -> ast.ShapeDefinition:
         parameters = parts[0] if len(parts) > 1 else ()
         return ast.ShapeDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
+            self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at
         )
 
-    def import_(self, start: int, end: int, path: Token) -> ast.Import:
-        return ast.Import(self.string(path.start, path.end, path), None, (), span=self.span(start, end))
+    def import_(self, at: Span, path: Token) -> ast.Import:
+        return ast.Import(self.string(self.span(path.start, path.end), path), None, (), span=at)
 
-    def import_as(self, start: int, end: int, path: Token, name: Token) -> ast.Import:
-        text = self.string(path.start, path.end, path)
-        return ast.Import(text, self.identifier(name), (), span=self.span(start, end))
+    def import_as(self, at: Span, path: Token, name: Token) -> ast.Import:
+        text = self.string(self.span(path.start, path.end), path)
+        return ast.Import(text, self.identifier(name), (), span=at)
 
-    def import_names(self, start: int, end: int, *parts: Token) -> ast.Import:
+    def import_names(self, at: Span, *parts: Token) -> ast.Import:
         *names, path = parts
-        text = self.string(path.start, path.end, path)
-        return ast.Import(text, None, tuple(map(self.identifier, names)), span=self.span(start, end))
+        text = self.string(self.span(path.start, path.end), path)
+        return ast.Import(text, None, tuple(map(self.identifier, names)), span=at)
 
-    def todo(self, start: int, end: int) -> ast.Todo:
-        return ast.Todo(span=self.span(start, end))
+    todo = makes(ast.Todo)
 
     # --- Constraints ---
 
-    def constrain(self, start: int, end: int, value: Any) -> Any:
+    def constrain(self, at: Span, value: Any) -> Any:
         if isinstance(value, ast.For | ast.If):
             value = ast.Block((value,), span=value.span)
         if isinstance(value, ast.Block):
-            return ast.Constrain(value, True, span=self.span(start, end))
+            return ast.Constrain(value, True, span=at)
 
         def make(item: Any, span: Span) -> ast.Constrain:
             statement = (
@@ -258,76 +241,59 @@ class Builder(ExpressionBuilder):
             )
             return ast.Constrain(ast.Block((statement,), span=item.span), False, span=span)
 
-        return self._ending_in(start, end, value, make)
+        return self._ending_in(at, value, make)
 
-    def constraint(self, start: int, end: int, name: Token, *parts: Any) -> ast.ConstraintDefinition:
+    def constraint(self, at: Span, name: Token, *parts: Any) -> ast.ConstraintDefinition:
         parameters = parts[0] if len(parts) > 1 else ()
         return ast.ConstraintDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
+            self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at
         )
 
-    def item_constrain(self, start: int, end: int, value: Any) -> Any:
+    def item_constrain(self, at: Span, value: Any) -> Any:
         """Returns the items of a `constrain` inside `constrain`, which adds nothing."""
-        made = self.constrain(start, end, value)
+        made = self.constrain(at, value)
         statements: list[ast.Statement] = []
         for statement in made if isinstance(made, list) else [made]:
             statements += statement.items.statements if isinstance(statement, ast.Constrain) else [statement]
         return statements
 
-    def equation(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Equation:
-        return ast.Equation(left, right, span=self.span(start, end))
+    equation = makes(ast.Equation)
 
     def prefer(
-        self, start: int, end: int, value: ast.Expression, weight: tuple[str, ast.Expression] | None = None
+        self, at: Span, value: ast.Expression, weight: tuple[str, ast.Expression] | None = None
     ) -> ast.Prefer:
-        return ast.Prefer(value, weight[1] if weight else None, span=self.span(start, end))
+        return ast.Prefer(value, weight[1] if weight else None, span=at)
 
-    def weight(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "weight", value
+    weight = under("weight")
 
-    def assert_(
-        self, start: int, end: int, test: ast.Expression, message: ast.Expression | None = None
-    ) -> ast.Assert:
+    def assert_(self, at: Span, test: ast.Expression, message: ast.Expression | None = None) -> ast.Assert:
         if message is None and isinstance(test, ast.Point):  # `assert(a.width > 3, "too narrow")`
-            return ast.Assert(test.x, test.y, span=self.span(start, end))
-        return ast.Assert(test, message, span=self.span(start, end))
+            return ast.Assert(test.x, test.y, span=at)
+        return ast.Assert(test, message, span=at)
 
-    def expression_statement(self, start: int, end: int, value: ast.Expression) -> ast.ExpressionStatement:
-        return ast.ExpressionStatement(value, span=self.span(start, end))
+    expression_statement = makes(ast.ExpressionStatement)
 
     # --- Control ---
 
     def for_(
-        self,
-        start: int,
-        end: int,
-        variables: tuple[ast.Identifier, ...],
-        iterable: ast.Expression,
-        *rest: Any,
+        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
     ) -> ast.For:
         """Builds `for x in a, y in b { … }` as one loop in another."""
-        span, body = self.span(start, end), rest[-1]
+        body = rest[-1]
         if len(rest) > 1:
-            inner = self.for_(start, end, *rest)
-            body = ast.Block((inner,), span=body.span)
-        return ast.For(variables, iterable, body, span=span)
+            body = ast.Block((self.for_(at, *rest),), span=body.span)
+        return ast.For(variables, iterable, body, span=at)
 
     def if_(
-        self,
-        start: int,
-        end: int,
-        test: ast.Expression,
-        then: ast.Block,
-        other: ast.Block | ast.If | None = None,
+        self, at: Span, test: ast.Expression, then: ast.Block, other: ast.Block | ast.If | None = None
     ) -> ast.If:
         if isinstance(other, ast.If):
             other = ast.Block((other,), span=other.span)
-        return ast.If(test, then, other, span=self.span(start, end))
+        return ast.If(test, then, other, span=at)
 
     def interrupted(
         self,
-        start: int,
-        end: int,
+        at: Span,
         value: ast.Expression,
         word: Token,
         test: ast.Expression,
@@ -335,12 +301,11 @@ class Builder(ExpressionBuilder):
         otherwise: ast.Block | ast.If | None = None,
     ) -> ThenIf:
         """Builds an expression, and the `if` statement that begins with `word`."""
-        return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
+        return ThenIf(value, self.if_(self.span(word.start, at.end), test, then, otherwise))
 
     def interrupted_argument(
         self,
-        start: int,
-        end: int,
+        at: Span,
         value: ast.Expression,
         word: Token,
         test: ast.Expression,
@@ -348,20 +313,17 @@ class Builder(ExpressionBuilder):
         otherwise: ast.ArgumentBlock | ast.IfArguments | None = None,
     ) -> ThenIf:
         """Builds an argument, and the block that begins with `word`."""
-        return ThenIf(value, self.if_arguments(word.start, end, test, then, otherwise))
+        return ThenIf(value, self.if_arguments(self.span(word.start, at.end), test, then, otherwise))
 
-    def conditional(
-        self, start: int, end: int, test: ast.Expression, then: ast.Expression, otherwise: Any
-    ) -> Any:
+    def conditional(self, at: Span, test: ast.Expression, then: ast.Expression, otherwise: Any) -> Any:
         if isinstance(otherwise, ThenIf):
-            value = self.conditional(start, otherwise.value.span.end, test, then, otherwise.value)
+            shorter = self.span(at.start, otherwise.value.span.end)
+            value = self.conditional(shorter, test, then, otherwise.value)
             return ThenIf(value, otherwise.following)
-        return ast.Conditional(test, then, otherwise, span=self.span(start, end))
+        return ast.Conditional(test, then, otherwise, span=at)
 
-    def conditional_after(
-        self, start: int, end: int, then: ast.Expression, test: ast.Expression, other: Any
-    ) -> Any:
-        return self.conditional(start, end, test, then, other)
+    def conditional_after(self, at: Span, then: ast.Expression, test: ast.Expression, other: Any) -> Any:
+        return self.conditional(at, test, then, other)
 
 
 def out_of_place(attribute: Span, before: str) -> Diagnostic:
@@ -390,7 +352,7 @@ class Nodes(Transformer_NonRecursive[Token, Any]):
                 symbols += part
             else:
                 symbols.append(part)
-        return method(meta.begin, meta.until, *symbols)
+        return method(self.builder.span(meta.begin, meta.until), *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
