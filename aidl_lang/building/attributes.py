@@ -415,15 +415,12 @@ def _depth(values: list[Value]) -> str:
     return "" if length[0] > 0 and all(0 < angle < 180 for angle in taper) else wanted
 
 
-def _elevation(values: list[Value]) -> str:
-    is_one = _one(values, units.LENGTH) is not None
-    return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+def _one_number(dimension: units.Dimension, fits: Callable[[float], bool], wanted: str) -> Callable[..., str]:
+    def rule(values: list[Value]) -> str:
+        found = _one(values, dimension)
+        return "" if found is not None and fits(found) else wanted
 
-
-def _quantity(values: list[Value]) -> str:
-    count = _one(values, units.PLAIN)
-    is_one = count is not None and count == int(count) and 1 <= count <= MOST
-    return "" if is_one else f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`"
+    return rule
 
 
 def _stroke(values: list[Value]) -> str:
@@ -445,18 +442,6 @@ def _dash(values: list[Value]) -> str:
         return f"lengths of {THINNEST:g} to {WIDEST:g} mm, of a dash and of a gap, as in `@dash(3, 1.5)`"
     is_paired = len(lengths) == 1 or len(lengths) % 2 == 0
     return "" if is_paired else "a gap for each dash, as in `@dash(6, 1.5, 1, 1.5)`"
-
-
-def _halo(values: list[Value]) -> str:
-    width = _one(values, units.LENGTH)
-    is_one = width is not None and 0 <= width <= WIDEST
-    return "" if is_one else f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
-
-
-def _opacity(values: list[Value]) -> str:
-    share = _one(values, units.PLAIN)
-    is_one = share is not None and 0 < share <= 1
-    return "" if is_one else "a share above 0, and up to 1, as in `@opacity(0.5)`"
 
 
 def _shade(values: list[Value]) -> str:
@@ -496,8 +481,14 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "orientation": _worded(ORIENTATIONS, "one of `top`, `front` and `side`, as in `@orientation(front)`"),
     "thickness": _thickness,
     "depth": _depth,
-    "elevation": _elevation,
-    "quantity": _quantity,
+    "elevation": _one_number(
+        units.LENGTH, lambda _: True, "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+    ),
+    "quantity": _one_number(
+        units.PLAIN,
+        lambda n: n == int(n) and 1 <= n <= MOST,
+        f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`",
+    ),
     "layer": _text("layer"),
     "material": _text("material"),
     **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
@@ -506,9 +497,13 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "rigid": _yes_or_no,
     "stroke": _stroke,
     "dash": _dash,
-    "opacity": _opacity,
+    "opacity": _one_number(
+        units.PLAIN, lambda n: 0 < n <= 1, "a share above 0, and up to 1, as in `@opacity(0.5)`"
+    ),
     "shade": _shade,
     "edges": _worded(EDGES, "`seams` or `outline`, as in `@edges(seams)`"),
-    "halo": _halo,
+    "halo": _one_number(
+        units.LENGTH, lambda n: 0 <= n <= WIDEST, f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
+    ),
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

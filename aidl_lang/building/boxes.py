@@ -21,20 +21,9 @@ from aidl_lang.common.records import record
 SIDES = ("left", "right", "top", "bottom")
 
 FIELDS = (
-    *SIDES,
-    "width",
-    "height",
-    "center",
-    "center_x",
-    "center_y",
-    "top_left",
-    "top_right",
-    "bottom_left",
-    "bottom_right",
-    "top_center",
-    "bottom_center",
-    "left_center",
-    "right_center",
+    *(*SIDES, "width", "height", "center", "center_x", "center_y"),
+    *("top_left", "top_right", "bottom_left", "bottom_right"),
+    *("top_center", "bottom_center", "left_center", "right_center"),
 )
 
 Source = Geometry | Structure | PointVal
@@ -264,12 +253,7 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
 
 def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
     """Tells whether a geometry is drawn in the box of a structure."""
-    at: object = g
-    while isinstance(at, Geometry):
-        if at.construction:
-            return False
-        at = at.container
-    here: Structure | None = g.owner
+    here = None if g.is_guide else g.owner
     while here is not None and here is not whole and here.kind != "hole" and here not in ignored:
         here = here.parent
     return here is whole

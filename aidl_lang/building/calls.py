@@ -241,7 +241,11 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    _hoist_lets(scope, block)
+    scope.values |= {
+        s.name.text: LetBinding(s.value, scope)
+        for s in block.statements
+        if isinstance(s, ast.Let | ast.Assign)
+    }
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -277,12 +281,6 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         message = f"`{node.span.one_line}` says nothing: it relates two things or more"
         hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
         it.report("E0343", message, node, hints=[hint])
-
-
-def _hoist_lets(scope: Scope, block: ast.Block) -> None:
-    for statement in block.statements:
-        if isinstance(statement, ast.Let | ast.Assign):
-            scope.values[statement.name.text] = LetBinding(statement.value, scope)
 
 
 def _shape(
@@ -392,18 +390,15 @@ def _bind_inside(
             return ListVal(tuple(inner))
         case RecordVal(fields):
             return RecordVal(
-                {k: _bind_field(it, v, f"{name}.{k}", moved, geometry) for k, v in fields.items()}
+                {
+                    k: _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                    if isinstance(v, Num)
+                    else _bind_inside(it, v, f"{name}.{k}", moved, geometry)
+                    for k, v in fields.items()
+                }
             )
         case _:
             return value
-
-
-def _bind_field(
-    it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
-) -> Value:
-    if isinstance(value, Num):
-        return _bind_number(it, value, ANY, "", name, {}, geometry)
-    return _bind_inside(it, value, name, moved, geometry)
 
 
 # --- Bodies: the declarations that hold in the whole of one, and its statements one by one.

@@ -502,14 +502,7 @@ def _is_seen(g: Geometry, here: Structure) -> bool:
     """Tells whether a copy would lie on something that is drawn. A guide is not, and a part of an imported
     drawing is taken to another structure to be what that one is.
     """
-    if g.trace is not None and g.owner is not here:
-        return False
-    holder: Geometry | Structure | None = g
-    while isinstance(holder, Geometry):
-        if holder.construction:
-            return False
-        holder = holder.container
-    return True
+    return not (g.trace is not None and g.owner is not here) and not g.is_guide
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -35,7 +35,7 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import EDITS
-from aidl_lang.checking.types import Binding, GivenArgument, PointType
+from aidl_lang.checking.types import Binding, PointType, given_to
 from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
@@ -194,9 +194,7 @@ def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: St
     values = [thing if n is target else evaluate(it, n, env) for n in nodes]
     if any(isinstance(v, Nothing) for v in values):
         return None
-    names: list[str | None] = [None] * (len(nodes) - len(node.arguments))
-    names += [a.name.text if a.name else None for a in node.arguments]
-    given = [GivenArgument(name, type_of(v)) for name, v in zip(names, values, strict=True)]
+    given = given_to(node, [type_of(v) for v in values])
     candidates = edit.scope.candidates(it.spelled(node.callee))
     chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
@@ -449,7 +447,9 @@ class _Editing:
     def _by_arguments(self, motion: Motion) -> Geometry | None:
         """Returns the same call's result with its arguments moved; None if that does not move the shape."""
         it = self.it
-        calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
+        value = self.node.value
+        branches = (value.then, value.otherwise) if isinstance(value, ast.Conditional) else (value,)
+        calls = [branch for branch in branches if isinstance(branch, ast.Call)]
         before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)
         it.edits |= dict.fromkeys(calls, lambda binding, given: self._moved(binding, given, motion))
         try:
@@ -457,7 +457,7 @@ class _Editing:
         finally:
             it.edits = before
         meant = Copier(it, self.env.here, motion).geometry(self.first)
-        if isinstance(made, Geometry) and self.refers is None and _are_alike(made, meant, self.env):
+        if isinstance(made, Geometry) and self.refers is None and _are_alike(made, meant):
             return made
         del it.diagnostics[said:]
         del it.hidden[hidden:]
@@ -493,10 +493,6 @@ class _Editing:
         self.refers = self.refers or referred(value)
 
 
-def _branches(node: ast.Expression) -> tuple[ast.Expression, ...]:
-    return (node.then, node.otherwise) if isinstance(node, ast.Conditional) else ()
-
-
 def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
     """Yields the omitted positions and directions of a call with their defaults."""
     definition = binding.signature.node
@@ -519,7 +515,7 @@ def _at(x: float, y: float) -> PointVal:
     return PointVal(number(x, LENGTH), number(y, LENGTH))
 
 
-def _are_alike(a: Geometry, b: Geometry, env: Env) -> bool:
+def _are_alike(a: Geometry, b: Geometry) -> bool:
     """Tells whether two geometries draw the same curves as written."""
     one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
     return len(one) == len(other) and all(map(_is_same, one, other))

@@ -144,6 +144,11 @@ class Geometry:
         return self.name is None and (self.known_as is None or self.known_as.is_nameless)
 
     @property
+    def is_guide(self) -> bool:
+        """True if it, or what it is a part of, is construction geometry."""
+        return self.construction or (isinstance(self.container, Geometry) and self.container.is_guide)
+
+    @property
     def path(self) -> str:
         if self.name is None and self.known_as is not None:
             return self.known_as.path

@@ -71,8 +71,12 @@ def _outline(kind: str, *words: str) -> Function:
         if kind == "tiled":
             operands.append(_lattice(it, a, node, env))
         said = {name: _word(it, name, a.get(name), node) for name in words}
-        if None in said.values() or (len(operands) < 2 and kind in ("union", "intersect", "difference")):
-            return _too_few(it, kind, node) if None not in said.values() else NOTHING
+        if None in said.values():
+            return NOTHING
+        if len(operands) < 2 and kind in ("union", "intersect", "difference"):
+            word = node.callee.text
+            it.report("E0337", f"`{word}` takes two outlines or more", node, hints=[f"as in `{word}(a, b)`"])
+            return NOTHING
         if _negative(it, a, node):
             return NOTHING
         it.count_entity(node)
@@ -127,12 +131,6 @@ def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[G
 def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:
     reach = reach_of(owners_of(p, env.here), env.here)
     return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
-
-
-def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
-    name = node.callee.text
-    it.report("E0337", f"`{name}` takes two outlines or more", node, hints=[f"as in `{name}(a, b)`"])
-    return NOTHING
 
 
 def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> str | None:

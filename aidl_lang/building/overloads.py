@@ -176,7 +176,8 @@ class CallSite:
         self.signatures = signatures
         self.nodes = tuple(a.value for a in node.arguments)
         words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
-        self.doubtful = [i for i in words if _is_declared(names.get(self.nodes[i]))]
+        known = {i: names.get(self.nodes[i]) for i in words}
+        self.doubtful = [i for i, s in known.items() if s is not None and s.kind is not SymbolKind.WORD]
         self.written = tuple(
             (n, TextVal(n.span.text) if i in words and i not in self.doubtful else None)
             for i, n in enumerate(self.nodes)
@@ -221,10 +222,6 @@ class CallSite:
             if isinstance(other := self.meaning(worded), Binding):
                 return other, worded
         return chosen, values
-
-
-def _is_declared(symbol: Symbol | None) -> bool:
-    return symbol is not None and symbol.kind is not SymbolKind.WORD
 
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> CallSite:

@@ -325,7 +325,9 @@ def run_module(it: Interpreter) -> Structure:
     if len(roots) == 1 and not loose:
         it.root = root = Structure("assembly", "", None, None)
         hoist_values(scope, statements, root)
-        _register_params(it, scope)
+        for binding in list(scope.values.values()):
+            if isinstance(binding, ParamBinding):
+                read_param(it, binding, binding.node)
         root = build_structure(it, roots[0], scope, None, ())
     else:
         name = re.sub(r"\W+", "_", PurePath(module.source.name).stem).strip("_") or "model"
@@ -342,12 +344,6 @@ def run_module(it: Interpreter) -> Structure:
     for constraint in hidden_constraints(it):
         it.add_constraint(constraint)
     return root
-
-
-def _register_params(it: Interpreter, scope: Scope) -> None:
-    for binding in list(scope.values.values()):
-        if isinstance(binding, ParamBinding):
-            read_param(it, binding, binding.node)
 
 
 def _file_scope(

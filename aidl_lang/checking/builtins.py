@@ -79,23 +79,10 @@ PATTERN: Mapping[str, Mapping[str, Type]] = {
 """Fields of a pattern, beside its members."""
 
 OUTLINE = frozenset(
-    [
-        "corner",
-        "corners",
-        "segment",
-        "segments",
-        "edge",
-        "edges",
-        "point",
-        "points",
-        "fillet",
-        "chamfer",
-        "outline",
-        "parts",
-        "source",
-        "member",
-        "members",
-    ]
+    (
+        *("corner", "corners", "segment", "segments", "edge", "edges", "point", "points", "fillet"),
+        *("chamfer", "outline", "parts", "source", "member", "members"),
+    )
 )
 """Names that operations give to shapes beside those of their definitions; only the builder knows which."""
 
@@ -278,21 +265,10 @@ FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
 CONNECTING = frozenset(
-    {
-        "ram",
-        "link",
-        "hinge",
-        "bracket",
-        "strip",
-        "coil",
-        "spring",
-        "chain",
-        "cord",
-        "wire",
-        "hose",
-        "hose_way",
-        "ray_lines",
-    }
+    (
+        *("ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire"),
+        *("hose", "hose_way", "ray_lines"),
+    )
 )
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 

@@ -18,7 +18,6 @@ from aidl_lang.checking.types import (
     AnyType,
     Binding,
     GeometryType,
-    GivenArgument,
     ListType,
     Mismatch,
     NumberType,
@@ -28,6 +27,7 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
     Type,
+    given_to,
 )
 from aidl_lang.checking.units import ANGLE, PLAIN
 from aidl_lang.common.diagnostics import Edit, Fix, has_errors
@@ -202,9 +202,7 @@ def _not_degrees(
 
 
 def _called(check: Inference, node: ast.Expression) -> str | None:
-    if not isinstance(node, ast.Call):
-        return None
-    return check.resolution.canonical.get(node.callee, node.callee.text)
+    return check.called(node) if isinstance(node, ast.Call) else None
 
 
 def _is_module(check: Inference, node: ast.Call) -> bool:
@@ -278,7 +276,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
     candidates = check.resolution.candidates.get(node)
     if candidates is None:
         return Fact(reads=reads)
-    given = _given(node, nodes, facts)
+    given = given_to(node, [_may_be(f.type, n) for f, n in zip(facts, nodes, strict=True)])
     found = outcomes(candidates, given)
     fits = [o for o in found if isinstance(o, Binding)]
     if not fits and (words := _words(check, node, candidates)):
@@ -344,24 +342,15 @@ def _spell(
             check.resolution.canonical[argument.name] = meant
 
 
-def _given(node: ast.Call, nodes: Sequence[ast.Expression], facts: Sequence[Fact]) -> list[GivenArgument]:
-    names = [None] * (len(nodes) - len(node.arguments)) + [
-        a.name.text if a.name else None for a in node.arguments
-    ]
-    return [
-        GivenArgument(name, _may_be(fact.type, n)) for name, fact, n in zip(names, facts, nodes, strict=True)
-    ]
-
-
 def _may_be(kind: Type, node: ast.Expression) -> Type:
     """Returns the type of a number as whole if only its value can tell whether it is."""
     if (
-        isinstance(kind, NumberType)
-        and kind.dimension in (None, units.PLAIN)
-        and not isinstance(node, ast.Number)
+        isinstance(node, ast.Number)
+        or not isinstance(kind, NumberType)
+        or kind.dimension not in (None, PLAIN)
     ):
-        return NumberType(kind.dimension, whole=True)
-    return kind
+        return kind
+    return NumberType(kind.dimension, whole=True)
 
 
 def _serve(

@@ -48,15 +48,16 @@ def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]
     """
     uses = infer.resolution.uses
     return {
-        symbol: [(uses[name], name) for node in symbol.nodes for name in _names(node) if name in uses]
+        symbol: [
+            (uses[name], name)
+            for node in symbol.nodes
+            if isinstance(node, ast.Let | ast.Assign | ast.Param)
+            for name in ast.walk(node.value)
+            if isinstance(name, ast.Name) and name in uses
+        ]
         for symbol in infer.resolution.symbols
         if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM) and not symbol.is_array
     }
-
-
-def _names(node: ast.Node) -> Iterator[ast.Name]:
-    if isinstance(node, ast.Let | ast.Assign | ast.Param):
-        yield from (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
 
 
 def _report(infer: Inference, circle: list[Symbol], name: ast.Name) -> None:
@@ -162,24 +163,17 @@ _OPERATIONS = EDITS | FINISHES
 
 def check_operation(infer: Inference, node: ast.Expression) -> bool:
     """Checks the arguments of an operation on geometry. Returns whether the statement is one."""
-    if not isinstance(node, ast.Call):
-        return False
-    if _called(infer, node) not in _OPERATIONS:
+    if not isinstance(node, ast.Call) or infer.called(node) not in _OPERATIONS:
         return False
     infer.fact(node)
     return True
 
 
-def _called(infer: Inference, node: ast.Call) -> str:
-    return infer.resolution.canonical.get(node.callee, node.callee.text)
-
-
 def operation(infer: Inference, node: ast.Expression) -> str | None:
     """Returns the name of the operation that an expression calls; None for anything else."""
-    is_condition = isinstance(infer.fact(node).type, TruthType)
-    if not isinstance(node, ast.Call) or is_condition:
+    if not isinstance(node, ast.Call) or isinstance(infer.fact(node).type, TruthType):
         return None
-    return name if (name := _called(infer, node)) in _OPERATIONS else None
+    return name if (name := infer.called(node)) in _OPERATIONS else None
 
 
 def check_empty(infer: Inference, node: ast.Constrain) -> None:
@@ -238,7 +232,7 @@ def check_condition(infer: Inference, node: ast.Expression, may_make: bool = Tru
         _check_logic(infer, node)
         return
     if isinstance(node, ast.Call):
-        if _called(infer, node) == "fixed":
+        if infer.called(node) == "fixed":
             return  # holds a thing where it was written
         scope = infer.resolution.scopes[infer.homes[-1]]
         if made_by(node, scope) is not SymbolKind.LET:
@@ -292,8 +286,6 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
             )
         case ast.Comparison(operators=operators) if "!=" in operators and infer.fact(node).reads:
             _cannot(infer, node, "!=", "say on which side, with `<=` or `>=` and a distance, or `assert` it")
-        case _:
-            pass
 
 
 def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:

@@ -82,6 +82,10 @@ class Inference:
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
 
+    def called(self, node: ast.Call) -> str:
+        """Returns the name that a call calls, with aliases resolved."""
+        return self.resolution.canonical.get(node.callee, node.callee.text)
+
     def wants(self, node: ast.Expression, what: str, *allowed: type[Type]) -> Fact:
         """Returns the fact of an expression; reports one that is of none of the types allowed."""
         fact = self.fact(node)

@@ -164,8 +164,6 @@ def _collect(
                     aliases[name.text] = target.text
                 case ast.Let(name):
                     constants[name.text] = node
-                case _:
-                    pass
     return definitions, aliases, constants
 
 

@@ -93,7 +93,7 @@ def _between_ends(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressi
         rest = nodes[1:]
     else:
         return []
-    match check.resolution.canonical.get(node.callee, node.callee.text):
+    match check.called(node):
         case "angle" if all(is_number(check.fact(each).type) for each in rest[:1]) and len(rest) < 2:
             way = shown(rest[0]) if rest else "angle"
             return [f"to direct one point from another: `{end} == {start} + polar(length, {way})`"]

@@ -297,13 +297,10 @@ class Resolver:
             for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():
                 value = argument.value
                 # `@orientation(front)`, even if a part has that name
-                is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))
+                symbol = scope.value(value.text) if isinstance(value, ast.Name) else None
+                is_bare = isinstance(value, ast.Name) and (symbol is None or symbol.kind in UNKNOWNS)
                 if not (is_bare and word_meant(other or name, WORDED)):
                     self._unordered(scope, value)
-
-    @staticmethod
-    def _is_constant(symbol: Symbol | None) -> bool:
-        return symbol is not None and symbol.kind not in UNKNOWNS
 
     # --- Expressions ---------------------------------------------------------------------------
 

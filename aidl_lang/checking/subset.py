@@ -240,7 +240,7 @@ class _Walker:
         kind = self._type(value)
         if not isinstance(value, ast.Call):
             return isinstance(kind, TruthType)
-        name = self.infer.resolution.canonical.get(value.callee, value.callee.text)
+        name = self.infer.called(value)
         if name in EDITS | FINISHES:
             return False
         may_be = isinstance(kind, AnyType) and self._may_call(value, ast.ConstraintDefinition)
@@ -272,14 +272,12 @@ class _Walker:
                 ):
                     self._report(Construct.RELATION, callee.span, callee.text)
                 self._smooth(node)
-            case _:
-                pass
 
     def _beyond(self, node: ast.Node) -> None:
         """Reports what the paper on AIDL has not: calls of the library, attributes, wishes, assertions."""
         match node:
             case ast.Call(callee=callee):
-                name = self.infer.resolution.canonical.get(callee, callee.text)
+                name = self.infer.called(node)
                 candidates = self.infer.resolution.candidates.get(node, ())
                 is_ours = name in SIGNATURES or any(s.standard for s in candidates)
                 if is_ours and name not in PAPER_NAMES and all(s.standard for s in candidates):
@@ -289,8 +287,6 @@ class _Walker:
             case ast.Prefer() | ast.Assert():
                 word = "prefer" if isinstance(node, ast.Prefer) else "assert"
                 self._report(Construct.BEYOND, node.span, word)
-            case _:
-                pass
 
     def _smooth(self, call: ast.Call) -> None:
         """Reports `smooth: true` on a step of a path, which lets the solver turn it."""

@@ -369,6 +369,13 @@ class GivenArgument:
     type: Type
 
 
+def given_to(call: ast.Call, kinds: Sequence[Type]) -> list[GivenArgument]:
+    """Returns the arguments of a call, of these types; what comes before them, as a receiver, has no name."""
+    names = [a.name.text if a.name else None for a in call.arguments]
+    names = [*[None] * (len(kinds) - len(names)), *names]
+    return [GivenArgument(name, kind) for name, kind in zip(names, kinds, strict=True)]
+
+
 @record(eq=False)
 class Signature:
     """A callable: `node` is its definition and `kind` the class of that, both None for a built-in one;

@@ -24,12 +24,12 @@ from aidl_lang.checking.types import (
     ANY,
     Binding,
     GeometryType,
-    GivenArgument,
     ListType,
     NumberType,
     PointType,
     StructureType,
     Type,
+    given_to,
 )
 from aidl_lang.checking.violations import FarReference, StatementSite, Violation, member_path
 from aidl_lang.syntax import ast
@@ -80,8 +80,6 @@ class _Walker:
                     self._constraint(node, items.statements[0], site)
             case ast.ExpressionStatement() | ast.Prefer() | ast.Equation():
                 self._constraint(node, node, site)
-            case _:
-                pass
 
     # --- Rule 1 --------------------------------------------------------------------------------
 
@@ -110,7 +108,7 @@ class _Walker:
     def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: StatementSite) -> None:
         """Checks the arguments of a constructor; those of a template may reach anywhere."""
         fact = self.infer.fact(call)
-        name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
+        name = self.infer.called(call)
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
             return
         reach = name in DERIVING | PATTERNS
@@ -190,10 +188,7 @@ class _Walker:
         if there is doubt.
         """
         nodes = arguments(self.infer, call)
-        names = [None] * (len(nodes) - len(call.arguments)) + [
-            a.name.text if a.name else None for a in call.arguments
-        ]
-        given = [GivenArgument(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
+        given = given_to(call, [self.infer.fact(node).type for node in nodes])
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
         if not isinstance(chosen, Binding):
             return None, ANY

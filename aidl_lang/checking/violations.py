@@ -129,8 +129,6 @@ class Relocation:
                 here = any(s is symbol.node for s, _ in self.site.trail)
                 inside = any(n is symbol.node for n in ast.walk(whole))
                 return node.text if here or inside else None
-            case _:
-                pass
         if symbol.scope is None:
             return self._own_name(node, symbol)
         home = symbol.scope.homes[-1]

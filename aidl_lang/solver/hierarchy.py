@@ -240,8 +240,6 @@ class Hierarchy:
                 return (3, 1 + level)
             case Stages.PAPER:
                 return (4, level) if level else OWN
-            case _:
-                pass
         if self._kept[unknown]:
             if self._spanned[unknown] and unknown in placed:
                 return (4, level) if level else (1, 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import (
     LONGEST,
@@ -94,14 +94,8 @@ def foreign_loop(t: Trouble) -> SyntaxProblem | None:
     head = [Token("for", "for", start, start + 3), Token("NAME", found["i"], *found.span("i"))]
     head.append(Token("in", "in", *found.span("i")))
     stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
-    span = Span(t.source, start, end)
-    return wrong(
-        "E0113",
-        f"a loop is written `{right} {{ … }}`",
-        span,
-        right=right,
-        repair=TokenRepair(t.begin, stop, (*head, *inner)),
-    )
+    span, repair = Span(t.source, start, end), TokenRepair(t.begin, stop, (*head, *inner))
+    return wrong("E0113", f"a loop is written `{right} {{ … }}`", span, right=right, repair=repair)
 
 
 def _last(found: re.Match[str]) -> int:
@@ -200,14 +194,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
             name = Token("NAME", names[n], inner[key].start, inner[key].end)
             tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
         tokens.append(Token(")", ")", *place))
-    span = t.span(t.token, t.tokens[close])
-    return wrong(
-        "E0109",
-        f"{what} is written `{right}`",
-        span,
-        right=right,
-        repair=TokenRepair(t.position, close + 1, tuple(tokens)),
-    )
+    span, repair = t.span(t.token, t.tokens[close]), TokenRepair(t.position, close + 1, tuple(tokens))
+    return wrong("E0109", f"{what} is written `{right}`", span, right=right, repair=repair)
 
 
 def question_mark(t: Trouble) -> SyntaxProblem | None:
@@ -226,15 +214,8 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
     places = zip(("if", "then", "else"), (parts[0][0], t.token, t.tokens[colon]), strict=True)
     words = [Token(word, word, place.start, place.end) for word, place in places]
     tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
-    span = t.span(parts[0][0], parts[2][-1])
-    fix = replaced(f"write `{right}`", span, right)
-    return wrong(
-        "E0109",
-        f"a choice is written `{right}`",
-        span,
-        fix=fix,
-        repair=TokenRepair(begin, stop, tuple(tokens)),
-    )
+    span, repair = t.span(parts[0][0], parts[2][-1]), TokenRepair(begin, stop, tuple(tokens))
+    return wrong("E0109", f"a choice is written `{right}`", span, right=right, repair=repair)
 
 
 def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
@@ -259,11 +240,10 @@ def inches(t: Trouble) -> SyntaxProblem | None:
         return None
     if token.kind in (UNKNOWN, "STRING") and token.text[0] == '"' and _has_no_unit(before) and t.touches:
         rest = tokenize(t.source, token.start + 1, token.end).tokens[:-1]
-        span = Span(t.source, before.start, token.start + 1)
-        inch = Token("NUMBER", before.text + "in", before.start, token.start + 1)
-        fix = replaced(f"write `{inch.text}`", span, inch.text)
-        problem = Diagnostic("E0105", f"inches are written `{inch.text}`", span, fix=fix)
-        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (inch, *rest)))
+        span, right = Span(t.source, before.start, token.start + 1), before.text + "in"
+        inch = Token("NUMBER", right, span.start, span.end)
+        repair = TokenRepair(t.position - 1, t.position + 1, (inch, *rest))
+        return wrong("E0105", f"inches are written `{right}`", span, right=right, repair=repair)
     number = t.tokens[t.position - 2]
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
@@ -301,11 +281,8 @@ def loose_point(t: Trouble) -> SyntaxProblem | None:
         point, number, at = before, t.tokens[t.position - 2], t.position - 1
     else:
         point, number, at = t.token, before, t.position
-    span = t.span(number, point)
-    fix = replaced(f"write `{number.text}`", span, number.text)
-    return wrong(
-        "E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix, repair=TokenRepair(at, at + 1)
-    )
+    span, right, repair = t.span(number, point), number.text, TokenRepair(at, at + 1)
+    return wrong("E0105", f"`{right}.` is written `{right}`", span, right=right, repair=repair)
 
 
 def word_for_sign(t: Trouble) -> SyntaxProblem | None:
@@ -319,21 +296,10 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
 
 
 _MODULES = frozenset(
-    [
-        "math",
-        "numpy",
-        "np",
-        "cadquery",
-        "build123d",
-        "aidl",
-        "typing",
-        "random",
-        "sys",
-        "os",
-        "ezdxf",
-        "maker",
-        "jscad",
-    ]
+    (
+        *("math", "numpy", "np", "cadquery", "build123d", "aidl", "typing", "random", "sys", "os"),
+        *("ezdxf", "maker", "jscad"),
+    )
 )
 
 

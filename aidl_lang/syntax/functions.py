@@ -150,10 +150,9 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
         Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
         Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),
     )
-    problem = Diagnostic(
-        "E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits, is_sure=True)
-    )
-    return SyntaxProblem(problem, TokenRepair(0, middle + 1 - at, (word, *low, dots)))
+    repair = TokenRepair(0, middle + 1 - at, (word, *low, dots))
+    fix = Fix(f"write `{right}`", edits, is_sure=True)
+    return wrong("E0109", f"a range is written `{right}`", span, fix=fix, repair=repair)
 
 
 _VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, line_end, replaced, wrong
 from aidl_lang.syntax.tables import (
@@ -78,10 +78,9 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         )
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
-        span = t.span(before, t.token)
-        fix = replaced(f"write `{whole.text}`", span, whole.text)
-        problem = Diagnostic("E0105", f"`{number}{text}` is written `{whole.text}`", span, fix=fix)
-        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (whole,)))
+        span, repair = t.span(before, t.token), TokenRepair(t.position - 1, t.position + 1, (whole,))
+        message = f"`{number}{text}` is written `{whole.text}`"
+        return wrong("E0105", message, span, right=whole.text, repair=repair)
     meant = UNIT_WORDS.get(text.lower())
     return wrong(
         "E0105",
@@ -161,9 +160,8 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
 def _curly_quote(t: Trouble) -> SyntaxProblem:
     """Recognises a text in typographic quotes: the fix makes both of them straight."""
     quote = "'" if t.token.text in SINGLE_QUOTES else '"'
-    line_end = t.source.text.find("\n", t.token.start)
-    line_end = len(t.source.text) if line_end < 0 else line_end
-    close = next((i for i in range(t.token.end, line_end) if t.source.text[i] in QUOTES), None)
+    end = line_end(t.source.text, t.token.start)
+    close = next((i for i in range(t.token.end, end) if t.source.text[i] in QUOTES), None)
     edits = [Edit(t.span(), quote)]
     stop, stand_in = t.position + 1, tuple[Token, ...]()
     if close is not None:

@@ -334,8 +334,6 @@ def begins_line(text: str, offset: int) -> bool:
 _LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ°"
 
 
-# --- Words and signs written by habit, and their counterparts here; kinds of structures, names of tokens.
-
 # --- The words that may stand before a structure's name, and the four kinds they mean.
 
 _WORDS = {
@@ -370,24 +368,10 @@ UNIT_WORDS = {
 }  # fmt: skip
 
 STATEMENT_WORDS = frozenset(
-    [
-        "param",
-        "var",
-        "let",
-        "constrain",
-        "prefer",
-        "assert",
-        "for",
-        "if",
-        "import",
-        "fn",
-        "shape",
-        "constraint",
-        "alias",
-        "template",
-        "construction",
-        "todo",
-    ]
+    (
+        *("param", "var", "let", "constrain", "prefer", "assert", "for", "if", "import", "fn"),
+        *("shape", "constraint", "alias", "template", "construction", "todo"),
+    )
 )
 
 # The tokens that may begin a value.

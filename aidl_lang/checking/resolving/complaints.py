@@ -122,11 +122,6 @@ ATTRIBUTES_MEANT: Mapping[str, tuple[str, str]] = {
 """Attributes of other languages, folded: the attribute that is meant, or a hint if it is none."""
 
 
-def value_hint(name: str) -> str | None:
-    """Returns the hint for a name that is a value in other languages."""
-    return _VALUES.get(fold(name))
-
-
 def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast.Module, list[Diagnostic]]:
     """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
     functions that one of the files defines stay.
@@ -221,7 +216,7 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
             label="a name alone means a value",
         )
         return
-    hint = value_hint(name)
+    hint = _VALUES.get(fold(name))
     like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
     hints: tuple[str, ...] = (hint,) if hint else ()
     if not like and not hints:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
@@ -91,14 +91,12 @@ class Declarer:
                     | ast.Structure()
                 ) if is_definition(node):
                     self._callable(node, shapes)
-                case _:
-                    pass
 
     def _callable(self, node: ast.Callable, shapes: set[str]) -> None:
         made = signature(node, self._shape_types(node, shapes))
         name = node.name.text
         overloads = self.scope.callables.setdefault(name, [])
-        symbol = self.resolver.enter(self.scope, node.name, _definition_kind(node), node)
+        symbol = self.resolver.enter(self.scope, node.name, complaints.kind_of(made), node)
         for other in overloads:
             if _same_parameters(made, other) and other.node is not None:
                 earlier = self.resolver.resolution.of_definition[other.node]
@@ -149,8 +147,6 @@ class Declarer:
                         self._values(otherwise.statements, (*branch, (id(node), False)))
                 case ast.For(variables, _, body) if not self.is_turn:
                     self._indexed(body.statements, branch, {v.text for v in variables})
-                case _:
-                    pass
 
     def _member(self, node: ast.Structure | ast.Assign, kind: SymbolKind, branch: Branch) -> None:
         if not self.is_turn:
@@ -199,8 +195,6 @@ class Declarer:
                     self._indexed(then.statements, (*branch, (id(node), True)), local)
                     if otherwise is not None:
                         self._indexed(otherwise.statements, (*branch, (id(node), False)), local)
-                case _:
-                    pass
 
     def _same_index(self, node: ast.Structure | ast.Assign, indices: Sequence[ast.Expression]) -> None:
         name = node.name.text
@@ -244,16 +238,6 @@ class Declarer:
         self.resolver.resolution.uses[name] = known
         known.declarations.append(name)
         known.nodes.append(node)
-
-
-def _definition_kind(node: ast.Callable) -> SymbolKind:
-    kinds: Mapping[type, SymbolKind] = {
-        ast.FunctionDefinition: SymbolKind.FUNCTION,
-        ast.ShapeDefinition: SymbolKind.SHAPE,
-        ast.ConstraintDefinition: SymbolKind.CONSTRAINT,
-        ast.Structure: SymbolKind.TEMPLATE,
-    }
-    return kinds[type(node)]
 
 
 def _same_parameters(a: Signature, b: Signature) -> bool:

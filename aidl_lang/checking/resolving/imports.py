@@ -173,7 +173,8 @@ def _used_as_outlines(body: ast.Block) -> frozenset[str]:
 
 def _without_center(call: ast.Call) -> tuple[ast.Call, ast.Expression | None]:
     """Returns a call without its centre, and the centre; None for a call that has none."""
-    named = (a for a in call.arguments if a.name is not None and _means_center(a.name.text))
+    words = ((a, fold(a.name.text)) for a in call.arguments if a.name is not None)
+    named = (a for a, word in words if "center" in (word, *PARAMETERS.get(word, ())))
     unnamed = [a for a in call.arguments if a.name is None]
     by_place = unnamed[_CENTER] if len(unnamed) > _CENTER and call.receiver is None else None
     found = next(named, by_place)
@@ -181,12 +182,6 @@ def _without_center(call: ast.Call) -> tuple[ast.Call, ast.Expression | None]:
         return call, None
     return replace(call, arguments=tuple(a for a in call.arguments if a is not found)), found.value
 
-
-def _means_center(word: str) -> bool:
-    return fold(word) == "center" or "center" in PARAMETERS.get(fold(word), ())
-
-
-# --- The files that a program imports, and drawings of other programs as files of definitions.
 
 # --- Drawings of other programs as files of definitions: a shape for the whole of one, and for each name in
 # it.
@@ -410,9 +405,6 @@ class _Loader:
         return module
 
     def _drawing(self, statement: ast.Import, path: str) -> ast.Module | None:
-
-        from aidl_lang.common.drawings.drawing import DrawingError
-
         if statement.alias is None and not statement.names:
             name = re.sub(r"\W+", "_", PurePosixPath(path).stem).strip("_")
             self.result.diagnostics.append(nameless(statement, name if name.isidentifier() else "art"))
