@@ -44,6 +44,8 @@ def translate(name: str, value: Value, owner: Structure, here: Structure) -> Val
         return value
     if isinstance(value, PointVal):
         return convert_point(value, owner, here)
+    if isinstance(value, ListVal):
+        return ListVal(tuple(translate(name, item, owner, here) for item in value.items))
     if isinstance(value, Num) and name in DIRECTIONS:
         return Num(convert_angle(value.expression, owner, here), ANGLE, value.status)
     return value

@@ -66,7 +66,7 @@ def passed(
         message = f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}"
         hint = f"pass one of its points or sizes, or constrain `{instance.name}` from outside"
         it.report("E0313", message, node, hints=[hint])
-    if isinstance(value, Num | PointVal):
+    if isinstance(value, Num | PointVal) or (isinstance(value, ListVal) and _refers(value)):
         return PassedBinding(name, value, instance, holder, node)
     return value
 
@@ -110,12 +110,23 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
                 pairs = [(outside.x, point.x), (outside.y, point.y)]
                 _hold_equal(it, binding, [p for p in pairs if p[1].status is Exactness.REFERENCE])
             return own_point
+        case ListVal(items):
+            bindings = (replace(binding, name=f"{binding.name}[{i}]", value=v) for i, v in enumerate(items))
+            return ListVal(tuple(_tie(it, b, here) if _refers(b.value) else b.value for b in bindings))
         case value:
             return value
 
 
-def _refers(point: PointVal) -> bool:
-    return Exactness.REFERENCE in (point.x.status, point.y.status)
+def _refers(value: Value) -> bool:
+    match value:
+        case Num(status=status):
+            return status is Exactness.REFERENCE
+        case PointVal(x, y):
+            return _refers(x) or _refers(y)
+        case ListVal(items):
+            return any(map(_refers, items))
+        case _:
+            return False
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
@@ -299,8 +310,8 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
     if (key := find(name, s.scope.values)) is not None:
         binding = s.scope.values[key]
         value = read(it, binding, node, env)
-        # Points kept as they are (`origin`, an argument) are in the structure's own frame.
-        is_own = isinstance(binding, PointVal | PassedBinding)
+        # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
+        is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
         return primitives.translate(key, value, s, env.here) if is_own else value
     if fold(name) == ROTATION and s.parent is not None:
         return _rotation(it, s, s.parent, node, env)
@@ -337,7 +348,7 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
     value = primitives.translate(key, value, g.owner, env.here)
-    if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
+    if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
             return as_written(value)
         if env.reach is Reach.SUBTREE and isinstance(value, Num) and value.dimension == ANGLE:
