@@ -6,9 +6,9 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from aidl_lang.building import curves as primitives
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES, Box
+from aidl_lang.building.curves import view, xy
 from aidl_lang.building.model import Geometry, Structure, common_ancestor
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
@@ -101,7 +101,7 @@ def all_within(it: Interpreter, values: Iterable[Value], node: ast.Node, env: En
 
 def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:
     """Returns the numbers and points that define a primitive, in the frame of the structure that asks."""
-    core = primitives.view(geometry, env.here)
+    core = view(geometry, env.here)
     if may_read(it, geometry.bound_to, node, env):
         return core
     return {name: as_written(value) for name, value in core.items()}
@@ -135,11 +135,11 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
     stands for that side of the shape's box.
     """
     core = look(it, edge, node, env)
-    x, y = primitives.xy(core["start"])
+    x, y = xy(core["start"])
     axis = _axis(core)
     if isinstance(node, ast.Member) and node.name.text in SIDES and isinstance(edge.container, Geometry):
         side = node.name.text
-        as_drawn = _axis(primitives.view(edge, edge.owner))
+        as_drawn = _axis(view(edge, edge.owner))
         if not axis or as_drawn != ("x" if side in ("left", "right") else "y"):
             return length(Box((edge.container,), env.here).side(side))
     if axis:
@@ -152,7 +152,7 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
 
 def _axis(core: Mapping[str, Value]) -> str:
     """Returns the coordinate that is one along a whole edge, `x` or `y`; empty if it is slanted."""
-    (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
+    (x0, y0), (x1, y1) = xy(core["start"]), xy(core["end"])
     dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
     tolerance = 1e-9 * max(dx, dy, 1e-300)
     return "x" if dx <= tolerance < dy else "y" if dy <= tolerance < dx else ""

@@ -39,7 +39,7 @@ DIRECTIONS = fields_of("direction")
 
 
 def translate(name: str, value: Value, owner: Structure, here: Structure) -> Value:
-    """Returns a value in the frame of `owner` as `here` sees it: points and directions turn."""
+    """Returns a value of the frame of `owner` as `here` sees it, in lists too: points and directions turn."""
     if owner is here:
         return value
     if isinstance(value, PointVal):

@@ -6,9 +6,18 @@ import math
 from collections.abc import Callable
 from functools import partial
 
-from aidl_lang.building import coerce as lists
 from aidl_lang.building import expression as ex
-from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, numeric, whole
+from aidl_lang.building.coerce import (
+    as_point,
+    as_written,
+    constant,
+    coordinate,
+    entry,
+    items_of,
+    joined,
+    numeric,
+    whole,
+)
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
@@ -130,7 +139,7 @@ def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[V
 def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
     """Returns the values that a `for` runs through; None after an error."""
     value = evaluate(it, node, env)
-    items = lists.items_of(it, value, node)
+    items = items_of(it, value, node)
     if items is None and not isinstance(value, RangeVal | Nothing):
         it.misfit(rules.no_run(type_of(value)), node)
     return list(items) if items is not None else None
@@ -193,7 +202,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if isinstance(value, Nothing) or isinstance(index, Nothing):
         return NOTHING
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
-        return lists.entry(it, value, index.value, node.index)
+        return entry(it, value, index.value, node.index)
     items = members(value)
     if items is None:
         it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
@@ -244,7 +253,7 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
         return arithmetic(it, node.operator, left, right, node)
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
-    if node.operator == "+" and (together := lists.joined(left, right)) is not None:
+    if node.operator == "+" and (together := joined(left, right)) is not None:
         return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
     if a is not None or b is not None:

@@ -6,8 +6,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 
-from aidl_lang.building import coerce as lists
-from aidl_lang.building import copies, patterns
+from aidl_lang.building import coerce, copies, patterns
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, look, numeric
@@ -308,7 +307,7 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         case TextVal(text):
             return number(float(len(text)))
         case RangeVal():
-            items = lists.run(it, values, node)
+            items = coerce.run(it, values, node)
         case _:
             items = members(values)
             if items is None:
@@ -462,7 +461,7 @@ FUNCTIONS: dict[str, Function] = {
     "ceil": _rounded(math.ceil),
     "round": _rounded(lambda value: math.floor(value + 0.5)),
     "len": _len,
-    **lists.FUNCTIONS,
+    **coerce.FUNCTIONS,
     "choice": _choice,
     "rgb": _rgb,
     "channels": _channels,

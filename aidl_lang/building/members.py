@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from aidl_lang.building import boxes, curves
-from aidl_lang.building import curves as primitives
 from aidl_lang.building.boxes import Box
 from aidl_lang.building.coerce import as_written, entry, may_read
 from aidl_lang.building.conditions import compare_numbers
@@ -312,7 +311,7 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
         value = read(it, binding, node, env)
         # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
         is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
-        return primitives.translate(key, value, s, env.here) if is_own else value
+        return curves.translate(key, value, s, env.here) if is_own else value
     if fold(name) == ROTATION and s.parent is not None:
         return _rotation(it, s, s.parent, node, env)
     box = boxes.box_of(s, env.here)
@@ -320,7 +319,7 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
 
 
 def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
-    turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
+    turn = curves.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
     if not may_read(it, s, node, env):
         return as_written(turn)
     if env.reach is Reach.SUBTREE:
@@ -347,7 +346,7 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     """Returns a part, argument or let of a compound shape: read in its owner's frame, seen from here."""
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
-    value = primitives.translate(key, value, g.owner, env.here)
+    value = curves.translate(key, value, g.owner, env.here)
     if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
             return as_written(value)
