@@ -191,7 +191,7 @@ class _ConflictSearch:
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
         free = sorted(mentioned & self.scope.free)
         self.ended = []
-        positions = frozenset(u for u in free if not hierarchy.is_kept(u) or hierarchy.is_spanned(u))
+        positions = frozenset(u for u in free if not hierarchy.is_kept[u] or hierarchy.is_spanned[u])
         for scope in dict.fromkeys((positions, frozenset(free))):
             for start in itertools.islice(self._starts(sorted(scope)), starts):
                 if best.holds or clock.expired:
@@ -216,7 +216,7 @@ class _ConflictSearch:
                 share, here = random.uniform(-1.0, 1.0), self.before[unknown]
                 if problem.longest is not None and np.isfinite(problem.longest[unknown]):
                     start[unknown] = 180.0 * share
-                elif problem.kept[unknown] and not self.hierarchy.is_spanned(unknown):
+                elif problem.kept[unknown] and not self.hierarchy.is_spanned[unknown]:
                     start[unknown] = here * 3.0**share
                 else:
                     start[unknown] = here + spread * share
@@ -340,7 +340,7 @@ class _ConflictSearch:
             hierarchy.refresh([index])
             slopes = gradients(hierarchy.values, roots)
             reached = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
-            if all(map(hierarchy.is_kept, reached)):
+            if all(map(hierarchy.is_kept.__getitem__, reached)):
                 found |= reached
         return frozenset(found)
 
@@ -422,7 +422,7 @@ def reasons(problem: Problem, settings: Settings, concession: Concession, solved
     hierarchy.reached[:] = concession.values
     hierarchy.values.assign(enumerate(concession.values.tolist()))
     left = concession.unknowns
-    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept(u))
+    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept[u])
     while left:
         scope = Scope(moving - left, concession.constraints)
         before = {unknown: float(concession.values[unknown]) for unknown in concession.free}

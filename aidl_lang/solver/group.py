@@ -66,8 +66,8 @@ class Group:
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
         held = hierarchy.held_by(group)
-        self.hard = [index for index in held if hierarchy.is_hard(index)]
-        self.soft = [index for index in held if not hierarchy.is_hard(index)]
+        self.hard = [index for index in held if hierarchy.is_hard[index]]
+        self.soft = [index for index in held if not hierarchy.is_hard[index]]
         self.tiers = Tiers(hierarchy, group)
 
     def solve(self, reached: Tier = (0, 0)) -> None:
@@ -293,7 +293,7 @@ class Group:
     def _weigh_preferences(self, reached: Tier) -> None:
         """Satisfies preferences as well as possible with the unknowns that the winning stage had free."""
         hierarchy = self.hierarchy
-        if hierarchy.all_hard:
+        if all(hierarchy.is_hard):
             return
         limit = min(max(reached, OWN), POSITIONS)
         soft = set(self.soft)
@@ -302,7 +302,7 @@ class Group:
                 soft.update(
                     index
                     for index in hierarchy.solved_mentioning(unknown, self.group)
-                    if not hierarchy.is_hard(index)
+                    if not hierarchy.is_hard[index]
                 )
         if not hierarchy.unmet(soft):
             return
@@ -319,7 +319,7 @@ def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
     if hierarchy.attempt(scope, 1).satisfied:
         return True
     hierarchy.values.assign(before.items())
-    hard = [index for index in scope.constraints if hierarchy.is_hard(index)]
+    hard = [index for index in scope.constraints if hierarchy.is_hard[index]]
     rows = hierarchy.rows(hard)
     softness = [0.0] * len(rows)
     for index in soft:

@@ -66,16 +66,17 @@ class Hierarchy:
         """The values (n,) after the last depth."""
         self._broken: set[int] = set()
         self._levels: Levels | None = None
-
-    # Lists are quicker to read one by one than arrays; they are made when the first group asks.
-
-    @cached_property
-    def _kept(self) -> list[bool]:
-        return list(map(bool, self.problem.kept))
-
-    @cached_property
-    def _frame(self) -> list[bool]:
-        return list(map(bool, self.problem.frame_of >= 0))
+        self._group_depths = depths(problem.parent)
+        # Lists are quicker to read one by one than arrays.
+        self.is_kept: list[bool] = problem.kept.tolist()
+        """Tells of each unknown whether it is a kept size."""
+        self.is_spanned: list[bool] = problem.spanned.tolist()
+        """Tells of each unknown whether it is a size that was read off two places."""
+        self.is_hard: list[bool] = np.isnan(problem.weight).tolist()
+        self._is_frame: list[bool] = (problem.frame_of >= 0).tolist()
+        self._is_standing: list[bool] = problem.standing.tolist()
+        self._sealed: list[int] = problem.sealed.tolist()
+        self._depth: list[int] = self._group_depths[problem.group].tolist()
 
     @cached_property
     def _rides(self) -> list[int]:
@@ -83,35 +84,8 @@ class Hierarchy:
         places) that no constraint around that group names: for groups above that depth it rides along with
         its parent. 0 if all are named.
         """
-        return list(map(int, riding_depths(self.problem, self._group_depths)))
-
-    @cached_property
-    def _sealed(self) -> list[int]:
-        return list(map(int, self.problem.sealed))
-
-    @cached_property
-    def _standing(self) -> list[bool]:
-        return list(map(bool, self.problem.standing))
-
-    @cached_property
-    def _spanned(self) -> list[bool]:
-        return list(map(bool, self.problem.spanned))
-
-    @cached_property
-    def _depth_of_group(self) -> list[int]:
-        return list(map(int, self._group_depths))
-
-    @cached_property
-    def _hard(self) -> list[bool]:
-        return list(map(bool, np.isnan(self.problem.weight)))
-
-    @cached_property
-    def _depth(self) -> list[int]:
-        return list(map(int, self._group_depths[self.problem.group]))
-
-    @cached_property
-    def _group_depths(self) -> NDArray[np.intp]:
-        return depths(self.problem.parent)
+        rides: list[int] = riding_depths(self.problem, self._group_depths).tolist()
+        return rides
 
     @cached_property
     def _held_by(self) -> dict[int, list[int]]:
@@ -229,42 +203,27 @@ class Hierarchy:
 
     def tier(self, group: int, unknown: int, placed: Mapping[int, int]) -> Tier:
         """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
-        depth = self._depth_of_group[group]
+        depth = int(self._group_depths[group])
         level = self._depth[unknown] - depth
         if self._sealed[unknown] > depth:
             return SEALED
         match self.settings.stages:
             case Stages.FLAT:
                 return OWN
-            case Stages.PAPER if self._frame[unknown]:
+            case Stages.PAPER if self._is_frame[unknown]:
                 return (3, 1 + level)
             case Stages.PAPER:
                 return (4, level) if level else OWN
-        if self._kept[unknown]:
-            if self._spanned[unknown] and unknown in placed:
+        if self.is_kept[unknown]:
+            if self.is_spanned[unknown] and unknown in placed:
                 return (4, level) if level else (1, 2)
             return (6, 0 if unknown in placed else 1 + level)
         if self._rides[unknown] > depth:
             return (5, level)
         if level == 0:
-            return (1, placed[unknown]) if unknown in placed else (2, int(self._standing[unknown]))
-        is_translated = self._frame[unknown] and self.settings.stages is not Stages.LEVEL
+            return (1, placed[unknown]) if unknown in placed else (2, int(self._is_standing[unknown]))
+        is_translated = self._is_frame[unknown] and self.settings.stages is not Stages.LEVEL
         return (3, level) if is_translated else (4, level)
-
-    @cached_property
-    def all_hard(self) -> bool:
-        return all(self._hard)
-
-    def is_hard(self, index: int) -> bool:
-        return self._hard[index]
-
-    def is_kept(self, unknown: int) -> bool:
-        """Tells whether an unknown is a kept size."""
-        return self._kept[unknown]
-
-    def is_spanned(self, unknown: int) -> bool:
-        """Tells whether an unknown is a size that was read off two places."""
-        return self._spanned[unknown]
 
     def held_by(self, group: int) -> list[int]:
         return self._held_by.get(group, [])
@@ -308,7 +267,7 @@ class Hierarchy:
         among the positions that these allow the nearest is taken.
         """
         rows = self.rows(scope.constraints)
-        sizes = [unknown for unknown in scope.free if self._kept[unknown]]
+        sizes = [unknown for unknown in scope.free if self.is_kept[unknown]]
         metric = self.firm if sizes else self.metric
         before = self.save(scope.free)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts, turning)

@@ -199,10 +199,6 @@ class DampedSteps:
         return np.asarray(-(self._jacobian.T @ np.linalg.solve(damped, self._residuals)))
 
 
-def damped_steps(jacobian: Matrix, residuals: Floats) -> DampedSteps:
-    return DampedSteps(jacobian, residuals)
-
-
 def with_slacks(jacobian: Matrix, slacks: Floats) -> Matrix:
     """Returns the Jacobian (m, n) with further columns (m, s) for slacks that are subtracted."""
     return np.hstack((jacobian, -slacks)) if isinstance(jacobian, np.ndarray) else jacobian.beside(-slacks)

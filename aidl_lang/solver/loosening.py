@@ -193,7 +193,7 @@ class _Loosening:
         Within parts sizes that are free to change come before both.
         """
         tier, axis = self.tiers.tier(unknown), self.hierarchy.problem.axis
-        if self.hierarchy.is_kept(unknown):
+        if self.hierarchy.is_kept[unknown]:
             return tier, 2
         return tier, int(tier < DEEP or axis is None or axis[unknown] >= 0)
 
@@ -234,7 +234,7 @@ class _Loosening:
         """Returns the constraints of the scope, and those that bind unknowns outside of it."""
         hierarchy = self.hierarchy
         found = {i for unknown in locked for i in hierarchy.solved_mentioning(unknown, self.tiers.group)}
-        return sorted(filter(hierarchy.is_hard, found.union(self.constraints)))
+        return sorted(filter(hierarchy.is_hard.__getitem__, found.union(self.constraints)))
 
     def _rest(self, constraints: Sequence[int], locked: Sequence[int]) -> _Rest:
         """Returns the rest of the rows of some constraints. An inequality counts where it does not hold, or
@@ -246,7 +246,7 @@ class _Loosening:
         owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
         place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
         matrix = np.zeros((len(owned), len(place)))
-        ends = None if any(map(hierarchy.is_kept, place)) else hierarchy.values.still()
+        ends = None if any(map(hierarchy.is_kept.__getitem__, place)) else hierarchy.values.still()
         slopes = gradients(hierarchy.values, [row.expression for row in owned], ends=ends)
         for i, row in enumerate(owned):
             for unknown, slope in slopes[row.expression].items():
@@ -323,8 +323,8 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
         off = abs(hierarchy.values.unknowns[size] - before[size])
         return -off / abs(before[size]) if before[size] else -np.inf, hierarchy.name(size)
 
-    known = filter(hierarchy.is_kept, scope.free)
-    sizes = [u for u in known if not hierarchy.is_spanned(u) and hierarchy.moved(u, before[u])]
+    known = filter(hierarchy.is_kept.__getitem__, scope.free)
+    sizes = [u for u in known if not hierarchy.is_spanned[u] and hierarchy.moved(u, before[u])]
     if not 2 <= len({int(hierarchy.problem.thing[size]) for size in sizes}) <= len(sizes) <= SPARING:
         return
     for size in sorted(sizes, key=change):

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.solver.linear import Matrix, damped_steps, nearest, with_slacks
+from aidl_lang.solver.linear import DampedSteps, Matrix, nearest, with_slacks
 from aidl_lang.solver.operations import Floats
 
 GAIN = 0.1
@@ -328,7 +328,7 @@ class _Newton:
                     return *taken, 0.0
         self._isolated = None
         rows = ~system.inequality | (residuals > 0.0)
-        damped = damped_steps(jacobian[rows], residuals[rows])
+        damped = DampedSteps(jacobian[rows], residuals[rows])
         largest = damped.largest
         # Written so that it ends with what overflows or vanishes as well.
         if not FLAT * np.sqrt(largest * merit) < damped.slope < np.inf or not TINY < largest < np.inf:

@@ -312,7 +312,7 @@ class GroupFailure:
 @record(eq=False)
 class Concession:
     """The dear unknowns that moved at a stage: kept sizes, frames that stood where their content is exact,
-    unknowns that ride along. The values (n,) are those before the stage; `reasons.reasons` finds the
+    unknowns that ride along. The values (n,) are those before the stage; `conflicts.reasons` finds the
     constraints that asked for it.
 
     unknowns    those that gave way
