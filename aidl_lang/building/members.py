@@ -150,14 +150,10 @@ def _hold_equal(it: Interpreter, binding: PassedBinding, pairs: list[tuple[Num, 
 
 def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
     test = branch.test.span.one_line
-    it.report(
-        "E0514",
-        f"`{node.text}` was not built, because of `if {test}`",
-        node,
-        label="mentioned here",
-        hints=[f"mention it only where it is built: under the same `if {test}`"],
-        secondary=[Label(branch.test.span, "this branch was not taken")],
-    )
+    message = f"`{node.text}` was not built, because of `if {test}`"
+    hint = f"mention it only where it is built: under the same `if {test}`"
+    other = Label(branch.test.span, "this branch was not taken")
+    it.report("E0514", message, node, label="mentioned here", hints=[hint], secondary=[other])
     return NOTHING
 
 

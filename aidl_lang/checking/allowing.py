@@ -88,12 +88,8 @@ def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.A
 
 
 def _without_code(attribute: ast.Attribute) -> Diagnostic:
-    return Diagnostic(
-        "E0216",
-        "`@allow` names no code",
-        attribute.span,
-        hints=('write the codes of the notes and warnings: `@allow("N0602", "W0705")`',),
-    )
+    hint = 'write the codes of the notes and warnings: `@allow("N0602", "W0705")`'
+    return Diagnostic("E0216", "`@allow` names no code", attribute.span, hints=(hint,))
 
 
 def _unknown(code: str, place: Span) -> Diagnostic:

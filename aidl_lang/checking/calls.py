@@ -52,35 +52,26 @@ def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressio
     for index, argument in enumerate(node.arguments, first):
         is_true = isinstance(argument.value, ast.Boolean) and argument.value.value
         if index not in used and not is_true:
-            check.report(
-                "E0347",
-                f"`{shown(argument)}` says nothing: a `{node.callee.text}` is placed by its centre",
-                argument,
-                hints=["to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"],
-            )
+            message = f"`{shown(argument)}` says nothing: a `{node.callee.text}` is placed by its centre"
+            hint = "to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"
+            check.report("E0347", message, argument, hints=[hint])
     name = fit.signature.name
     if name == "square" and first == 0 and not any(a.name for a in node.arguments[:1]):
         value = node.arguments[0].value
-        check.report(
-            "N0502",
-            f"`{shown(node)}` is about its centre, here as everywhere",
-            node,
-            hints=["for one that begins at the origin: `constrain s.bottom_left == origin`"],
-            fix=Fix("name the size", (Edit(_before(value), "size: "),), is_sure=True),
-        )
+        message = f"`{shown(node)}` is about its centre, here as everywhere"
+        hint = "for one that begins at the origin: `constrain s.bottom_left == origin`"
+        fix = Fix("name the size", (Edit(_before(value), "size: "),), is_sure=True)
+        check.report("N0502", message, node, hints=[hint], fix=fix)
     pair = next((s for s in fit.sources if s.other is not None and "width" in fit.signature.by_fold), None)
     if pair is not None and pair.other is not None:
         x, y = node.arguments[pair.index - first], node.arguments[pair.other - first]
         point = f"center: ({x.value.span.text}, {y.value.span.text})"
         is_both = pair.other == pair.index + 1
         both = Span(x.span.source, x.span.start, y.span.end)
-        check.report(
-            "N0503",
-            f"`{shown(x)}` and `{shown(y)}` are read as the centre of the `{node.callee.text}`",
-            x,
-            hints=["to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"],
-            fix=Fix(f"write `{point}`", (Edit(both, point),), is_sure=True) if is_both else None,
-        )
+        message = f"`{shown(x)}` and `{shown(y)}` are read as the centre of the `{node.callee.text}`"
+        hint = "to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"
+        written = Fix(f"write `{point}`", (Edit(both, point),), is_sure=True) if is_both else None
+        check.report("N0503", message, x, hints=[hint], fix=written)
 
 
 def _check_corner(check: Inference, node: ast.Call, fit: Binding) -> None:
@@ -93,14 +84,10 @@ def _check_corner(check: Inference, node: ast.Call, fit: Binding) -> None:
     x, y, w, h = (shown(argument.value) for argument in node.arguments)
     right = f"left: {x}, bottom: {y}, width: {w}, height: {h}"
     span = Span(node.span.source, node.arguments[0].span.start, node.arguments[-1].span.end)
-    check.report(
-        "E0344",
-        f"`{shown(node)}` could mean a corner and a size, or four sides",
-        node,
-        label="say which",
-        hints=["name them: `left`, `bottom` with `width`, `height` or with `right`, `top`"],
-        fix=Fix(f"write `{right}`", (Edit(span, right),)),
-    )
+    message = f"`{shown(node)}` could mean a corner and a size, or four sides"
+    hint = "name them: `left`, `bottom` with `width`, `height` or with `right`, `top`"
+    fix = Fix(f"write `{right}`", (Edit(span, right),))
+    check.report("E0344", message, node, label="say which", hints=[hint], fix=fix)
 
 
 def check_unused_geometry(check: Inference) -> None:
@@ -115,14 +102,10 @@ def check_unused_geometry(check: Inference) -> None:
             continue
         if made_by(node.value, scope) in (SymbolKind.GEOMETRY, SymbolKind.STRUCTURE):
             word = Span(node.span.source, node.span.start, node.name.span.start)
-            check.report(
-                "N0505",
-                f"`{symbol.name}` is not drawn: nothing refers to it",
-                node.name,
-                label="`let` only names it",
-                hints=[f"`{symbol.name} = {shown(node.value)}` makes it a part of the drawing"],
-                fix=Fix("leave out `let`", (Edit(word, ""),)),
-            )
+            message = f"`{symbol.name}` is not drawn: nothing refers to it"
+            hint = f"`{symbol.name} = {shown(node.value)}` makes it a part of the drawing"
+            fix = Fix("leave out `let`", (Edit(word, ""),))
+            check.report("N0505", message, node.name, label="`let` only names it", hints=[hint], fix=fix)
 
 
 def check_unused_params(check: Inference) -> None:
@@ -144,12 +127,9 @@ def check_unused_params(check: Inference) -> None:
         assert isinstance(symbol.node, ast.Param)
         is_own = symbol.node.span.source is resolution.main.source
         if is_own and symbol not in used and symbol.name not in unresolved:
-            check.report(
-                "W0201",
-                f"`{symbol.name}` is used nowhere: setting it changes nothing",
-                symbol.node.name,
-                hints=["use it where its value is meant, or leave it out"],
-            )
+            message = f"`{symbol.name}` is used nowhere: setting it changes nothing"
+            hint = "use it where its value is meant, or leave it out"
+            check.report("W0201", message, symbol.node.name, hints=[hint])
 
 
 def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
@@ -234,14 +214,10 @@ def check_square(check: Inference, node: ast.Expression) -> None:
     if not isinstance(check.fact(node).type, NumberType | AnyType) or node.arguments[0].name is not None:
         return
     if isinstance(kind, NumberType):
-        check.report(
-            "E0344",
-            f"`{shown(node)}` could mean a square of that size, or the number multiplied by itself",
-            node,
-            label="say which",
-            hints=[f"write `square(size: {text})` for the shape, `{text} ^ 2` for the number"],
-            fix=Fix("make it the shape", (Edit(_before(value), "size: "),)),
-        )
+        message = f"`{shown(node)}` could mean a square of that size, or the number multiplied by itself"
+        hint = f"write `square(size: {text})` for the shape, `{text} ^ 2` for the number"
+        fix = Fix("make it the shape", (Edit(_before(value), "size: "),))
+        check.report("E0344", message, node, label="say which", hints=[hint], fix=fix)
     elif isinstance(kind, PointType) or (isinstance(kind, ListType) and kind.length == 2):
         two_sizes(check, node, node.arguments[0])
 

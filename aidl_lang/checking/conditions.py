@@ -250,14 +250,10 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
     name = f"{kind}_{number}"
     start = Span(node.span.source, node.span.start, node.span.start)
     remedy = "give it a name" if may_make else "make it outside `constrain`"
-    infer.report(
-        "E0323",
-        f"this `{kind}` has no name, so nothing could refer to it",
-        node,
-        label="made and lost",
-        hints=[f"{remedy}: `{name} = {shown(node)}`"],
-        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None,
-    )
+    message = f"this `{kind}` has no name, so nothing could refer to it"
+    hint = f"{remedy}: `{name} = {shown(node)}`"
+    fix = Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None
+    infer.report("E0323", message, node, label="made and lost", hints=[hint], fix=fix)
 
 
 def _check_logic(infer: Inference, node: ast.Expression) -> None:

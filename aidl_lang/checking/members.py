@@ -256,12 +256,9 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     if key is None:
         if len(within := _holding(check, scope, node.name.text)) == 1:
             path, at = f"{within[0]}.{node.name.text}", node.name.span
-            return check.report(
-                "E0202",
-                f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`",
-                node.name,
-                fix=Fix(f"write `{path}`", (Edit(at, path),), is_sure=True),
-            )
+            message = f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`"
+            fix = Fix(f"write `{path}`", (Edit(at, path),), is_sure=True)
+            return check.report("E0202", message, node.name, fix=fix)
         return _field(check, base, node, builtins.STRUCTURE, list(scope.values))
     symbol = scope.values[key]
     _means(check, node, symbol)
@@ -356,28 +353,18 @@ def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[
     name, of = node.name.text, node.value.span.text
     if fold(name) in ("area", "perimeter", "circumference"):
         function = "area" if fold(name) == "area" else "perimeter"
-        return check.report(
-            "E0206",
-            f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`",
-            node.name,
-            fix=Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),), is_sure=True),
-        )
+        message = f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`"
+        fix = Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),), is_sure=True)
+        return check.report("E0206", message, node.name, fix=fix)
     if fold(name) in ("x", "y") and "center" in known and "width" in known:
         side = "left" if fold(name) == "x" else "bottom"
-        return check.report(
-            "E0202",
-            f"`{shown(node.value)}` has no `{name}`: it has a centre and sides",
-            node.name,
-            hints=[f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"],
-            fix=Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),)),
-        )
+        message = f"`{shown(node.value)}` has no `{name}`: it has a centre and sides"
+        hint = f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"
+        fix = Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),))
+        return check.report("E0202", message, node.name, hints=[hint], fix=fix)
     if "rotation" in known and fold(name) in ("angle", "orientation", "tilt", "theta", "rotate"):
-        return check.report(
-            "E0202",
-            f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`",
-            node.name,
-            fix=renamed(node.name, "rotation"),
-        )
+        message = f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`"
+        return check.report("E0202", message, node.name, fix=renamed(node.name, "rotation"))
     return None
 
 

@@ -220,14 +220,10 @@ def _loose_coordinates(
             ]
             texts[i], texts[i + 1] = f"({texts[i]}", f"{texts[i + 1]})"
         call = f"{node.callee.text}({', '.join(texts)})"
-        check.report(
-            "E0346",
-            f"a point is written in parentheses: `{call}`",
-            node.callee,
-            label="takes points, and these are single numbers",
-            hints=_called_as([miss.signature]),
-            fix=Fix("put the coordinates in parentheses", tuple(edits), is_sure=True),
-        )
+        message = f"a point is written in parentheses: `{call}`"
+        label = "takes points, and these are single numbers"
+        fix = Fix("put the coordinates in parentheses", tuple(edits), is_sure=True)
+        check.report("E0346", message, node.callee, label=label, hints=_called_as([miss.signature]), fix=fix)
         return True
     return False
 
@@ -286,12 +282,9 @@ def _half_or_double(
             text = text if isinstance(argument.value, ast.Number | ast.Name | ast.Member) else f"({text})"
             value = f"{text} / 2" if wanted == "radius" else f"2 * {text}"
             span = Span(node.span.source, argument.name.span.start, argument.value.span.end)
-            check.report(
-                "E0324",
-                f"`{node.callee.text}` takes a `{wanted}`, not a {other}",
-                argument.name,
-                fix=Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True),
-            )
+            message = f"`{node.callee.text}` takes a `{wanted}`, not a {other}"
+            fix = Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True)
+            check.report("E0324", message, argument.name, fix=fix)
             return True
     return False
 

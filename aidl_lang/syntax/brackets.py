@@ -85,14 +85,10 @@ def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagno
     fix = replaced("put `constrain` before it", place, "constrain ")
     if not joined:
         return Diagnostic("E0101", "a statement cannot begin with `[`", span, fix=fix)
-    return Diagnostic(
-        "E0125",
-        "a line that begins with `[` continues the line above",
-        span,
-        "read as an index of the expression above",
-        hints=("newlines end no statement; with `constrain` before it a list begins one",),
-        fix=fix,
-    )
+    message = "a line that begins with `[` continues the line above"
+    label = "read as an index of the expression above"
+    hint = "newlines end no statement; with `constrain` before it a list begins one"
+    return Diagnostic("E0125", message, span, label, hints=(hint,), fix=fix)
 
 
 def wrong_closer(t: Trouble) -> SyntaxProblem | None:
@@ -103,14 +99,11 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     right = _CLOSER[opener.kind]
     if not t.accepts(right):
         return None
+    message = f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`"
+    other = Label(t.span(), f"`{right}` belongs here")
+    fix = replaced(f"write `{right}`", t.span(), right)
     return wrong(
-        "E0102",
-        f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
-        t.span(opener),
-        "opened here",
-        (Label(t.span(), f"`{right}` belongs here"),),
-        fix=replaced(f"write `{right}`", t.span(), right),
-        repair=t.exchanged(right),
+        "E0102", message, t.span(opener), "opened here", (other,), fix=fix, repair=t.exchanged(right)
     )
 
 
@@ -128,14 +121,10 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
         depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
     meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
-    return wrong(
-        "E0112",
-        f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement",
-        t.span(),
-        f"within {_BRACKET[t.open[-1].kind]}",
-        fix=Fix("write `,`", edits, is_sure=True),
-        repair=TokenRepair(t.position, stop, meant),
-    )
+    message = f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement"
+    label = f"within {_BRACKET[t.open[-1].kind]}"
+    fix = Fix("write `,`", edits, is_sure=True)
+    return wrong("E0112", message, t.span(), label, fix=fix, repair=TokenRepair(t.position, stop, meant))
 
 
 def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
@@ -215,14 +204,9 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
 def stray_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
         return None
-    return wrong(
-        "E0118",
-        f"`{t.token.text}` closes nothing",
-        t.span(),
-        "no bracket is open here",
-        fix=replaced("remove it", t.span(), ""),
-        repair=t.exchanged(),
-    )
+    message = f"`{t.token.text}` closes nothing"
+    fix = replaced("remove it", t.span(), "")
+    return wrong("E0118", message, t.span(), "no bracket is open here", fix=fix, repair=t.exchanged())
 
 
 def missing_comma(t: Trouble) -> SyntaxProblem | None:
@@ -231,14 +215,11 @@ def missing_comma(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(",", t.token.kind):
         return None
     opener, inside = t.open[-1], _ITEMS[t.open[-1].kind]
+    message = f"expected `,` between two {inside}"
+    other = Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here")
+    fix = replaced("put in `,`", t.gap(), ",")
     return wrong(
-        "E0112",
-        f"expected `,` between two {inside}",
-        t.gap(),
-        "a comma is missing here",
-        (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
-        fix=replaced("put in `,`", t.gap(), ","),
-        repair=t.put_in(","),
+        "E0112", message, t.gap(), "a comma is missing here", (other,), fix=fix, repair=t.put_in(",")
     )
 
 
@@ -327,24 +308,15 @@ def three_coordinates(t: Trouble) -> SyntaxProblem | None:
         return None
     if t.before.kind != "," or not t.accepts(")"):
         return None
-    return wrong(
-        "E0123",
-        "a point has two coordinates: `(x, y)`",
-        t.span(t.open[-1], t.token),
-        "this has a third",
-        hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
-    )
+    message = "a point has two coordinates: `(x, y)`"
+    hint = "drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`"
+    return wrong("E0123", message, t.span(t.open[-1], t.token), "this has a third", hints=(hint,))
 
 
 def stray_comma(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "," or t.open or not t.accepts(";"):
         return None
-    return wrong(
-        "E0122",
-        "statements are not separated by commas",
-        t.span(),
-        "a new line or `;` does",
-        right=";",
-        hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
-        repair=t.exchanged(";"),
-    )
+    message = "statements are not separated by commas"
+    label = "a new line or `;` does"
+    hint = "commas stand between arguments, and between constraints inside `constrain { }`"
+    return wrong("E0122", message, t.span(), label, right=";", hints=(hint,), repair=t.exchanged(";"))

@@ -47,13 +47,9 @@ def prose(t: Trouble) -> SyntaxProblem | None:
     )
     starts[0] = first
     edits = tuple(Edit(Span(t.source, at, at), "// ") for at in starts)
-    return wrong(
-        "E0108",
-        "this is prose, and no part of the program",
-        Span(t.source, first, end),
-        fix=Fix("make it a comment", edits, is_sure=True),
-        repair=TokenRepair(t.begin, stop),
-    )
+    message = "this is prose, and no part of the program"
+    fix = Fix("make it a comment", edits, is_sure=True)
+    return wrong("E0108", message, Span(t.source, first, end), fix=fix, repair=TokenRepair(t.begin, stop))
 
 
 _LOOP = re.compile(
@@ -310,13 +306,9 @@ def import_of_module(t: Trouble) -> SyntaxProblem | None:
         return None
     stop = statement_end(t.source, t.tokens, t.begin)
     span = t.span(t.first, t.tokens[stop - 1])
-    return wrong(
-        "E0113",
-        f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
-        span,
-        fix=replaced("remove the line", span, ""),
-        repair=TokenRepair(t.begin, stop),
-    )
+    message = f"nothing is imported from `{words[1]}`: functions and shapes are known without it"
+    fix = replaced("remove the line", span, "")
+    return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, stop))
 
 
 def several_names(t: Trouble) -> SyntaxProblem | None:
@@ -330,12 +322,8 @@ def several_names(t: Trouble) -> SyntaxProblem | None:
     )
     if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.automaton.in_constraints):
         return None
-    return wrong(
-        "E0103",
-        "each name gets its value by itself: `let x = 3; let y = 4`",
-        t.span(t.first),
-        "one name at a time",
-    )
+    message = "each name gets its value by itself: `let x = 3; let y = 4`"
+    return wrong("E0103", message, t.span(t.first), "one name at a time")
 
 
 def documentation_text(t: Trouble) -> SyntaxProblem | None:
@@ -360,10 +348,6 @@ def documentation_text(t: Trouble) -> SyntaxProblem | None:
     span = Span(t.source, t.token.start, end)
     lines = [line.strip() for line in inner.strip().splitlines()]
     comment = "\n".join(f"// {line}".rstrip() for line in lines)
-    return wrong(
-        "E0117",
-        "a text alone says nothing; a remark begins with `//`",
-        span,
-        fix=replaced("make it a comment", span, comment),
-        repair=TokenRepair(t.position, stop),
-    )
+    message = "a text alone says nothing; a remark begins with `//`"
+    fix = replaced("make it a comment", span, comment)
+    return wrong("E0117", message, span, fix=fix, repair=TokenRepair(t.position, stop))

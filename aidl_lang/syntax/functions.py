@@ -93,13 +93,8 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem
         is_last = not source.text[end : line_end(source.text, end)].strip()
         message += "; what is still to be done says a comment"
         right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
-    return wrong(
-        "E0117",
-        message,
-        span,
-        right=right,
-        repair=TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),)),
-    )
+    repair = TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),))
+    return wrong("E0117", message, span, right=right, repair=repair)
 
 
 def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> SyntaxProblem | None:
@@ -128,13 +123,9 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
         Token("=", "=", tokens[at].start, tokens[at].end),
         *value,
     )
-    return wrong(
-        "E0113",
-        f"a function is written `{right}`",
-        span,
-        fix=replaced("write it so", span, right),
-        repair=TokenRepair(0, (after + 1 if in_braces else stop) - begin, written),
-    )
+    message = f"a function is written `{right}`"
+    repair = TokenRepair(0, (after + 1 if in_braces else stop) - begin, written)
+    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
 
 
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -193,13 +184,9 @@ def _as_function(
 ) -> SyntaxProblem:
     names = [token.text for token in head if token.kind == "NAME"]
     right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
-    return wrong(
-        "E0113",
-        f"a function is written `{right}`",
-        span,
-        fix=replaced("write it so", span, right),
-        repair=TokenRepair(start, stop, tuple(_function(names, head, value, span))),
-    )
+    message = f"a function is written `{right}`"
+    repair = TokenRepair(start, stop, tuple(_function(names, head, value, span)))
+    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
 
 
 def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:

@@ -30,14 +30,9 @@ def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     if t.tokens[stop].kind == "for":
         hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
     fix, repair = listed or (None, TokenRepair(t.position, stop))
-    return wrong(
-        "E0126",
-        f"`{t.token.kind}` stands behind a definition, not inside an expression",
-        t.span(to=t.tokens[stop - 1]),
-        fix=fix,
-        hints=(hint,) if fix is None else (),
-        repair=repair,
-    )
+    message = f"`{t.token.kind}` stands behind a definition, not inside an expression"
+    span = t.span(to=t.tokens[stop - 1])
+    return wrong("E0126", message, span, fix=fix, hints=(hint,) if fix is None else (), repair=repair)
 
 
 def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
@@ -94,14 +89,8 @@ def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
         return None
-    return wrong(
-        "E0111",
-        "a name is given its value by `=`, not `==`",
-        t.span(),
-        "`==` compares",
-        right="=",
-        repair=t.exchanged("="),
-    )
+    message = "a name is given its value by `=`, not `==`"
+    return wrong("E0111", message, t.span(), "`==` compares", right="=", repair=t.exchanged("="))
 
 
 def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
@@ -136,13 +125,9 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
             hints=("write the unit with the number: `80mm`, `30deg`",),
             repair=TokenRepair(t.position, t.position + 2),
         )
-    return wrong(
-        "E0109",
-        "a name is given its value by `=`, not `:`",
-        t.span(),
-        fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
-        repair=t.exchanged("="),
-    )
+    message = "a name is given its value by `=`, not `:`"
+    fix = replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " =")
+    return wrong("E0109", message, t.span(), fix=fix, repair=t.exchanged("="))
 
 
 def missing_equals(t: Trouble) -> SyntaxProblem | None:
@@ -192,13 +177,8 @@ def choice_without_parentheses(t: Trouble) -> SyntaxProblem | None:
     """Recognises `a == if c then b else d`."""
     if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
         return None
-    return wrong(
-        "E0101",
-        f"a choice stands in parentheses behind {describe(t.before or t.first)}",
-        t.span(),
-        "this begins a choice",
-        hints=("write `(if c then a else b)`",),
-    )
+    message = f"a choice stands in parentheses behind {describe(t.before or t.first)}"
+    return wrong("E0101", message, t.span(), "this begins a choice", hints=("write `(if c then a else b)`",))
 
 
 def typed_definition(t: Trouble) -> SyntaxProblem | None:
@@ -208,14 +188,10 @@ def typed_definition(t: Trouble) -> SyntaxProblem | None:
     kind, name = t.statement
     if kind.kind != "NAME" or name.kind != "NAME":
         return None
-    return wrong(
-        "E0113",
-        f"a definition has no type before its name: `{name.text} = …`",
-        t.span(kind),
-        "the value tells what it is",
-        fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
-        repair=TokenRepair(t.begin, t.begin + 1),
-    )
+    message = f"a definition has no type before its name: `{name.text} = …`"
+    label = "the value tells what it is"
+    fix = replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), "")
+    return wrong("E0113", message, t.span(kind), label, fix=fix, repair=TokenRepair(t.begin, t.begin + 1))
 
 
 def import_without_path(t: Trouble) -> SyntaxProblem | None:
@@ -223,13 +199,10 @@ def import_without_path(t: Trouble) -> SyntaxProblem | None:
     if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
         return None
     name = t.before.text
-    return wrong(
-        "E0103",
-        f"`import {name}` does not say from which file",
-        t.span(t.first, t.before),
-        "a file is named by its path, in quotes",
-        hints=(f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name',),
-    )
+    message = f"`import {name}` does not say from which file"
+    span = t.span(t.first, t.before)
+    hint = f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name'
+    return wrong("E0103", message, span, "a file is named by its path, in quotes", hints=(hint,))
 
 
 def nameless_structure(t: Trouble) -> SyntaxProblem | None:
@@ -241,13 +214,9 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
         inner = t.token.text[1:-1]
         name = "".join(c if c.isalnum() else "_" for c in inner) or word + "_1"
         name = name if name.isidentifier() else "_" + name
-        return wrong(
-            "E0116",
-            f"a name is written without quotes: `{word} {name}`",
-            t.span(),
-            right=name,
-            repair=TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),)),
-        )
+        message = f"a name is written without quotes: `{word} {name}`"
+        repair = TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),))
+        return wrong("E0116", message, t.span(), right=name, repair=repair)
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
     name = _fresh_name(t, word)
@@ -295,14 +264,9 @@ def repeated_placement(t: Trouble) -> SyntaxProblem | None:
     earlier = next((token for token in t.statement if token.kind == word), None)
     if word not in ("at", "rotated") or earlier is None or t.open:
         return None
-    return wrong(
-        "E0120",
-        f"`{word}` is said twice",
-        t.span(),
-        "the second time",
-        (Label(t.span(earlier), "the first time"),),
-        hints=("a structure has one position and one rotation",),
-    )
+    other = Label(t.span(earlier), "the first time")
+    hint = "a structure has one position and one rotation"
+    return wrong("E0120", f"`{word}` is said twice", t.span(), "the second time", (other,), hints=(hint,))
 
 
 def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
@@ -314,14 +278,9 @@ def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
         return None
     word = t.first.text
     where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"
-    return wrong(
-        "E0119",
-        f"`{word}` cannot stand inside `constrain`",
-        t.span(t.first),
-        "only constraints, `let`, `prefer`, `for` and `if` do",
-        hints=(f"move it {where}",),
-        with_block=True,
-    )
+    message = f"`{word}` cannot stand inside `constrain`"
+    label = "only constraints, `let`, `prefer`, `for` and `if` do"
+    return wrong("E0119", message, t.span(t.first), label, hints=(f"move it {where}",), with_block=True)
 
 
 def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
@@ -360,9 +319,5 @@ def _shortened(text: str) -> str:
 def else_without_if(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "else" or not t.between:
         return None
-    return wrong(
-        "E0101",
-        "`else` follows the block of an `if`, and there is none before it",
-        t.span(),
-        hints=("`if c { … } else { … }`",),
-    )
+    message = "`else` follows the block of an `if`, and there is none before it"
+    return wrong("E0101", message, t.span(), hints=("`if c { … } else { … }`",))

@@ -69,12 +69,9 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         return None
     text, number = t.token.text, before.text
     if text[0].isdigit() or text[0] == ".":
+        label = "more than one point"
         return wrong(
-            "E0105",
-            f"`{number}{text}` is not a number",
-            t.span(before, t.token),
-            "more than one point",
-            repair=t.exchanged(),
+            "E0105", f"`{number}{text}` is not a number", t.span(before, t.token), label, repair=t.exchanged()
         )
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
@@ -191,14 +188,10 @@ def spaced_unit(t: Trouble) -> SyntaxProblem | None:
         gap = Span(t.source, number.end, token.start)
         if "\n" in gap.text or not gap.text or any(unit in number.text for unit in UNITS):
             continue
-        return wrong(
-            "E0106",
-            f"a unit touches its number: `{number.text}{token.text}`",
-            t.span(number, token),
-            "the space ends the number",
-            fix=replaced("remove the space", gap, ""),
-            repair=TokenRepair(at, at + 1),
-        )
+        message = f"a unit touches its number: `{number.text}{token.text}`"
+        label = "the space ends the number"
+        fix = replaced("remove the space", gap, "")
+        return wrong("E0106", message, t.span(number, token), label, fix=fix, repair=TokenRepair(at, at + 1))
     return None
 
 
@@ -230,24 +223,16 @@ def operator_spelling(t: Trouble) -> SyntaxProblem | None:
             "...": ("`a..b` includes both ends, `a..<b` leaves out the last",),
             "..=": ("`a..b` includes both ends, `a..<b` leaves out the last",),
         }.get(written, ())
-        return wrong(
-            "E0109",
-            f"`{written}` is written `{right}`",
-            t.span(one, two),
-            right=right,
-            hints=hints,
-            repair=TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),)),
-        )
+        message = f"`{written}` is written `{right}`"
+        repair = TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),))
+        return wrong("E0109", message, t.span(one, two), right=right, hints=hints, repair=repair)
     one, two = t.token, t.following
     if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
         two := one, one := t.before or one
     ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
-        return wrong(
-            "E0109",
-            f"there is no `{one.text}=`: a name keeps the value it was given",
-            t.span(one, two),
-            hints=("give the new value a name of its own: `let longer = length + 5`",),
-        )
+        message = f"there is no `{one.text}=`: a name keeps the value it was given"
+        hint = "give the new value a name of its own: `let longer = length + 5`"
+        return wrong("E0109", message, t.span(one, two), hints=(hint,))
     return None
 
 
@@ -267,13 +252,9 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
         # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
-        return wrong(
-            "E0113",
-            f"there is no `{word}`: a definition begins with its name, `{name} = …`",
-            span,
-            fix=replaced(f"leave out `{word}`", rest, ""),
-            repair=TokenRepair(t.begin, t.begin + 1),
-        )
+        message = f"there is no `{word}`: a definition begins with its name, `{name} = …`"
+        fix = replaced(f"leave out `{word}`", rest, "")
+        return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, t.begin + 1))
     if right:
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
         if first.kind == "NAME" and _would_take(t, stand_in):
@@ -302,13 +283,9 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
         return None
     word = token.text
     if word == "at" and t.open and t.following.kind in (":", "="):
-        return wrong(
-            "E0104",
-            "`at` is a word of the language; where a shape is says its `center`",
-            t.span(token),
-            right="center",
-            repair=TokenRepair(at, at + 1, (token.but("NAME", "center"),)),
-        )
+        message = "`at` is a word of the language; where a shape is says its `center`"
+        repair = TokenRepair(at, at + 1, (token.but("NAME", "center"),))
+        return wrong("E0104", message, t.span(token), right="center", repair=repair)
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)
     stop = at + 1

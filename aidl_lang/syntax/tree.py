@@ -542,12 +542,9 @@ class ThenIf:
 
 def out_of_place(attribute: Span, before: str) -> Diagnostic:
     """Returns what is said of an attribute before something that takes none, or no other than `@allow`."""
-    return Diagnostic(
-        "E0119",
-        f"an attribute stands before a structure or a geometry, not before {before}",
-        attribute,
-        hints=('write it in front of the definition it is about: `@color("red") solid a { … }`',),
-    )
+    message = f"an attribute stands before a structure or a geometry, not before {before}"
+    hint = 'write it in front of the definition it is about: `@color("red") solid a { … }`'
+    return Diagnostic("E0119", message, attribute, hints=(hint,))
 
 
 class Nodes(Transformer_NonRecursive[Token, Any]):

@@ -159,13 +159,10 @@ _BODIES = ("statements", "body", "then", "otherwise", "items")
 
 def _idle(node: ast.ExpressionStatement) -> Diagnostic:
     assert isinstance(node.value, ast.Call)
-    return Diagnostic(
-        "N0504",
-        f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes",
-        node.span,
-        hints=("the output is named on the command line: `aidl compile plate.aidl -o plate.svg`",),
-        fix=Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True),
-    )
+    message = f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes"
+    hint = "the output is named on the command line: `aidl compile plate.aidl -o plate.svg`"
+    fix = Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True)
+    return Diagnostic("N0504", message, node.span, hints=(hint,), fix=fix)
 
 
 def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
@@ -187,14 +184,10 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
 def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
     """Reports `h = …` among constraints with a new name: it compares, but was meant to declare one."""
     start = Span(name.span.source, name.span.start, name.span.start)
-    resolver.report(
-        "E0201",
-        f"there is no `{name.text}` here; among constraints `=` compares",
-        name,
-        label="not declared",
-        hints=(f"`let {name.text} = …` names an expression; geometry is made outside",),
-        fix=Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None,
-    )
+    message = f"there is no `{name.text}` here; among constraints `=` compares"
+    hint = f"`let {name.text} = …` names an expression; geometry is made outside"
+    fix = Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None
+    resolver.report("E0201", message, name, label="not declared", hints=(hint,), fix=fix)
 
 
 def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None:
@@ -209,12 +202,8 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     called = scope.called(name)
     if called is not None:
         kind = kind_of(called[1][0])
-        resolver.report(
-            "E0206",
-            f"`{name}` is a {kind} and has to be called: `{name}(…)`",
-            node,
-            label="a name alone means a value",
-        )
+        message = f"`{name}` is a {kind} and has to be called: `{name}(…)`"
+        resolver.report("E0206", message, node, label="a name alone means a value")
         return
     hint = _VALUES.get(fold(name))
     like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
@@ -225,15 +214,9 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     secondary = (
         (Label(declared.declarations[0].span, "declared here"),) if declared and declared.declarations else ()
     )
-    resolver.report(
-        "E0201",
-        f"there is no `{name}` here" + did_you_mean(like),
-        node,
-        label="not declared",
-        secondary=secondary,
-        hints=hints,
-        fix=respell(node, like),
-    )
+    message = f"there is no `{name}` here" + did_you_mean(like)
+    fix = respell(node, like)
+    resolver.report("E0201", message, node, label="not declared", secondary=secondary, hints=hints, fix=fix)
 
 
 def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> None:
@@ -359,20 +342,13 @@ def check_aliases(resolver: Resolver, scope: SymbolScope) -> None:
             if trail[-1] in trail[:-1]:
                 break
         if len(trail) > 1 and trail[-1] in trail[:-1]:
-            resolver.report(
-                "E0207",
-                f"the alias `{symbol.name}` stands for itself: {' → '.join(trail)}",
-                target,
-                hints=("let one of them name a function, shape, constraint or template",),
-            )
+            message = f"the alias `{symbol.name}` stands for itself: {' → '.join(trail)}"
+            hint = "let one of them name a function, shape, constraint or template"
+            resolver.report("E0207", message, target, hints=(hint,))
             continue
         like = nearest(target.text, [n for n in scope.callable_names() if n != symbol.name], 2)
-        resolver.report(
-            "E0203",
-            f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like),
-            target,
-            fix=respell(target, like),
-        )
+        message = f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like)
+        resolver.report("E0203", message, target, fix=respell(target, like))
 
 
 def is_below(node: ast.Name, symbol: Symbol, scope: SymbolScope) -> bool:

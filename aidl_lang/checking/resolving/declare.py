@@ -117,13 +117,9 @@ class Declarer:
                 found.append(word.text)
                 continue
             like = nearest(word.text, [*PARAMETER_TYPES, *shapes], 2)
-            self.resolver.report(
-                "E0215",
-                f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else ""),
-                word,
-                hints=("types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes",),
-                fix=complaints.respell(word, like),
-            )
+            message = f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else "")
+            hint = "types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes"
+            self.resolver.report("E0215", message, word, hints=(hint,), fix=complaints.respell(word, like))
         return found
 
     # --- Values --------------------------------------------------------------------------------
@@ -198,13 +194,10 @@ class Declarer:
 
     def _same_index(self, node: ast.Structure | ast.Assign, indices: Sequence[ast.Expression]) -> None:
         name = node.name.text
-        self.resolver.report(
-            "E0208",
-            f"`{name}` gets the same index in every turn of this `for`",
-            indices[-1],
-            label="does not depend on the loop",
-            hints=("let the index depend on the loop variable",),
-        )
+        message = f"`{name}` gets the same index in every turn of this `for`"
+        label = "does not depend on the loop"
+        hint = "let the index depend on the loop variable"
+        self.resolver.report("E0208", message, indices[-1], label=label, hints=(hint,))
 
     def _value(
         self,

@@ -490,10 +490,6 @@ def _imports(nodes: Iterator[ast.Node]) -> Iterator[ast.Import]:
 
 
 def _misplaced(node: ast.Import, insertion: Edit) -> Diagnostic:
-    return Diagnostic(
-        "E0353",
-        "an import stands at the top of the file",
-        node.span,
-        "what it brings is known in the whole file",
-        fix=Fix("move it to the top", (Edit(node.span.with_separator, ""), insertion), is_sure=True),
-    )
+    message = "an import stands at the top of the file"
+    fix = Fix("move it to the top", (Edit(node.span.with_separator, ""), insertion), is_sure=True)
+    return Diagnostic("E0353", message, node.span, "what it brings is known in the whole file", fix=fix)
