@@ -99,13 +99,10 @@ def _unknown(code: str, place: Span) -> Diagnostic:
     codes = resources.codes()
     alike = [c for c in (code.upper(), *resources.near(code.upper())) if c in codes and c[0] != "E"]
     near = sorted(alike, key=lambda c: c[0] != code[:1].upper())[:1]
-    return Diagnostic(
-        "E0216",
-        f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else ""),
-        place,
-        hints=() if near else ("codes stand in brackets in front of a message: `note[N0602]: …`",),
-        fix=Fix(f"write `{near[0]}`", (Edit(place, f'"{near[0]}"'),)) if near else None,
-    )
+    message = f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else "")
+    hints = () if near else ("codes stand in brackets in front of a message: `note[N0602]: …`",)
+    fix = Fix(f"write `{near[0]}`", (Edit(place, f'"{near[0]}"'),)) if near else None
+    return Diagnostic("E0216", message, place, hints=hints, fix=fix)
 
 
 def audible(found: Iterable[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:

@@ -376,11 +376,7 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
     members = f"its members are {first_few(ticked(dict.fromkeys(known)), 8, '')}, …"
     if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
         like, members = [], "its corners are `a`, `b` and `c`, in the order in which they were given"
-    return check.report(
-        "E0202",
-        f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else ""),
-        node.name,
-        label=f"not a member of {what}",
-        hints=() if like else (members,) if known else (),
-        fix=respell(node.name, like),
-    )
+    message = f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else "")
+    label = f"not a member of {what}"
+    hints = () if like else (members,) if known else ()
+    return check.report("E0202", message, node.name, label=label, hints=hints, fix=respell(node.name, like))

@@ -152,13 +152,9 @@ def _ambiguous(
     argument = node.arguments[miss.argument - (len(given) - len(node.arguments))]
     word = argument.name or argument.value
     names = " or ".join(ticked(miss.meanings))
-    check.report(
-        "E0344",
-        f"`{shown(word)}` of `{node.callee.text}` could mean {names}",
-        word,
-        label="say which",
-        hints=[f"write `{name}: {shown(argument.value)}`" for name in miss.meanings],
-    )
+    message = f"`{shown(word)}` of `{node.callee.text}` could mean {names}"
+    hints = [f"write `{name}: {shown(argument.value)}`" for name in miss.meanings]
+    check.report("E0344", message, word, label="say which", hints=hints)
     return True
 
 
@@ -244,14 +240,10 @@ def _pair_for_one(
     takes_two = not is_said and any(sizes <= m.signature.by_fold.keys() for m in misses)
     takes_one = any("size" in m.signature.by_fold for m in misses)
     if takes_two and argument.name is None:
-        check.report(
-            "E0345",
-            f"the first argument of `{node.callee.text}` is its centre; sizes are named: `size: {text}`",
-            argument.value,
-            label="read as a point",
-            hints=_called_as([m.signature for m in misses][:1]),
-            fix=Fix("name it `size`", (Edit(span, "size: "),), is_sure=len(given) == 1),
-        )
+        message = f"the first argument of `{node.callee.text}` is its centre; sizes are named: `size: {text}`"
+        hints = _called_as([m.signature for m in misses][:1])
+        fix = Fix("name it `size`", (Edit(span, "size: "),), is_sure=len(given) == 1)
+        check.report("E0345", message, argument.value, label="read as a point", hints=hints, fix=fix)
     elif takes_one:
         two_sizes(check, node, argument)
     return takes_one or (takes_two and argument.name is None)
@@ -297,13 +289,9 @@ def _not_together(
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
         return False
     name = node.callee.text
-    check.report(
-        "E0311",
-        f"`{name}` does not take {' and '.join(ticked(n.text for n in written))} together",
-        written[-1],
-        label=f"in this call of `{name}`",
-        hints=_called_as([m.signature for m in misses[:5]]),
-    )
+    message = f"`{name}` does not take {' and '.join(ticked(n.text for n in written))} together"
+    hints = _called_as([m.signature for m in misses[:5]])
+    check.report("E0311", message, written[-1], label=f"in this call of `{name}`", hints=hints)
     return True
 
 

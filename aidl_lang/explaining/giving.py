@@ -313,21 +313,14 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
         owner = lowered.unknowns[unknowns[0]].owner
         while any(not lowered.unknowns[u].owner.is_within(owner) for u in unknowns) and owner.parent:
             owner = owner.parent
-        yield Diagnostic(
-            "N0603",
-            f"the degrees of freedom of `{owner.path}` could not be counted",
-            owner.span,
-            "some of its constraints nearly follow from others, or it is too large to tell",
-        )
+        message = f"the degrees of freedom of `{owner.path}` could not be counted"
+        label = "some of its constraints nearly follow from others, or it is too large to tell"
+        yield Diagnostic("N0603", message, owner.span, label)
     unclear = [stated for i in freedom.unclear if (stated := _stated(lowered, i)) is not None]
     if unclear and not freedom.undecided:
         first = min(unclear, key=lambda stated: stated.span.start)
-        yield Diagnostic(
-            "N0603",
-            f"which of {len(unclear)} constraints follow from others could not be told",
-            first.span,
-            "this is the first of them",
-        )
+        message = f"which of {len(unclear)} constraints follow from others could not be told"
+        yield Diagnostic("N0603", message, first.span, "this is the first of them")
 
 
 def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:

@@ -112,15 +112,11 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
     near = [h for c in false if c.relation == "==" for h in rounding(evaluate(c.left), evaluate(c.right))]
-    return Diagnostic(
-        "E0604",
-        f"assertion failed: {message}{where}",
-        assertion.span,
-        "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
-        places,
-        tuple(near) or (_hint(assertion, false, places),),
-        _stated(assertion),
-    )
+    span = assertion.span
+    label = "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written"
+    hints = tuple(near) or (_hint(assertion, false, places),)
+    fix = _stated(assertion)
+    return Diagnostic("E0604", f"assertion failed: {message}{where}", span, label, places, hints, fix)
 
 
 def _lost_way(assertion: Assertion) -> Diagnostic:

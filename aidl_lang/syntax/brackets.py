@@ -138,15 +138,11 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
         return None
     opener = t.open[-1]
     text = "".join(closers)
-    return wrong(
-        "E0102",
-        f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(t.gap(), f"`{text}` is missing"),),
-        fix=replaced(f"put in `{text}`", t.gap(), text),
-        repair=t.put_in(*closers),
-    )
+    message = f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here"
+    label = "opened here and not closed"
+    other = Label(t.gap(), f"`{text}` is missing")
+    fix = replaced(f"put in `{text}`", t.gap(), text)
+    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in(*closers))
 
 
 def unclosed_block(t: Trouble) -> SyntaxProblem | None:
@@ -160,15 +156,11 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
     place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
-    return wrong(
-        "E0102",
-        "expected `}` to close the block that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(place, "`}` is missing"),),
-        fix=replaced(CLOSE_BLOCK, place, closer),
-        repair=t.put_in("}"),
-    )
+    message = "expected `}` to close the block that begins here"
+    label = "opened here and not closed"
+    other = Label(place, "`}` is missing")
+    fix = replaced(CLOSE_BLOCK, place, closer)
+    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in("}"))
 
 
 def _misindented(t: Trouble, outermost: Token) -> Token | None:
@@ -240,15 +232,11 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
     if before.kind not in (*_VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
-    return wrong(
-        "E0112",
-        f"expected `,` before a block of arguments that begins with `{token.text}`",
-        place,
-        "a comma is missing here",
-        (Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here"),),
-        fix=replaced("put in `,`", place, ","),
-        repair=TokenRepair(n, n, (Token(",", ",", before.end, before.end),)),
-    )
+    message = f"expected `,` before a block of arguments that begins with `{token.text}`"
+    other = Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here")
+    fix = replaced("put in `,`", place, ",")
+    repair = TokenRepair(n, n, (Token(",", ",", before.end, before.end),))
+    return wrong("E0112", message, place, "a comma is missing here", (other,), fix=fix, repair=repair)
 
 
 def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
@@ -261,15 +249,11 @@ def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(*"}" * count, ")"):
         return None
     opener, text = t.open[-1], "}" * count
-    return wrong(
-        "E0102",
-        f"expected `{text}` to close the block that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(t.gap(), f"`{text}` is missing"),),
-        fix=replaced(f"put in `{text}`", t.gap(), " " + text),
-        repair=t.put_in(*text),
-    )
+    message = f"expected `{text}` to close the block that begins here"
+    label = "opened here and not closed"
+    other = Label(t.gap(), f"`{text}` is missing")
+    fix = replaced(f"put in `{text}`", t.gap(), " " + text)
+    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in(*text))
 
 
 def choice_in_block(t: Trouble) -> SyntaxProblem | None:
@@ -293,14 +277,11 @@ def name_in_block(t: Trouble) -> SyntaxProblem | None:
         message = f"an argument in a block has no name, and this is called `{name}`"
         return wrong("E0119", message, t.span(t.before, t.token), hints=(hint,))
     place = Span(t.source, t.before.start, t.before.start)
-    return wrong(
-        "E0119",
-        f"a block of arguments makes nothing, and `{name} = …` would",
-        t.span(t.before, t.token),
-        fix=replaced("write `let`", place, "let "),
-        hints=(f"`let {name} = …` names a value for the rest of the block",),
-        repair=TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),)),
-    )
+    message = f"a block of arguments makes nothing, and `{name} = …` would"
+    fix = replaced("write `let`", place, "let ")
+    hint = f"`let {name} = …` names a value for the rest of the block"
+    repair = TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),))
+    return wrong("E0119", message, t.span(t.before, t.token), fix=fix, hints=(hint,), repair=repair)
 
 
 def three_coordinates(t: Trouble) -> SyntaxProblem | None:

@@ -111,11 +111,8 @@ def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
     """Returns E0114 for a call whose `(` does not touch its name; it is read as the call that was meant."""
     name = token.text[:-1]
     gap = Span(source, token.start + len(name), token.end - 1)
-    return Diagnostic(
-        "E0114",
-        f"the `(` of a call touches its name: `{name}(`",
-        Span(source, token.start, token.end),
-        "a space ends the name here",
-        hints=("newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`",),
-        fix=replaced("remove the space", gap, ""),
-    )
+    message = f"the `(` of a call touches its name: `{name}(`"
+    span = Span(source, token.start, token.end)
+    label = "a space ends the name here"
+    hint = "newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`"
+    return Diagnostic("E0114", message, span, label, hints=(hint,), fix=replaced("remove the space", gap, ""))

@@ -136,16 +136,11 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
         Token("}", "}", t.tokens[last].end, t.tokens[last].end),
     )
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
-    return wrong(
-        "E0121",
-        f"the block of `{t.first.text}` stands in braces, not behind a colon",
-        t.span(),
-        "`{` belongs here, and `}` at the end of the block",
-        fix=Fix("put the block in braces", (opening, close), is_sure=True),
-        repair=TokenRepair(
-            t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])
-        ),
-    )
+    message = f"the block of `{t.first.text}` stands in braces, not behind a colon"
+    label = "`{` belongs here, and `}` at the end of the block"
+    fix = Fix("put the block in braces", (opening, close), is_sure=True)
+    repair = TokenRepair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1]))
+    return wrong("E0121", message, t.span(), label, fix=fix, repair=repair)
 
 
 def object_literal(t: Trouble) -> SyntaxProblem | None:

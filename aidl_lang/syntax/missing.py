@@ -117,14 +117,11 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
         return None
     after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
     if t.following.kind == "NAME" and after_next.kind == "=":
-        return wrong(
-            "E0109",
-            f"`{t.first.text}` takes no type: its value tells",
-            t.span(t.token, t.following),
-            fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
-            hints=("write the unit with the number: `80mm`, `30deg`",),
-            repair=TokenRepair(t.position, t.position + 2),
-        )
+        message = f"`{t.first.text}` takes no type: its value tells"
+        fix = replaced("remove the type", Span(t.source, t.gap().start, t.following.end), "")
+        hint = "write the unit with the number: `80mm`, `30deg`"
+        repair = TokenRepair(t.position, t.position + 2)
+        return wrong("E0109", message, t.span(t.token, t.following), fix=fix, hints=(hint,), repair=repair)
     message = "a name is given its value by `=`, not `:`"
     fix = replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " =")
     return wrong("E0109", message, t.span(), fix=fix, repair=t.exchanged("="))
@@ -302,13 +299,9 @@ def bare_value(t: Trouble) -> SyntaxProblem | None:
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None
     span = t.span(t.first, t.before)
-    return wrong(
-        "E0117",
-        f"`{_shortened(span.text)}` alone says nothing",
-        span,
-        "a statement defines a name, compares, or calls something",
-        hints=("to constrain it, compare it: `… == …`", "to name it, write `name = …`"),
-    )
+    label = "a statement defines a name, compares, or calls something"
+    hints = ("to constrain it, compare it: `… == …`", "to name it, write `name = …`")
+    return wrong("E0117", f"`{_shortened(span.text)}` alone says nothing", span, label, hints=hints)
 
 
 def _shortened(text: str) -> str:

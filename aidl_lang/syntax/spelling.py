@@ -30,15 +30,11 @@ def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
         return None
     end = Span(t.source, t.token.end, t.token.end)
     opening = Span(t.source, t.token.start, t.token.start + 2)
-    return wrong(
-        "E0107",
-        "this comment is not closed: expected `*/`",
-        opening,
-        "the comment begins here and takes in the rest of the file",
-        fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
-        hints=("close it with `*/`, or begin each line of it with `//`",),
-        repair=t.exchanged(),
-    )
+    message = "this comment is not closed: expected `*/`"
+    label = "the comment begins here and takes in the rest of the file"
+    fix = replaced("close the comment at the end of the file", end, " */", is_sure=False)
+    hint = "close it with `*/`, or begin each line of it with `//`"
+    return wrong("E0107", message, opening, label, fix=fix, hints=(hint,), repair=t.exchanged())
 
 
 def unclosed_string(t: Trouble) -> SyntaxProblem | None:
@@ -53,14 +49,11 @@ def unclosed_string(t: Trouble) -> SyntaxProblem | None:
     string = Token("STRING", written + closing, t.token.start, end)
     rest = tokenize(t.source, end, t.token.end).tokens[:-1]
     place = Span(t.source, end, end)
-    return wrong(
-        "E0107",
-        f"this text is not closed: expected `{text[0]}` before the end of the line",
-        Span(t.source, t.token.start, end),
-        "the text begins here",
-        fix=replaced(f"close the text with `{text[0]}`", place, closing),
-        repair=TokenRepair(t.position, t.position + 1, (string, *rest)),
-    )
+    message = f"this text is not closed: expected `{text[0]}` before the end of the line"
+    span = Span(t.source, t.token.start, end)
+    fix = replaced(f"close the text with `{text[0]}`", place, closing)
+    repair = TokenRepair(t.position, t.position + 1, (string, *rest))
+    return wrong("E0107", message, span, "the text begins here", fix=fix, repair=repair)
 
 
 def unknown_unit(t: Trouble) -> SyntaxProblem | None:
@@ -167,14 +160,11 @@ def _curly_quote(t: Trouble) -> SyntaxProblem:
         stand_in = (Token("STRING", quote + inner.replace("\\", "\\\\") + quote, t.token.start, close + 1),)
         while t.tokens[stop].kind != END and t.tokens[stop].start <= close:
             stop += 1
-    return wrong(
-        "E0108",
-        f"text stands in straight quotes: `{quote}`",
-        t.span() if close is None else Span(t.source, t.token.start, close + 1),
-        "this is a typographic quote",
-        fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
-        repair=TokenRepair(t.position, stop, stand_in),
-    )
+    message = f"text stands in straight quotes: `{quote}`"
+    span = t.span() if close is None else Span(t.source, t.token.start, close + 1)
+    label = "this is a typographic quote"
+    fix = Fix("make the quotes straight", tuple(edits), is_sure=True)
+    return wrong("E0108", message, span, label, fix=fix, repair=TokenRepair(t.position, stop, stand_in))
 
 
 def spaced_unit(t: Trouble) -> SyntaxProblem | None:

@@ -118,11 +118,8 @@ def _warning(source: SourceFile, place: int, begun: str) -> Diagnostic:
     sign = Span(source, place, place + 1)
     begun += sign.text.strip("+")
     before = len(source.text[:place].rstrip())
-    return Diagnostic(
-        "W0101",
-        f"a line that begins with `{sign.text}` continues the line above",
-        sign,
-        f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above",
-        hints=("if it was meant as a statement of its own, end the line above with `;`",),
-        fix=Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"), Edit(sign, begun))),
-    )
+    message = f"a line that begins with `{sign.text}` continues the line above"
+    label = f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above"
+    hint = "if it was meant as a statement of its own, end the line above with `;`"
+    fix = Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"), Edit(sign, begun)))
+    return Diagnostic("W0101", message, sign, label, hints=(hint,), fix=fix)

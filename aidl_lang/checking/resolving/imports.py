@@ -222,14 +222,11 @@ def nameless(statement: ast.Import, name: str) -> Diagnostic:
     """Returns the diagnostic on a drawing that is imported without a name."""
     span = statement.path.span
     edit = Edit(Span(span.source, span.end, span.end), f" as {name}")
-    return Diagnostic(
-        "E0361",
-        f"`{statement.path.value}` is a drawing, and is imported under a name",
-        statement.span,
-        "nothing says how it is called here",
-        hints=(f"then `{name}()` is all of it, and `{name}.part()` what is called `part` in it",),
-        fix=Fix(f"call it `{name}`", (edit,), is_sure=True),
-    )
+    message = f"`{statement.path.value}` is a drawing, and is imported under a name"
+    span = statement.span
+    hint = f"then `{name}()` is all of it, and `{name}.part()` what is called `part` in it"
+    fix = Fix(f"call it `{name}`", (edit,), is_sure=True)
+    return Diagnostic("E0361", message, span, "nothing says how it is called here", hints=(hint,), fix=fix)
 
 
 def read(path: str, data: bytes) -> ImportedDrawing:
