@@ -320,11 +320,9 @@ def _spell(
 
 def _may_be(kind: Type, node: ast.Expression) -> Type:
     """Returns the type of a number as whole if only its value can tell whether it is."""
-    if (
-        isinstance(node, ast.Number)
-        or not isinstance(kind, NumberType)
-        or kind.dimension not in (None, PLAIN)
-    ):
+    if isinstance(node, ast.Number) or not isinstance(kind, NumberType):
+        return kind
+    if kind.dimension not in (None, PLAIN):
         return kind
     return NumberType(kind.dimension, whole=True)
 

@@ -128,9 +128,8 @@ def _arithmetic(
         if x.dimension in (None, units.PLAIN):
             return Fact(NumberType(x.dimension), reads)
         return Fact(ANY, reads)
-    if (x.dimension is None) != (y.dimension is None) and not _is_plain(
-        node.left if x.dimension is None else node.right
-    ):
+    unclear = node.left if x.dimension is None else node.right
+    if (x.dimension is None) != (y.dimension is None) and not _is_plain(unclear):
         return Fact(ANY, reads)  # a bare param may be a length or a plain number, which only building shows
     combine = units.multiply if op == "*" else units.divide
     return Fact(NumberType(combine(x.dimension, y.dimension), op == "*" and x.whole and y.whole), reads)

@@ -67,11 +67,9 @@ def _centre(
     at: ast.Node, given: Sequence[GivenArgument], misses: Sequence[Mismatch], closest: Mismatch
 ) -> Fix | None:
     """Returns the fix that names the centre of a shape where a point is wanted, if the call fits with it."""
-    if (
-        closest.kinds is None
-        or closest.argument is None
-        or not isinstance(at, ast.Name | ast.Member | ast.Index)
-    ):
+    if closest.kinds is None or closest.argument is None:
+        return None
+    if not isinstance(at, ast.Name | ast.Member | ast.Index):
         return None
     wanted, kind = closest.kinds
     points = [*given]

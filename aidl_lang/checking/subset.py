@@ -265,11 +265,10 @@ class _Walker:
                     Fix("make it a `let`", (Edit(word, "let"),), is_sure=True),
                 )
             case ast.Call(callee=callee):
-                if isinstance(self._type(node), StructureType) and self._may_call(node, ast.Structure):
+                kind = self._type(node)
+                if isinstance(kind, StructureType) and self._may_call(node, ast.Structure):
                     self._report(Construct.TEMPLATE, callee.span, callee.text)
-                elif isinstance(self._type(node), TruthType) and self._may_call(
-                    node, ast.ConstraintDefinition
-                ):
+                elif isinstance(kind, TruthType) and self._may_call(node, ast.ConstraintDefinition):
                     self._report(Construct.RELATION, callee.span, callee.text)
                 self._smooth(node)
 

@@ -117,16 +117,13 @@ class _Walker:
         path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
             is_thing = self._is_thing(node)
-            is_made = isinstance(node, ast.Call) and self._makes_geometry(
-                self.infer.fact(node), node.callee.text
-            )
+            found = self.infer.fact(node)
+            is_made = isinstance(node, ast.Call) and self._makes_geometry(found, node.callee.text)
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
             follows = name in FOLLOWED and self._parameter(call, index)[0] == FOLLOWED[name]
-            if (derives or follows or (reach and is_thing)) and _may_derive(
-                self.infer.fact(node), site.homes
-            ):
+            if (derives or follows or (reach and is_thing)) and _may_derive(found, site.homes):
                 self._order(node, site)
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)

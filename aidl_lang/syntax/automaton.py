@@ -307,7 +307,17 @@ def closing(tokens: Sequence[Token], opening: int) -> int:
     """Returns the number of the bracket that closes one; -1 if it is missing, or beyond LONGEST tokens."""
     depth = 0
     for n in range(opening, min(len(tokens), opening + LONGEST)):
-        depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))
+        depth += tokens[n].nesting
         if depth == 0:
             return n
     return -1
+
+
+def opening(tokens: Sequence[Token], close: int) -> int:
+    """Returns the number of the bracket that one closes; its own if that is missing, or too far away."""
+    depth = 0
+    for n in range(close, max(close - LONGEST, -1), -1):
+        depth += tokens[n].nesting
+        if depth == 0:
+            return n
+    return close

@@ -11,6 +11,7 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    opening,
     replaced,
     wrong,
 )
@@ -35,12 +36,8 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
     asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
         asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
-        if (
-            token.kind == "["
-            and opened[-1:] in ([], ["{"])
-            and "CALL" not in opened
-            and len(found) < _MOST_LISTS
-        ):
+        begins = token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened
+        if begins and len(found) < _MOST_LISTS:
             before = tokens[n - 1].kind if n else ";"
             joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
@@ -67,12 +64,8 @@ def _holds_constraints(tokens: list[Token], brace: int) -> bool:
         return True
     if not brace or tokens[brace - 1].kind != ")":
         return False
-    depth = 0
-    for n in range(brace - 1, max(brace - LONGEST, 0), -1):
-        depth += (tokens[n].kind in (")", "]", "}")) - (tokens[n].kind in _CLOSER)
-        if depth == 0:
-            return tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
-    return False
+    n = opening(tokens, brace - 1)
+    return n > 0 and tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
 
 
 _MOST_LISTS = 100
@@ -118,7 +111,7 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
         token = t.tokens[stop]
         if token.kind in (END, "}") or token.start >= end:
             return None
-        depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
+        depth += token.nesting
     meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
     message = f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement"
@@ -138,11 +131,16 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
         return None
     opener = t.open[-1]
     text = "".join(closers)
-    message = f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here"
-    label = "opened here and not closed"
-    other = Label(t.gap(), f"`{text}` is missing")
     fix = replaced(f"put in `{text}`", t.gap(), text)
-    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in(*closers))
+    return _not_closed(t, opener, text, t.gap(), fix, t.put_in(*closers))
+
+
+def _not_closed(
+    t: Trouble, opener: Token, text: str, place: Span, fix: Fix, repair: TokenRepair
+) -> SyntaxProblem:
+    message = f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here"
+    label, other = "opened here and not closed", Label(place, f"`{text}` is missing")
+    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=repair)
 
 
 def unclosed_block(t: Trouble) -> SyntaxProblem | None:
@@ -156,11 +154,7 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
     place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
-    message = "expected `}` to close the block that begins here"
-    label = "opened here and not closed"
-    other = Label(place, "`}` is missing")
-    fix = replaced(CLOSE_BLOCK, place, closer)
-    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in("}"))
+    return _not_closed(t, opener, "}", place, replaced(CLOSE_BLOCK, place, closer), t.put_in("}"))
 
 
 def _misindented(t: Trouble, outermost: Token) -> Token | None:
@@ -171,9 +165,8 @@ def _misindented(t: Trouble, outermost: Token) -> Token | None:
             opened.append(token)
         elif token.kind == "}" and opened:
             opener = opened.pop()
-            if begins_line(t.source.text, token.start) and t.indentation(token.start) < t.indentation(
-                opener.start
-            ):
+            outer = t.indentation(opener.start)
+            if begins_line(t.source.text, token.start) and t.indentation(token.start) < outer:
                 return opener
     return None
 
@@ -185,9 +178,8 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
     for token in t.tokens:
         if token.start <= opener.start:
             continue
-        if (
-            begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
-        ) or token.kind == END:
+        is_outside = begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
+        if is_outside or token.kind == END:
             break
         last = token
     return Span(t.source, last.end, last.end)
@@ -224,7 +216,7 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
         token, before = t.tokens[n], t.tokens[n - 1]
         if token.kind in ("for", "if") and not depth:
             break
-        depth += (token.kind in (")", "]", "}")) - (token.kind in _CLOSER)
+        depth -= token.nesting
         if depth < 0:
             return None
     else:
@@ -249,11 +241,8 @@ def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(*"}" * count, ")"):
         return None
     opener, text = t.open[-1], "}" * count
-    message = f"expected `{text}` to close the block that begins here"
-    label = "opened here and not closed"
-    other = Label(t.gap(), f"`{text}` is missing")
     fix = replaced(f"put in `{text}`", t.gap(), " " + text)
-    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=t.put_in(*text))
+    return _not_closed(t, opener, text, t.gap(), fix, t.put_in(*text))
 
 
 def choice_in_block(t: Trouble) -> SyntaxProblem | None:

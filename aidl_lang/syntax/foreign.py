@@ -108,13 +108,7 @@ def _slice(t: Trouble, start: int, end: int) -> list[Token]:
 
 def indented_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `for i in 0..3:` and an indented block, as in Python."""
-    if (
-        t.between
-        or t.open
-        or t.token.kind != ":"
-        or not t.accepts("{", "}")
-        or t.following.kind in ("{", END)
-    ):
+    if t.between or t.open or t.token.kind != ":" or t.following.kind in ("{", END) or not t.accepts(*"{}"):
         return None
     text, indentation = t.source.text, t.indentation(t.first.start)
     end_of_head = line_end(text, t.token.start)
@@ -148,11 +142,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
     close = closing(t.tokens, t.position)
-    if (
-        close < 0
-        or t.following.kind not in ("NAME", "STRING")
-        or t.tokens[t.position + 2].kind not in (":", "=")
-    ):
+    two = t.tokens[t.position + 2] if close >= 0 else None
+    if two is None or two.kind not in (":", "=") or t.following.kind not in ("NAME", "STRING"):
         return None
     inner = t.tokens[t.position + 1 : close]
     keys: list[int] = []
@@ -160,7 +151,7 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     for n, token in enumerate(inner):
         if depth == 0 and (n == 0 or inner[n - 1].kind == ",") and n + 1 < len(inner):
             keys.append(n)
-        depth += (token.kind in ("CALL", "(", "[", "{")) - (token.kind in (")", "]", "}"))
+        depth += token.nesting
     names = [inner[n].text.strip("\"'") for n in keys]
     values = [inner[n + 2 : after] for n, after in zip(keys, [*keys[1:], len(inner) + 1], strict=True)]
     values = [v[:-1] if v and v[-1].kind == "," else v for v in values]
@@ -215,11 +206,10 @@ def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
     """
     depth, n = 0, at + step
     while n != limit:
-        kind = tokens[n].kind
-        opens, closes = kind in ("CALL", "(", "[", "{"), kind in (")", "]", "}")
-        if depth == 0 and (kind in (",", ";", ":", "=", END) or (closes if step > 0 else opens)):
+        deeper = step * tokens[n].nesting
+        if depth == 0 and (deeper < 0 or tokens[n].kind in (",", ";", ":", "=", END)):
             break
-        depth += step * (opens - closes)
+        depth += deeper
         n += step
     return n
 
@@ -260,20 +250,12 @@ _ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">="
 
 def loose_point(t: Trouble) -> SyntaxProblem | None:
     """Recognises `5.`."""
-    before = t.before
-    if t.token.kind != "." or before is None or before.kind != "NUMBER" or not t.touches:
-        if (
-            before is None
-            or before.kind != "."
-            or t.position < 2
-            or t.tokens[t.position - 2].kind != "NUMBER"
-        ):
-            return None
-        point, number, at = before, t.tokens[t.position - 2], t.position - 1
-    else:
-        point, number, at = t.token, before, t.position
-    span, right, repair = t.span(number, point), number.text, TokenRepair(at, at + 1)
-    return wrong("E0105", f"`{right}.` is written `{right}`", span, right=right, repair=repair)
+    for at in (t.position, t.position - 1) if t.before is not None else ():
+        number, point = t.tokens[at - 1], t.tokens[at]
+        if at and point.kind == "." and number.kind == "NUMBER" and (at < t.position or t.touches):
+            span, right, repair = t.span(number, point), number.text, TokenRepair(at, at + 1)
+            return wrong("E0105", f"`{right}.` is written `{right}`", span, right=right, repair=repair)
+    return None
 
 
 def word_for_sign(t: Trouble) -> SyntaxProblem | None:
@@ -323,13 +305,9 @@ def several_names(t: Trouble) -> SyntaxProblem | None:
 
 def documentation_text(t: Trouble) -> SyntaxProblem | None:
     """Recognises a text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`."""
-    if (
-        t.token.kind not in ("STRING", UNKNOWN)
-        or t.token.text[0] not in "\"'"
-        or not (t.between or t.complete)
-    ):
+    if t.token.kind not in ("STRING", UNKNOWN) or t.token.text[0] not in "\"'":
         return None
-    if not t.on_new_line and not t.between:
+    if not (t.between or (t.complete and t.on_new_line)):
         return None
     quotes = t.source.text[t.token.start : t.token.start + 3]
     stop, end, inner = t.position + 1, t.token.end, t.token.text.strip("\"'")

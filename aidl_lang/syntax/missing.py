@@ -6,26 +6,24 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Fix, Label
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, replaced, wrong
+from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, opening, replaced, wrong
 from aidl_lang.syntax.tables import END, STATEMENT_WORDS, VALUE_STARTS, Token, begins_line, describe, kind_of
 from aidl_lang.syntax.tree import out_of_place
 
 # --- Placements in lists and arguments, where none can stand.
-
-_OPENING, _CLOSING = ("CALL", "(", "[", "{"), (")", "]", "}")
 
 
 def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
     if t.token.kind not in ("at", "rotated") or not t.open or t.before is None or t.before.kind != ")":
         return None
-    opening = t.tokens.index(t.open[-1], t.begin)
-    close = closing(t.tokens, opening)
+    begin = t.tokens.index(t.open[-1], t.begin)
+    close = closing(t.tokens, begin)
     if close < t.position or t.tokens[close].kind != ("]" if t.open[-1].kind == "[" else ")"):
         return None
-    listed = _as_members(t, opening, close)
+    listed = _as_members(t, begin, close)
     stop = _item_end(t.tokens, t.position, close)
-    call = f"{t.tokens[_call_start(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
+    call = f"{t.tokens[opening(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
     hint = f"give the part a name of its own: `part = {call}`"
     if t.tokens[stop].kind == "for":
         hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
@@ -69,16 +67,7 @@ def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
     for n in range(start, close):
         if depth == 0 and tokens[n].kind in (",", "for"):
             return n
-        depth += (tokens[n].kind in _OPENING) - (tokens[n].kind in _CLOSING)
-    return close
-
-
-def _call_start(tokens: Sequence[Token], close: int) -> int:
-    depth = 0
-    for n in range(close, -1, -1):
-        depth += (tokens[n].kind in _CLOSING) - (tokens[n].kind in _OPENING)
-        if depth == 0:
-            return n
+        depth += tokens[n].nesting
     return close
 
 
@@ -288,13 +277,9 @@ def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
 
 def bare_value(t: Trouble) -> SyntaxProblem | None:
     """Recognises an expression as a statement that neither constrains nor does anything."""
-    if (
-        t.between
-        or t.open
-        or not t.accepts("==", "NAME")
-        or t.accepts(";")
-        or t.first.kind in STATEMENT_WORDS
-    ):
+    if t.between or t.open or t.first.kind in STATEMENT_WORDS:
+        return None
+    if t.accepts(";") or not t.accepts("==", "NAME"):
         return None
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None

@@ -216,13 +216,11 @@ def operator_spelling(t: Trouble) -> SyntaxProblem | None:
         message = f"`{written}` is written `{right}`"
         repair = TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),))
         return wrong("E0109", message, t.span(one, two), right=right, hints=hints, repair=repair)
-    one, two = t.token, t.following
-    if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
-        two := one, one := t.before or one
-    ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
-        message = f"there is no `{one.text}=`: a name keeps the value it was given"
-        hint = "give the new value a name of its own: `let longer = length + 5`"
-        return wrong("E0109", message, t.span(one, two), hints=(hint,))
+    for one, two in ((t.token, t.following), (t.before or t.token, t.token)):
+        if one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start:
+            message = f"there is no `{one.text}=`: a name keeps the value it was given"
+            hint = "give the new value a name of its own: `let longer = length + 5`"
+            return wrong("E0109", message, t.span(one, two), hints=(hint,))
     return None
 
 

@@ -252,6 +252,11 @@ class Token(LarkToken):
         token.line = token.column = token.end_line = token.end_column = None
         return token
 
+    @property
+    def nesting(self) -> int:
+        """1 for a bracket that opens, -1 for one that closes, else 0."""
+        return (self.kind in ("CALL", "(", "[", "{")) - (self.kind in (")", "]", "}"))
+
     def but(self, kind: str, text: str) -> Token:
         """Returns another token in the place of this one."""
         return Token(kind, text, self.start, self.end)
