@@ -455,11 +455,11 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
 
 
 def _next(
-    rest: Sequence[_Pair], end: tuple[float, float], near: float
+    rest: Sequence[_Pair], at: tuple[float, float], near: float
 ) -> tuple[_Pair, Stretch | Cubic] | None:
     for pair in rest:
         for stretch in pair:
-            if math.dist(_value(stretch.start), end) <= near:
+            if math.dist(_value(stretch.start), at) <= near:
                 return pair, stretch
     return None
 

@@ -222,9 +222,8 @@ def _structure(
         if not _lies_inside(primitive, whole, ignored):
             yield from _curve(primitive, here, side)
     for child in source.children:
-        is_clipped = child.ground is source or (
-            bool(child.clip) and all(_is_in(g, whole, ignored) for g in child.clip)
-        )
+        clips = child.clip
+        is_clipped = child.ground is source or (bool(clips) and all(_is_in(g, whole, ignored) for g in clips))
         if child.kind != "hole" and child not in ignored and not is_clipped:
             yield from _structure(child, whole, here, side, ignored)
 
@@ -246,9 +245,8 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
             covers = recipe.operands[:1]
         case "offset" if recipe.numbers["distance"].value <= 0:
             covers = recipe.operands
-    return any(
-        all(_is_in(g, whole, ignored) or _lies_inside(g, whole, ignored) for g in cover) for cover in covers
-    )
+    inside = whole, ignored
+    return any(all(_is_in(g, *inside) or _lies_inside(g, *inside) for g in cover) for cover in covers)
 
 
 def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:

@@ -262,9 +262,8 @@ def _coordinate(
     offset = number.value - first.value
     if Exactness.PARAM in (number.status, first.status):
         return ex.add(base, ex.constant(offset))
-    kept = it.unknown(
-        offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True, since=since
-    )
+    field = f"{name}.d{axis}"
+    kept = it.unknown(offset, holder, field, owner=owner, dimension=LENGTH, kept=True, since=since)
     return ex.add(base, kept)
 
 
@@ -376,9 +375,8 @@ def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
     g.fields = _points(it, g, a, ("center",))
     radius = _size(it, g, a, "radius")
     ends = {n: _size(it, g, a, f"{n}_angle", ANGLE) for n in ("start", "end")}
-    g.fields |= {
-        n: polar(g.fields["center"], radius.expression, angle.expression) for n, angle in ends.items()
-    }
+    centre = g.fields["center"]
+    g.fields |= {n: polar(centre, radius.expression, angle.expression) for n, angle in ends.items()}
     g.fields |= {"radius": radius, "start_angle": ends["start"], "end_angle": ends["end"]}
 
 
@@ -435,9 +433,7 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
     (signature,) = SIGNATURES[kind]
     fields = [each for each in signature.parameters if each[0] in PRIMITIVES[kind].types]
     points = tuple(name for name, of, _ in fields if isinstance(of, PointType))
-    return points, tuple(
-        (name, of, is_optional) for name, of, is_optional in fields if isinstance(of, NumberType)
-    )
+    return points, tuple((name, of, may_lack) for name, of, may_lack in fields if isinstance(of, NumberType))
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:

@@ -313,9 +313,8 @@ def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expressi
     axis, positive, core = side in ("top", "bottom"), side in ("right", "top"), view(g, here)
     angle = number(core["angle"])
     along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
-    half_width = ex.apply(
-        "hypot", ex.mul(number(core["rx"]), along(angle)), ex.mul(number(core["ry"]), across(angle))
-    )
+    parts = ex.mul(number(core["rx"]), along(angle)), ex.mul(number(core["ry"]), across(angle))
+    half_width = ex.apply("hypot", *parts)
     yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
 
 

@@ -242,10 +242,9 @@ def _asked(cause: ast.Node, name: str) -> tuple[str, str]:
     if isinstance(cause, ast.Call):
         return cause.callee.text, cause.span.one_line
     assert isinstance(cause, ast.Placement)
-    moved = (
-        f"copy({name}, by: {cause.at.span.one_line})" if cause.at is not None else f"copy({name}, angle: …)"
-    )
-    return "at" if cause.at is not None else "rotated", moved
+    if cause.at is None:
+        return "rotated", f"copy({name}, angle: …)"
+    return "at", f"copy({name}, by: {cause.at.span.one_line})"
 
 
 def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:

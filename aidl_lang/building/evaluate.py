@@ -355,9 +355,8 @@ def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
     values = [evaluate(it, operand, env) for operand in node.operands]
     result: Value = True
     for i, operator in enumerate(node.operators):
-        pair = compare(
-            it, operator, values[i], values[i + 1], node, env, node.operands[i], node.operands[i + 1]
-        )
+        sides = node.operands[i : i + 2]
+        pair = compare(it, operator, values[i], values[i + 1], node, env, *sides)
         result = conjunction(it, "and", result, pair, node)
     return result
 

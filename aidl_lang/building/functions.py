@@ -318,11 +318,9 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     word = a["word"]
-    words = [w.value for w in members(a["words"]) or () if isinstance(w, TextVal)]
+    words = dict.fromkeys(w.value for w in members(a["words"]) or () if isinstance(w, TextVal))
     assert isinstance(word, TextVal)
-    meant = find(word.value, dict.fromkeys(words)) or find(
-        _SAME_WORD.get(word.value, ""), dict.fromkeys(words)
-    )
+    meant = find(word.value, words) or find(_SAME_WORD.get(word.value, ""), words)
     if meant is None:
         like = nearest(word.value, words)
         hints = [f'did you mean `"{like[0]}"`?'] if like else []
@@ -344,9 +342,7 @@ def _mark(status: Exactness) -> Function:
             case Num(expression, dimension, _):
                 return Num(expression, dimension, status)
             case PointVal(x, y):
-                return PointVal(
-                    Num(x.expression, x.dimension, status), Num(y.expression, y.dimension, status)
-                )
+                return PointVal(*(Num(c.expression, c.dimension, status) for c in (x, y)))
             case ListVal(items):
                 return ListVal(tuple(map(mark, items)))
             case _:

@@ -356,9 +356,8 @@ def _is_angle(node: ast.Node) -> bool:
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
     """Returns a geometry in the boxes of comparisons that is derived of some outside of their structure."""
     spoken_of = {s for c in comparisons for s in c.boxes}
-    return next(
-        (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
-    )
+    outside = (g for g in it.following if not g.bound_to.is_within(here))
+    return next((g for g in outside if spoken_of & _boxes_of(g)), None)
 
 
 def _boxes_of(g: Geometry) -> set[Structure]:
@@ -510,9 +509,8 @@ def _read_items(it: Interpreter, statements: Sequence[ast.Statement], scope: Sco
             case ast.For():
                 for item in iterate(it, node.iterable, env) or ():
                     it.count_turn(node)
-                    _read_items(
-                        it, node.body.statements, turn_scope(it, scope, node.variables, item, node), here
-                    )
+                    turn = turn_scope(it, scope, node.variables, item, node)
+                    _read_items(it, node.body.statements, turn, here)
             case ast.If():
                 test = evaluate(it, node.test, env)
                 if not isinstance(test, Nothing):

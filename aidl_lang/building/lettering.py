@@ -176,9 +176,8 @@ def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints:
 
 def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node, font: str) -> None:
     names = first_few(list(map(lettering.described, unknown)), 5)
-    instead = [
-        f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
-    ]
+    others = {c: lettering.replacement(c) for c in unknown[:5]}
+    instead = [f"write `{other}` for `{c}`" for c, other in others.items() if other is not None]
     if font != PLAIN_FONT:
         report_once(it, "E0350", f"`{font}` has no {names}", node, instead)
         return

@@ -296,9 +296,8 @@ class _Lowering:
         place, a side of its box along x and one along y, a point that can move in it, a structure in it.
         """
         named = self.named_things.get(s, set())
-        along = (
-            {thing for thing in named if isinstance(thing, frozenset) and thing & axis} for axis in _SIDES
-        )
+        sides = {thing for thing in named if isinstance(thing, frozenset)}
+        along = ({side for side in sides if side & axis} for axis in _SIDES)
         inside = sum(thing is not None and not isinstance(thing, frozenset) for thing in named)
         movable = (any(u in self.numbers for u in ex.unknowns([at])) for at in (s.frame.x, s.frame.y))
         return inside + max(None in named, *map(len, along)) < 2 and all(movable)
@@ -377,13 +376,12 @@ class _Lowering:
 
     def _constraint(self, constraint: Constraint) -> SolverConstraint:
         rows = tuple(self._row(c) for c in constraint.comparisons)
-        placed = frozenset(
-            self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
-        )
+        placed = {u for c in constraint.comparisons for u in c.placed}
         named = self.named[constraint] if constraint in self.named else self._named(constraint)
         whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
+        numbers = frozenset(self.numbers[u] for u in placed if u in self.numbers)
         return SolverConstraint(
-            self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
+            self.groups[constraint.holder], rows, numbers, constraint.weight, whole, inside
         )
 
     def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
@@ -413,9 +411,8 @@ class _Lowering:
             if comparison.dimension == ANGLE:
                 # Angles agree modulo a turn: the difference as a direction, smooth except at half a turn.
                 radians = tape.mul(difference, tape.constant(1 / _RADIAN))
-                difference = tape.mul(
-                    tape.atan2(tape.sin(radians), tape.cos(radians)), tape.constant(_RADIAN)
-                )
+                turn = tape.atan2(tape.sin(radians), tape.cos(radians))
+                difference = tape.mul(turn, tape.constant(_RADIAN))
             return Row(difference, Relation.EQUAL, scale)
         if comparison.relation in (">=", ">"):
             left, right = right, left

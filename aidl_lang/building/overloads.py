@@ -61,9 +61,9 @@ def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
     value = values[source.index]
     if source.other is not None:
         x, y = value, values[source.other]
-        return (
-            PointVal(_coordinate(x), _coordinate(y)) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
-        )
+        if isinstance(x, Num) and isinstance(y, Num):
+            return PointVal(_coordinate(x), _coordinate(y))
+        return NOTHING
     match value:
         case PointVal(x, y) if source.part is not None:
             return (x, y)[source.part]
@@ -275,10 +275,8 @@ def no_overload(
     if it.place(node) is not node.span:
         # An error in the library on a pair of things is reported at the author's call, in the author's words.
         things = [v for v in values if not isinstance(v, TextVal | bool)]
-        pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
-        known = dict.fromkeys(
-            " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds
-        )
+        pairs = [[of for _, of, _ in m.signature.parameters] for m in misses]
+        known = dict.fromkeys(" and ".join(map(with_article, of[:2])) for of in pairs if ANY not in of)
         hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
         it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
         return

@@ -129,9 +129,8 @@ class _Call:
 
     def is_without_place(self, centre: Place) -> bool:
         """True for a shape without a name that lies around the origin: one that was given no place."""
-        return (
-            isinstance(self.thing, Geometry) and self.thing.name is None and not any(c.value for c in centre)
-        )
+        is_nameless = isinstance(self.thing, Geometry) and self.thing.name is None
+        return is_nameless and not any(c.value for c in centre)
 
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
@@ -209,9 +208,8 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
     def motion(index: Index) -> Motion | None:
         away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
         if goes_on:
-            return (
-                Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if first is back or any(index) else None
-            )
+            moves = first is back or any(index)
+            return Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if moves else None
         return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
 
     return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))
@@ -229,9 +227,8 @@ def _polar_array(call: _Call) -> Value:
     if n is None:
         return NOTHING
     if "radius" not in call.a and not call.has_place:
-        return call.wrong(
-            "a template is laid out on a circle, whose `radius` is not said", "as in `radius: 20`"
-        )
+        what = "a template is laid out on a circle, whose `radius` is not said"
+        return call.wrong(what, "as in `radius: 20`")
     center = call.position("center")
     start = call.size("start") if "start" in call.a else ex.ZERO
     step = _step(call, n)
@@ -370,9 +367,8 @@ def _way(call: _Call) -> Way | None:
         return None
     found = way_along(curves, call.env.here) if curves else None
     if found is None:
-        call.wrong(
-            "`along` follows one line, open or closed, and this is none or several", "name one of them"
-        )
+        what = "`along` follows one line, open or closed, and this is none or several"
+        call.wrong(what, "name one of them")
     return found
 
 
@@ -421,9 +417,8 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     inside = a["inside"]
     if inside != _UPRIGHT and not isinstance(inside, bool):
         what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
-        report_once(
-            it, "E0516", what, it.call_sites[-1], ["leave it out for the side on which it is upright"]
-        )
+        hint = "leave it out for the side on which it is upright"
+        report_once(it, "E0516", what, it.call_sites[-1], [hint])
         return NOTHING
     side = inside if isinstance(inside, bool) else None
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None

@@ -100,6 +100,7 @@ class CopiedBinding:
     carry: Callable[[str, Value, Structure], Value]
 
 
+CallEdit: TypeAlias = "Callable[[Binding, dict[str, Value]], dict[str, Value]]"
 NameBinding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding | CopiedBinding"
 
 
@@ -280,9 +281,7 @@ class Interpreter:
     copiers: list[Copier] = field(default_factory=list)
     """the makers of the copies, in order"""
     ahead: list[Ahead] = field(default_factory=list)
-    edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(
-        default_factory=dict
-    )
+    edits: dict[ast.Call, CallEdit] = field(default_factory=dict)
     """calls that are run with their arguments changed"""
     edited: set[tuple[ast.Call, tuple[str, ...]]] = field(default_factory=set)
     """edits that were applied, and in which turns of the loops around"""
@@ -454,11 +453,9 @@ class Interpreter:
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
-        made = Unknown(
-            guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied
-        )
-        self.unknowns.append(made)
-        return ex.unknown(made)
+        new = Unknown(guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied)
+        self.unknowns.append(new)
+        return ex.unknown(new)
 
     def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
         """Reports a first guess at which the solver could not begin. Returns another."""

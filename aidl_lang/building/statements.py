@@ -166,9 +166,8 @@ def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
     test = evaluate(it, node.test, Env(scope, here, Reach.OWN))
     if isinstance(test, Nothing):
         return
-    taken, left_out = (
-        (node.then, node.otherwise) if truth(it, test, node.test) else (node.otherwise, node.then)
-    )
+    both = (node.then, node.otherwise)
+    taken, left_out = both if truth(it, test, node.test) else both[::-1]
     if left_out is not None:
         scope.unbuilt |= dict.fromkeys(declared_names(left_out), node)
     if taken is not None:

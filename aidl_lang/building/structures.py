@@ -97,9 +97,8 @@ def _tell(
         f"in the solid itself it is a whole one: `{name} = {call.callee.text}(…) at (x, y)`, without `hole`",
         f"or say it of this hole: `@{said}(…) hole {name} {{ … }}`",
     )
-    it.report(
-        _CODE, f"in a `hole`, `{call.callee.text}` is a bare circle: {_LOST[said]}", call, "", hints, fix
-    )
+    message = f"in a `hole`, `{call.callee.text}` is a bare circle: {_LOST[said]}"
+    it.report(_CODE, message, call, hints=hints, fix=fix)
 
 
 def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> Fix | None:

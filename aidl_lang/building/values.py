@@ -62,10 +62,8 @@ class Num:
 
     @property
     def is_whole(self) -> bool:
-        value = self.expression.value
-        return (
-            self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
-        )
+        value = self.expression.value  # maybe not a number
+        return self.dimension in (None, PLAIN) and abs(value) < 1e15 and value == int(value)
 
 
 @record(slots=True)

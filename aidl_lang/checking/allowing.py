@@ -63,9 +63,8 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
             if code in resources.codes() and not code.startswith("E"):
                 is_alone = len(attribute.arguments) == 1
                 may_come = code in _LATER or not (code.startswith(_OF_TEXT) or _is_still(modules))
-                allowed.append(
-                    Allowance(code, statement.span, value.span, attribute.span, is_alone, may_come)
-                )
+                places = statement.span, value.span, attribute.span
+                allowed.append(Allowance(code, *places, is_alone, may_come))
             else:
                 wrong.append(_unknown(code, value.span))
     return tuple(allowed), wrong

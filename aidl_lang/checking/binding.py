@@ -292,10 +292,8 @@ def _filling(
     for choice in choices:
         if len(choice) < len(following):
             break
-        late = [
-            (replace(given[i], name=name), ArgumentSource(i))
-            for i, name in zip(following, choice, strict=False)
-        ]
+        pairs = zip(following, choice, strict=False)
+        late = [(replace(given[i], name=name), ArgumentSource(i)) for i, name in pairs]
         outcome = _bound(signature, [*renamed, *late])
         if isinstance(outcome, Binding):
             break
@@ -389,10 +387,8 @@ def _joined(signature: Signature, read: _Read) -> _Read:
             continue
         pair = found[x], found[y]
         if all(accepts(NumberType(LENGTH), g.type) is not None for g, _ in pair):
-            point = (
-                GivenArgument(target, PointType()),
-                ArgumentSource(pair[0][1].index, other=pair[1][1].index),
-            )
+            source = ArgumentSource(pair[0][1].index, other=pair[1][1].index)
+            point = GivenArgument(target, PointType()), source
             read = [one for one in read if one not in pair] + [point]
     return read
 

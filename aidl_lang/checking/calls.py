@@ -167,11 +167,8 @@ def _not_degrees(
     elif isinstance(value, ast.Number):
         right = text + unit
     else:
-        right = (
-            f"{text} * 1{unit}"
-            if isinstance(value, ast.Name | ast.Member | ast.Call)
-            else f"({text}) * 1{unit}"
-        )
+        is_one = isinstance(value, ast.Name | ast.Member | ast.Call)
+        right = f"{text} * 1{unit}" if is_one else f"({text}) * 1{unit}"
     check.report(
         "E0348",
         f"{message}; an angle is written with its unit: `{right}`",

@@ -274,12 +274,8 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
                 Fix("constrain the first of them", (Edit(node.span, left.span.text),)),
             )
         case ast.Unary(operator="not", operand=operand) if infer.fact(node).reads:
-            _cannot(
-                infer,
-                node,
-                "not",
-                f"constrain what shall hold instead; `assert not {shown(operand)}` checks it",
-            )
+            hint = f"constrain what shall hold instead; `assert not {shown(operand)}` checks it"
+            _cannot(infer, node, "not", hint)
         case ast.Comparison(operators=operators) if "!=" in operators and infer.fact(node).reads:
             _cannot(infer, node, "!=", "say on which side, with `<=` or `>=` and a distance, or `assert` it")
 

@@ -150,9 +150,8 @@ def compare(
     if x.is_any or y.is_any:
         return
     if is_number(x.type) and is_number(y.type):
-        check.same_dimension(
-            check.numeric(left), check.numeric(right), node, f"`{operator}` does not compare"
-        )
+        what = f"`{operator}` does not compare"
+        check.same_dimension(check.numeric(left), check.numeric(right), node, what)
         return
     if is_point(x.type) and is_point(y.type):
         if operator not in ("==", "!="):
@@ -170,10 +169,8 @@ def compare(
 
 
 def membership(check: Inference, node: ast.Membership) -> Fact:
-    value, container = (
-        check.fact(node.value),
-        check.wants(node.container, "a range or a list", RangeType, ListType),
-    )
+    value = check.fact(node.value)
+    container = check.wants(node.container, "a range or a list", RangeType, ListType)
     if isinstance(node.container, ast.Range) and isinstance(container.type, RangeType):
         compare(check, ">=", node.value, node.container.start, node)
         if not isinstance(node.container.end, ast.Number):
@@ -277,9 +274,8 @@ def _holding(check: Inference, scope: SymbolScope, name: str) -> list[str]:
         return []
     if builtins.is_box_name(name) or fold(name) in FIELDS:
         return []
-    inner = (
-        (key, symbol.node) for key, symbol in scope.values.items() if isinstance(symbol.node, ast.Structure)
-    )
+    nodes = ((key, symbol.node) for key, symbol in scope.values.items())
+    inner = ((key, node) for key, node in nodes if isinstance(node, ast.Structure))
     return [key for key, node in inner if name in check.resolution.scope_of(node).values]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
 from aidl_lang.checking.calls import two_sizes
@@ -32,13 +32,15 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
 
+Misses: TypeAlias = Sequence[Mismatch]
+
 
 def no_overload(
     check: Inference,
     node: ast.Call,
     nodes: Sequence[ast.Expression],
     given: Sequence[GivenArgument],
-    misses: Sequence[Mismatch],
+    misses: Misses,
 ) -> None:
     if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
         message, fix = called_field(node)
@@ -63,9 +65,7 @@ def no_overload(
     )
 
 
-def _centre(
-    at: ast.Node, given: Sequence[GivenArgument], misses: Sequence[Mismatch], closest: Mismatch
-) -> Fix | None:
+def _centre(at: ast.Node, given: Sequence[GivenArgument], misses: Misses, closest: Mismatch) -> Fix | None:
     """Returns the fix that names the centre of a shape where a point is wanted, if the call fits with it."""
     if closest.kinds is None or closest.argument is None:
         return None
@@ -140,9 +140,7 @@ def _knows(signature: Signature, word: str) -> bool:
     return any(fold(m) in known for m in meanings) or all(p in known for p in pair)
 
 
-def _ambiguous(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _ambiguous(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     """Reports a word or a place that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
@@ -156,9 +154,7 @@ def _ambiguous(
     return True
 
 
-def _filled_twice(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     """Reports arguments without a name that stand for parameters which are named as well: `rectangle(20, 10,
     bottom_center: p)`. Returns whether they would fit by name.
     """
@@ -184,7 +180,7 @@ def _filled_twice(
 
 
 def _loose_coordinates(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
     """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether it did."""
     if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
@@ -222,9 +218,7 @@ def _loose_coordinates(
     return False
 
 
-def _pair_for_one(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _pair_for_one(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether it did."""
     pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
     if len(given) != len(node.arguments) or len(pairs) != 1:
@@ -255,9 +249,7 @@ def _may_be_size(argument: ast.Argument) -> bool:
     return argument.name is None or fold(argument.name.text) in ("size", "s", "dimensions", "dims")
 
 
-def _half_or_double(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _half_or_double(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     for argument in node.arguments:
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
@@ -279,9 +271,7 @@ def _half_or_double(
     return False
 
 
-def _not_together(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _not_together(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     """Reports named arguments that some overloads know, but none all of them. Returns whether it did."""
     written = [a.name for a in node.arguments if a.name is not None]
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
@@ -298,7 +288,7 @@ def _meanings(word: str, names: Sequence[str]) -> list[str]:
 
 
 def _unknown_parameter(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
@@ -343,10 +333,8 @@ def _placed_within(check: Inference, node: ast.Call, identifier: ast.Identifier)
     if k > 0:
         gone = Span(node.span.source, node.arguments[k - 1].span.end, argument.span.end)
     else:
-        after = node.arguments[1:2]
-        gone = Span(
-            node.span.source, argument.span.start, after[0].span.start if after else argument.span.end
-        )
+        end = node.arguments[1].span.start if len(node.arguments) > 1 else argument.span.end
+        gone = Span(node.span.source, argument.span.start, end)
     end = node.span.end
     behind = Span(node.span.source, end, end)
     is_free = not text[end:].lstrip().startswith(("at ", "at("))

@@ -157,9 +157,8 @@ class Resolver:
         if isinstance(node, ast.Structure):
             if node.parameters is not None:
                 self._attributes(node.attributes, inner)  # a template's may be its parameters
-            inner.own_name = Symbol(
-                node.name.text, SymbolKind.STRUCTURE, node, scope.owner, [node.name], [node]
-            )
+            kind, name = SymbolKind.STRUCTURE, node.name
+            inner.own_name = Symbol(name.text, kind, node, scope.owner, [name], [node])
         before, self.is_ordered = self.is_ordered, True
         if isinstance(node, ast.FunctionDefinition):
             self.expression(node.value, inner)

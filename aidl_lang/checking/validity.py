@@ -63,9 +63,8 @@ class _Walker:
                 self._assign(node, site)
                 self._placement(node, site)
             case ast.Var(name, value):
-                target = FarReference(
-                    value, (name.text,), is_point=is_point(self.infer.fact(value).type), is_size=False
-                )
+                made_point = is_point(self.infer.fact(value).type)
+                target = FarReference(value, (name.text,), is_point=made_point, is_size=False)
                 self._geometry([target], value, site)
             case ast.For(body=body):
                 self.block(body.statements, site)
@@ -136,9 +135,8 @@ class _Walker:
             symbol = self.infer.resolution.uses.get(part)
             if symbol is None or symbol.node is None or symbol.kind not in UNKNOWNS or symbol.is_array:
                 continue
-            is_own = (
-                isinstance(part, ast.Name) and symbol.scope is not None and symbol.scope.homes == site.homes
-            )
+            homes = symbol.scope.homes if symbol.scope is not None else None
+            is_own = isinstance(part, ast.Name) and homes == site.homes
             made = symbol.node.span
             last = made.start if isinstance(symbol.node, ast.Structure) else made.end
             if not is_own and part.span.source is made.source and part.span.start < last:

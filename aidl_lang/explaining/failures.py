@@ -161,10 +161,8 @@ class Explanation:
             return Diagnostic(code, headline, secondary=tuple(labels))
         chief = self._chief
         labels = [*self._givens(), *self._labels(chief), *labels]
-        hints = tuple(self._hints())
-        return Diagnostic(
-            code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix
-        )
+        span, hints = chief.stated.span, tuple(self._hints())
+        return Diagnostic(code, headline, span, self._claim(chief), tuple(labels), hints, self._fix)
 
     @cached_property
     def conflict(self) -> Conflict:
@@ -240,9 +238,8 @@ class Explanation:
     @staticmethod
     def _dials(party: _StatedMember) -> list[Dial]:
         """Returns the numbers of a statement that may be changed: factors are no measures."""
-        return (
-            [] if party.node is None else [dial for dial in written_numbers(party.node) if not dial.is_factor]
-        )
+        dials = [] if party.node is None else written_numbers(party.node)
+        return [dial for dial in dials if not dial.is_factor]
 
     def _remedy_of(self, party: _StatedMember) -> Remedy | None:
         span = party.stated.span
@@ -389,9 +386,8 @@ class Explanation:
             return ""
         assert party.node is not None
         times = self.times[party.stated.span]
-        return found.would_fit(len(written_numbers(party.node))) + (
-            f", all {times} times" if times > 1 else ""
-        )
+        told = found.would_fit(len(written_numbers(party.node)))
+        return f"{told}, all {times} times" if times > 1 else told
 
     def _labels(self, chief: _StatedMember) -> Iterator[Label]:
         """Yields labels at the other places, each once; of too many those at which something would fit."""
@@ -429,9 +425,8 @@ class Explanation:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = listed(
-                        [self.lowered.unknowns[i].description for i in self.failure.moving], NAMED
-                    )
+                    unknowns = self.lowered.unknowns
+                    moving = listed([unknowns[i].description for i in self.failure.moving], NAMED)
                     yield f"{listed(held, NAMED)} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"

@@ -395,9 +395,8 @@ class RemedySearch:
             if abs(whole / divisor - target) <= _NEAR * max(1.0, abs(target)):
                 text = f"{short(whole)}{self.dial.unit} / {divisor}"
                 about = f"{target:.4g}{self.dial.unit}"
-                yield _Written(
-                    target, f"({text})" if self.dial.is_factor else text, f"exactly {text} (about {about})"
-                )
+                written = f"({text})" if self.dial.is_factor else text
+                yield _Written(target, written, f"exactly {text} (about {about})")
                 return
 
     def _plain(self, value: float) -> _Written:

@@ -260,10 +260,8 @@ def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools
     samples /= np.abs(samples).max()
     moving = np.abs(samples).max(axis=1) > RANK
     pairs = parts.pairs.members(part)
-    group, seen = (
-        np.searchsorted(groups, parts.watch.groups[pairs]),
-        parts.seen.place[parts.watch.rows[pairs]],
-    )
+    group = np.searchsorted(groups, parts.watch.groups[pairs])
+    seen = parts.seen.place[parts.watch.rows[pairs]]
     if total <= SAMPLES - SPARE:
         basis, sigma, _ = np.linalg.svd(samples, full_matrices=False)
         if np.count_nonzero(sigma > RANK) != total:

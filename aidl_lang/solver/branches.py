@@ -283,13 +283,9 @@ class _Attempt:
         origin: dict[int, float],
         restarts: int,
     ) -> End:
-        rows = [
-            self.task.rows[self.considered[i]] if i < len(self.considered) else None for i in program.rows
-        ]
-        softness = [
-            self.task.softness[self.considered[i]] if row else 0.0
-            for i, row in zip(program.rows, rows, strict=True)
-        ]
+        asked, count = self.considered, len(self.considered)
+        rows = [self.task.rows[asked[i]] if i < count else None for i in program.rows]
+        softness = [self.task.softness[asked[i]] if i < count else 0.0 for i in program.rows]
         metric, columns = self.metric, program.columns
         scale = metric.scale[columns]
         anchor = np.array([origin[unknown] for unknown in program.columns])

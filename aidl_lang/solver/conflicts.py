@@ -293,9 +293,11 @@ class _ConflictSearch:
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
         accused = suspects(hierarchy, scope.constraints, scope.free)
-        yield from (
-            (accused, *self._around(best)) if len(accused) <= MOST_ACCUSED else (*self._around(best), accused)
-        )
+        if len(accused) <= MOST_ACCUSED:
+            yield accused
+        yield from self._around(best)
+        if len(accused) > MOST_ACCUSED:
+            yield accused
         yield self._violated(best)
         yield list(scope.constraints)
 
@@ -314,9 +316,7 @@ class _ConflictSearch:
         worst = max((self.member(hierarchy, index) for index in violated), key=lambda member: member.off)
         touched, before = hierarchy.mentions[worst.index] & free, 1
         for _ in range(RINGS):
-            around = [
-                index for index in self.scope.constraints if not touched.isdisjoint(hierarchy.mentions[index])
-            ]
+            around = [i for i in self.scope.constraints if not touched.isdisjoint(hierarchy.mentions[i])]
             if len(around) == before:
                 return
             yield around

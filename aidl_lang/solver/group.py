@@ -267,9 +267,8 @@ class Group:
             before = hierarchy.since(before, scope.free)
             thin(hierarchy, scope, before, self.tiers.tier)
             spare_sizes(hierarchy, scope, before)
-            moved = frozenset(
-                u for u in scope.free if self.tiers.is_dear(u) and hierarchy.moved(u, before[u])
-            )
+            dear = filter(self.tiers.is_dear, scope.free)
+            moved = frozenset(u for u in dear if hierarchy.moved(u, before[u]))
             if moved:
                 values = np.array(hierarchy.values.unknowns)
                 values[list(before)] = list(before.values())

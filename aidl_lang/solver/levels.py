@@ -346,10 +346,8 @@ class Levels:
             None if metric.longest is None else metric.longest[columns],
             metric.unit[columns],
         )
-        settings = self.settings
-        outcome = newton.solve(
-            system, TIGHTER * settings.tolerance, settings.iterations, self.clock, restarts=0
-        )
+        tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations
+        outcome = newton.solve(system, tolerance, iterations, self.clock, restarts=0)
         if outcome.converged:
             x[columns] += metric.scale[columns] * outcome.z
         return outcome.end

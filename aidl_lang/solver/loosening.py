@@ -182,9 +182,8 @@ class _Loosening:
             parts = self._grouped([k for k in able if dear[k] == dearness], lambda k: self._part(locked[k]))
             following = [k for k in able if dearness[0] > POSITIONS and locked[k] in placed]
             chosen = set(rest.fewest(parts, given, following))
-            things = self._grouped(
-                [k for k in able if k in chosen], lambda k: ("thing", int(self.thing[locked[k]]))
-            )
+            taken = [k for k in able if k in chosen]
+            things = self._grouped(taken, lambda k: ("thing", int(self.thing[locked[k]])))
             found += rest.fewest(things, given)
         return frozenset(locked[k] for k in found)
 
@@ -222,9 +221,8 @@ class _Loosening:
             share, length = np.abs(rest.rest @ rest.columns), np.linalg.norm(rest.columns, axis=0)
             helping = {locked[k] for k in np.flatnonzero(share > NOTHING * length * rest.size)}
             groups = {int(problem.group[u]) for u in helping if tier(u) < POSITIONS}
-            around = [
-                u for u in known if u in helping or (int(problem.group[u]) in groups and tier(u) < POSITIONS)
-            ]
+            beside = {u for u in known if int(problem.group[u]) in groups and tier(u) < POSITIONS}
+            around = [u for u in known if u in helping or u in beside]
             if helping:
                 yield around, RIDING if is_small else last
                 if is_small:

@@ -133,9 +133,7 @@ class System:
     ) -> None:
         slacks = 0 if softness is None else int(np.count_nonzero(softness > 0.0))
         self.longest = None if longest is None else np.append(longest / scale, np.full(slacks, np.inf))
-        self.stretch = (
-            np.ones(len(scale) + slacks) if unit is None else np.append(unit / scale, np.ones(slacks))
-        )
+        self.stretch = np.append(np.ones(len(scale)) if unit is None else unit / scale, np.ones(slacks))
         self.program, self.origin, self.scale, self.inequality = program, origin, scale, inequality
         self.linear = program.linear
         self._has_inequalities = bool(inequality.any())

@@ -166,9 +166,8 @@ class Problem:
             strict=True,
         ):
             rows[owner].append(Row(expression, Relation.AT_MOST if at_most else Relation.EQUAL, scale))
-        placed, whole, inside = (
-            _by_constraint(pairs, len(rows)) for pairs in (self.placed, self.whole, self.inside)
-        )
+        listed_pairs = (self.placed, self.whole, self.inside)
+        placed, whole, inside = (_by_constraint(pairs, len(rows)) for pairs in listed_pairs)
         return tuple(
             Constraint(
                 holder, tuple(rows[i]), placed[i], None if weight != weight else weight, whole[i], inside[i]

@@ -93,9 +93,8 @@ class Tiers:
         constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
         placing = [index for index in indices if constraints[index].placed & mentions[index]]
         unmet = set(hierarchy.unmet(placing))
-        sizing = {
-            i for i in placing if any(map(hierarchy.is_kept.__getitem__, constraints[i].placed & mentions[i]))
-        }
+        is_kept = hierarchy.is_kept
+        sizing = {i for i in placing if any(is_kept[u] for u in constraints[i].placed & mentions[i])}
         for index, reached in self.reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)

@@ -273,9 +273,8 @@ def wrong(
     """Returns a problem; with what is `right`, the fix writes that."""
     if right is not None:
         fix = replaced(f"write `{right}`", span, right)
-    return SyntaxProblem(
-        Diagnostic(code, message, span, label, secondary, hints=hints, fix=fix), repair, with_block
-    )
+    diagnostic = Diagnostic(code, message, span, label, secondary, hints, fix)
+    return SyntaxProblem(diagnostic, repair, with_block)
 
 
 def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:

@@ -89,15 +89,13 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
         return None
     opener = t.open[-1]
-    right = _CLOSER[opener.kind]
+    span, right = t.span(opener), _CLOSER[opener.kind]
     if not t.accepts(right):
         return None
     message = f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`"
     other = Label(t.span(), f"`{right}` belongs here")
     fix = replaced(f"write `{right}`", t.span(), right)
-    return wrong(
-        "E0102", message, t.span(opener), "opened here", (other,), fix=fix, repair=t.exchanged(right)
-    )
+    return wrong("E0102", message, span, "opened here", (other,), fix=fix, repair=t.exchanged(right))
 
 
 def semicolons(t: Trouble) -> SyntaxProblem | None:
@@ -199,12 +197,10 @@ def missing_comma(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(",", t.token.kind):
         return None
     opener, inside = t.open[-1], _ITEMS[t.open[-1].kind]
-    message = f"expected `,` between two {inside}"
+    message, label = f"expected `,` between two {inside}", "a comma is missing here"
     other = Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here")
     fix = replaced("put in `,`", t.gap(), ",")
-    return wrong(
-        "E0112", message, t.gap(), "a comma is missing here", (other,), fix=fix, repair=t.put_in(",")
-    )
+    return wrong("E0112", message, t.gap(), label, (other,), fix=fix, repair=t.put_in(","))
 
 
 def comma_before_block(t: Trouble) -> SyntaxProblem | None:

@@ -42,9 +42,8 @@ def prose(t: Trouble) -> SyntaxProblem | None:
     while _PROSE_ON.match(line := text[end + 1 : line_end(text, end + 1)]) and end < len(text):
         starts.append(end + 1)
         end += 1 + len(line)
-    stop = next(
-        k for k in range(t.begin, len(t.tokens)) if t.tokens[k].start >= end or t.tokens[k].kind == END
-    )
+    behind = (k for k in range(t.begin, len(t.tokens)) if t.tokens[k].start >= end)
+    stop = next(behind, len(t.tokens) - 1)
     starts[0] = first
     edits = tuple(Edit(Span(t.source, at, at), "// ") for at in starts)
     message = "this is prose, and no part of the program"
@@ -95,11 +94,9 @@ def foreign_loop(t: Trouble) -> SyntaxProblem | None:
 
 
 def _last(found: re.Match[str]) -> int:
-    return (
-        max(found.end(name) for name in ("list", "b4"))
-        if found["list"] or found["b4"]
-        else found.end("b3") + 1
-    )
+    if found["list"] or found["b4"]:
+        return max(found.end(name) for name in ("list", "b4"))
+    return found.end("b3") + 1
 
 
 def _slice(t: Trouble, start: int, end: int) -> list[Token]:
@@ -125,10 +122,8 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
     if not one_line:
         end = line_end(text, end)
         close = Edit(Span(t.source, end, end), "\n" + " " * indentation + "}")
-    braces = (
-        Token("{", "{", t.token.start, t.token.end),
-        Token("}", "}", t.tokens[last].end, t.tokens[last].end),
-    )
+    end = t.tokens[last].end
+    braces = t.token.but("{", "{"), Token("}", "}", end, end)
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
     message = f"the block of `{t.first.text}` stands in braces, not behind a colon"
     label = "`{` belongs here, and `}` at the end of the block"
@@ -161,13 +156,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     place = t.token.start, t.token.end
     if [name.lower() for name in names] == ["x", "y"]:
         right, what = f"({texts[0]}, {texts[1]})", "a point"
-        tokens = [
-            Token("(", "(", *place),
-            *values[0],
-            Token(",", ",", *place),
-            *values[1],
-            Token(")", ")", *place),
-        ]
+        begin, comma, end = (Token(sign, sign, *place) for sign in "(,)")
+        tokens = [begin, *values[0], comma, *values[1], end]
     else:
         right = f"record({', '.join(f'{n}: {v}' for n, v in zip(names, texts, strict=True))})"
         what = "a record"
@@ -263,9 +253,8 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
     sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
     if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
         return None
-    return wrong(
-        "E0109", f"`{t.token.text}` is written `{sign}`", t.span(), right=sign, repair=t.exchanged(sign)
-    )
+    message = f"`{t.token.text}` is written `{sign}`"
+    return wrong("E0109", message, t.span(), right=sign, repair=t.exchanged(sign))
 
 
 _MODULES = frozenset(
@@ -291,12 +280,8 @@ def import_of_module(t: Trouble) -> SyntaxProblem | None:
 def several_names(t: Trouble) -> SyntaxProblem | None:
     """Recognises `x, y = 3, 4` and `let (x, y) = …`."""
     has_let = t.first.kind in ("let", "var", "param") and t.token.kind in ("(", "[") and len(t.statement) == 1
-    bare = (
-        t.token.kind == ","
-        and len(t.statement) == 1
-        and t.first.kind == "NAME"
-        and t.following.kind == "NAME"
-    )
+    kinds = t.first.kind, t.token.kind, t.following.kind
+    bare = kinds == ("NAME", ",", "NAME") and len(t.statement) == 1
     if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.automaton.in_constraints):
         return None
     message = "each name gets its value by itself: `let x = 3; let y = 4`"

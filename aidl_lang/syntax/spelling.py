@@ -62,10 +62,8 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         return None
     text, number = t.token.text, before.text
     if text[0].isdigit() or text[0] == ".":
-        label = "more than one point"
-        return wrong(
-            "E0105", f"`{number}{text}` is not a number", t.span(before, t.token), label, repair=t.exchanged()
-        )
+        message, label = f"`{number}{text}` is not a number", "more than one point"
+        return wrong("E0105", message, t.span(before, t.token), label, repair=t.exchanged())
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
         span, repair = t.span(before, t.token), TokenRepair(t.position - 1, t.position + 1, (whole,))
@@ -119,9 +117,8 @@ def _fence(t: Trouble) -> SyntaxProblem:
     stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
     line = Span(t.source, t.token.start, end)
     message = "the fence of a Markdown block is no part of the program"
-    return wrong(
-        "E0108", message, line, fix=replaced("remove it", line, ""), repair=TokenRepair(t.position, stop)
-    )
+    fix = replaced("remove it", line, "")
+    return wrong("E0108", message, line, fix=fix, repair=TokenRepair(t.position, stop))
 
 
 def _bars(t: Trouble) -> SyntaxProblem | None:

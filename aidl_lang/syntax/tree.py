@@ -240,9 +240,8 @@ class Builder:
         """Reports a word that is no kind. Returns the nearest kind, which is assumed."""
         if foreign := FOREIGN_WORDS.get(word.text.lower()):
             fix = Fix(f"write `{foreign[1]}`", (Edit(word.span, foreign[1]),)) if foreign[1] else None
-            self.diagnostics.append(
-                Diagnostic("E0113", f"there is no `{word.text}`: {foreign[0]}", word.span, fix=fix)
-            )
+            message = f"there is no `{word.text}`: {foreign[0]}"
+            self.diagnostics.append(Diagnostic("E0113", message, word.span, fix=fix))
             return "solid"
         near = nearest(word.text, KIND_OF_WORD)
         guess = KIND_OF_WORD[near[0]] if near else "solid"
@@ -314,9 +313,8 @@ class Builder:
         doc = self.docs.get(at.start)
 
         def make(value: ast.Expression, span: Span) -> ast.Assign:
-            return ast.Assign(
-                name, tuple(indices), value, placement, construction, attributes, doc, span=span
-            )
+            rest = placement, construction, attributes, doc
+            return ast.Assign(name, tuple(indices), value, *rest, span=span)
 
         return self._ending_in(at, value, make)
 
@@ -365,9 +363,8 @@ class Builder:
 
     def shape(self, at: Span, name: Token, *parts: Any) -> ast.ShapeDefinition:
         parameters = parts[0] if len(parts) > 1 else ()
-        return ast.ShapeDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at
-        )
+        doc = self.docs.get(at.start)
+        return ast.ShapeDefinition(self.identifier(name), parameters, parts[-1], doc, span=at)
 
     def import_(self, at: Span, path: Token) -> ast.Import:
         return ast.Import(self.string(self.span(path.start, path.end), path), None, (), span=at)
@@ -392,10 +389,9 @@ class Builder:
             return ast.Constrain(value, True, span=at)
 
         def make(item: Any, span: Span) -> ast.Constrain:
-            statement = (
-                item if isinstance(item, ast.Equation) else ast.ExpressionStatement(item, span=item.span)
-            )
-            return ast.Constrain(ast.Block((statement,), span=item.span), False, span=span)
+            if not isinstance(item, ast.Equation):
+                item = ast.ExpressionStatement(item, span=item.span)
+            return ast.Constrain(ast.Block((item,), span=item.span), False, span=span)
 
         return self._ending_in(at, value, make)
 

@@ -63,9 +63,8 @@ def lines_joined_by_sign(
 ) -> list[Diagnostic]:
     """Returns W0101 for each line that begins with a sign if it and what is above read as statements."""
     source, text = module.source, module.source.text
-    places = [
-        t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start) and text[: t.start].strip()
-    ]
+    signs = (t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start))
+    places = [start for start in signs if text[:start].strip()]
     if not places:
         return []
     found = []

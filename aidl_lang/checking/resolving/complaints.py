@@ -211,9 +211,8 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     if not like and not hints:
         hints = ("names are declared with `param`, `let` or `name = …`",)
     declared = scope.value(like[0]) if like else None
-    secondary = (
-        (Label(declared.declarations[0].span, "declared here"),) if declared and declared.declarations else ()
-    )
+    places = declared.declarations[:1] if declared else ()
+    secondary = tuple(Label(place.span, "declared here") for place in places)
     message = f"there is no `{name}` here" + did_you_mean(like)
     fix = respell(node, like)
     resolver.report("E0201", message, node, label="not declared", secondary=secondary, hints=hints, fix=fix)
@@ -229,9 +228,8 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         hint, fix = f"`{name}` alone names it", None
         if isinstance(value.node, ast.Structure):
             fix = _as_template(value.node)
-            hint = (
-                f"with a parameter list, `{value.node.kind} {name}() {{ … }}`, it is a template to be called"
-            )
+            listed_so = f"`{value.node.kind} {name}() {{ … }}`"
+            hint = f"with a parameter list, {listed_so}, it is a template to be called"
         resolver.report(
             "E0206",
             f"`{name}` is {value.kind.with_article} and cannot be called",
@@ -289,9 +287,9 @@ def _may_hold(scope: SymbolScope, name: str) -> bool:
     """Tells whether a callable may be a condition: shapes and templates are none, nor is `sin`."""
     found = scope.called(name)
     made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
-    return (
-        found is not None and all(kind_of(s) not in made for s in found[1]) and not _is_built_in(scope, name)
-    )
+    if found is None or _is_built_in(scope, name):
+        return False
+    return all(kind_of(s) not in made for s in found[1])
 
 
 def _is_built_in(scope: SymbolScope, name: str) -> bool:

@@ -81,9 +81,8 @@ class Declarer:
                     self._callables(then.statements)
                     self._callables(otherwise.statements if otherwise else ())
                 case ast.Alias(name):
-                    self.scope.aliases[name.text] = self.resolver.enter(
-                        self.scope, name, SymbolKind.ALIAS, node
-                    )
+                    symbol = self.resolver.enter(self.scope, name, SymbolKind.ALIAS, node)
+                    self.scope.aliases[name.text] = symbol
                 case (
                     ast.FunctionDefinition()
                     | ast.ShapeDefinition()

@@ -413,10 +413,8 @@ class _Loader:
             data = self.world.read_bytes(path)
             self.bytes += len(data)
             if self.bytes > MAX_BYTES:
-                limit = f"{MAX_BYTES // 1_000_000} MB"
-                self._report(
-                    "E0804", f"drawings that a program imports may have at most {limit}", statement.path
-                )
+                most = f"may have at most {MAX_BYTES // 1_000_000} MB"
+                self._report("E0804", f"drawings that a program imports {most}", statement.path)
                 return None
             found = read(path, data)
         except FileError as error:
@@ -471,10 +469,8 @@ def with_inner_imports(module: ast.Module) -> tuple[ast.Module, list[Diagnostic]
     inner = list(_imports(s for s in module.statements if not isinstance(s, ast.Import)))
     end = top[-1].span.end if top else 0
     place = Span(module.source, end, end)
-    found = [
-        _misplaced(node, Edit(place, f"\n{node.span.text}" if top else f"{node.span.text}\n"))
-        for node in inner
-    ]
+    texts = [f"\n{node.span.text}" if top else f"{node.span.text}\n" for node in inner]
+    found = [_misplaced(node, Edit(place, text)) for node, text in zip(inner, texts, strict=True)]
     return replace(module, statements=(*inner, *module.statements)), found
 
 
