@@ -98,12 +98,12 @@ class Cubic:
         return sum((t1 - t0) * w * self._speed_guessed(t0 + (t1 - t0) * u) for u, w in gauss(nodes))
 
     def _speed_guessed(self, t: float) -> float:
-        (ax, ay), (bx, by), (cx, cy) = self._ways_guessed
+        (ax, ay), (bx, by), (cx, cy) = self._guessed
         u, v, w = (1 - t) ** 2, 2 * t * (1 - t), t * t
         return 3 * math.hypot(u * ax + v * bx + w * cx, u * ay + v * by + w * cy)
 
     @cached_property
-    def _ways_guessed(self) -> tuple[tuple[float, float], ...]:
+    def _guessed(self) -> tuple[tuple[float, float], ...]:
         return tuple((x.value, y.value) for x, y in self._ways)
 
     @property

@@ -30,12 +30,6 @@ class StatedClip:
     scope: Scope
 
 
-def state_clip(it: Interpreter, s: Structure, stated: StatedClip) -> None:
-    """Keeps what a structure is clipped to until all geometry is there. Of two, the later counts."""
-    it.clips[s] = stated
-    s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in stated.attribute.arguments)
-
-
 def settle_clips_in(it: Interpreter, parent: Structure) -> None:
     """Clips the structures in one to its own outlines or itself, before boxes are asked for."""
     for s in parent.children:
@@ -266,7 +260,8 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
         elif name == CLIP:
-            state_clip(it, s, StatedClip(attribute, scope))
+            it.clips[s] = StatedClip(attribute, scope)  # until all geometry is there; of two the later counts
+            s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in attribute.arguments)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 

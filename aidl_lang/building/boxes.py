@@ -319,7 +319,10 @@ def _foreseen_side(measured: Measurement) -> Expression:
     assert outline.recipe is not None
     assert here is not None
     recipe, is_high = outline.recipe, side in ("right", "top")
-    extents = foreseen(*[_extent_of(operand, here, side) for operand in recipe.operands])
+    reached = (
+        (e for g in operand for e in _extremes(g, here, side, frozenset())) for operand in recipe.operands
+    )
+    extents = foreseen(*[_extreme_of(list(dict.fromkeys(each)), side) for each in reached])
     match recipe.kind:
         case "clip" | "intersect":
             return ex.apply("minimum" if is_high else "maximum", *extents)
@@ -330,11 +333,6 @@ def _foreseen_side(measured: Measurement) -> Expression:
         case _:
             return extents[0]
     return ex.apply("add" if is_high else "sub", extents[0], out)
-
-
-def _extent_of(operand: Iterable[Geometry], here: Structure, side: str) -> Expression:
-    found = dict.fromkeys(e for source in operand for e in _extremes(source, here, side, frozenset()))
-    return _extreme_of(list(found), side)
 
 
 def constrain_sources(outline: Geometry, here: Structure) -> str:

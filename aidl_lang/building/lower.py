@@ -24,7 +24,7 @@ from aidl_lang.building.model import (
     own_geometry,
 )
 from aidl_lang.building.values import Num, PointVal
-from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
@@ -405,7 +405,8 @@ class _Lowering:
     def _row(self, comparison: Comparison) -> Row:
         tape = self.tape
         left, right = self._node(comparison.left), self._node(comparison.right)
-        scale = self._magnitude(comparison.dimension)
+        length, angle = comparison.dimension or LENGTH
+        scale = float(self.size**length * _RADIAN**angle)  # of a typical residual, for its tolerance
         if comparison.relation == "==":
             difference = tape.sub(left, right)
             if comparison.dimension == ANGLE:
@@ -417,11 +418,6 @@ class _Lowering:
         if comparison.relation in (">=", ">"):
             left, right = right, left
         return Row(tape.sub(left, right), Relation.AT_MOST, scale)
-
-    def _magnitude(self, dimension: MaybeDimension) -> float:
-        """Returns a typical value of a residual, by which its tolerance is measured."""
-        length, angle = dimension or LENGTH
-        return float(self.size**length * _RADIAN**angle)
 
     def _bounds(self) -> Iterator[Constraint]:
         """Yields the bounds that shapes demand of their numbers and that hold as written, as constraints: no

@@ -56,7 +56,8 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
     modules = list(modules)
     for statement, attribute in _attributes(modules):
         if not attribute.arguments:
-            wrong.append(_without_code(attribute))
+            hint = 'write the codes of the notes and warnings: `@allow("N0602", "W0705")`'
+            wrong.append(Diagnostic("E0216", "`@allow` names no code", attribute.span, hints=(hint,)))
         for argument in attribute.arguments:
             value = argument.value
             code = value.value if isinstance(value, ast.String) else value.span.text
@@ -84,11 +85,6 @@ def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.A
                 for attribute in ast.attributes(node):
                     if fold(attribute.name.text) == ast.ALLOW:
                         yield node, attribute
-
-
-def _without_code(attribute: ast.Attribute) -> Diagnostic:
-    hint = 'write the codes of the notes and warnings: `@allow("N0602", "W0705")`'
-    return Diagnostic("E0216", "`@allow` names no code", attribute.span, hints=(hint,))
 
 
 def _unknown(code: str, place: Span) -> Diagnostic:

@@ -222,7 +222,9 @@ class Inference:
         if isinstance(node.otherwise, ast.Call) and node.otherwise.callee.text == "refuse":
             return then
         if isinstance(then.type, NumberType) and isinstance(otherwise.type, NumberType):
-            return Fact(_loose_number(then.type, otherwise.type), then.reads | otherwise.reads)
+            (one, other), reads = (then.type, otherwise.type), then.reads | otherwise.reads
+            is_alike = one.dimension == other.dimension
+            return Fact(NumberType(one.dimension, one.whole or other.whole) if is_alike else ANY, reads)
         return joined(then, otherwise)
 
     def _index(self, node: ast.Index) -> Fact:
@@ -232,9 +234,10 @@ class Inference:
             return Fact(ANY, fact.reads)
         if isinstance(fact.type, AnyType) and isinstance(self.fact(node.index).type, TextType):
             return Fact(ANY, fact.reads)
-        if isinstance(node.value, ast.Index) and fact.type is ANY and "[" not in _between(node):
+        between = node.span.source.text[node.value.span.end : node.index.span.start]
+        if isinstance(node.value, ast.Index) and fact.type is ANY and "[" not in between:
             return Fact(ANY, fact.reads)  # the rest of `[a, b]`, of which `a` was reported
-        if not isinstance(fact.type, ListType | AnyType) and _begins_line(node):
+        if not isinstance(fact.type, ListType | AnyType) and "\n" in between.partition("[")[0]:
             return self.misfit(rules.list_on_a_line(shown(node.value), fact.type), node)
         self.whole(node.index, "an index")
         match fact.type:
@@ -331,20 +334,6 @@ _INFER: dict[type, Callable[..., Fact]] = {
 def _loose(kind: Type) -> Type:
     """Returns a type without the properties that may differ among the members of a list."""
     return NumberType(kind.dimension, whole=kind.dimension is None) if isinstance(kind, NumberType) else kind
-
-
-def _loose_number(x: NumberType, y: NumberType) -> Type:
-    if x.dimension == y.dimension:
-        return NumberType(x.dimension, x.whole or y.whole)
-    return ANY
-
-
-def _begins_line(node: ast.Index) -> bool:
-    return "\n" in _between(node).partition("[")[0]
-
-
-def _between(node: ast.Index) -> str:
-    return node.span.source.text[node.value.span.end : node.index.span.start]
 
 
 def _at(node: ast.Node) -> Span:

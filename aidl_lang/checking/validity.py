@@ -115,8 +115,8 @@ class _Walker:
         derives = (name in DERIVING and not is_point(fact.type)) or connects
         path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
-            is_thing = self._is_thing(node)
             found = self.infer.fact(node)
+            is_thing = not isinstance(found.type, NumberType | PointType)  # to copy, or a line
             is_made = isinstance(node, ast.Call) and self._makes_geometry(found, node.callee.text)
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
@@ -145,10 +145,6 @@ class _Walker:
 
     def _makes_geometry(self, fact: Fact, name: str) -> bool:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
-
-    def _is_thing(self, node: ast.Expression) -> bool:
-        """Tells whether an expression may be a thing to copy, or a line: no number, no coordinates."""
-        return not isinstance(self.infer.fact(node).type, NumberType | PointType)
 
     def _targets(
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None

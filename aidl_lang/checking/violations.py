@@ -258,7 +258,8 @@ class Violation:
 
     def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
         """Returns the diagnostic. `written`: the values of `nodes` at the first guesses, if known."""
-        home, culprit = _name(self.site.home), self._culprit()
+        home = _name(self.site.home)
+        culprit = next(self._far(self.target.node), self.target.node)  # the name with all its members
         owner = self._owner(culprit)
         subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"
         ancestor = self.ancestor
@@ -291,10 +292,6 @@ class Violation:
     @property
     def _stated(self) -> str:
         return "a constraint" if self._operation is None else f"a `{self._operation}`"
-
-    def _culprit(self) -> ast.Node:
-        """Returns the name that leads too far, with all its members."""
-        return next(self._far(self.target.node), self.target.node)
 
     def _owner(self, culprit: ast.Node) -> str:
         fact = self.infer.facts.get(culprit)

@@ -175,7 +175,8 @@ def _lost_form(
     for way, lengths in ways.items():
         changed = [u for u in lengths if u in moved]
         has_form = way.type in _FORMED and sum(not u.angular for u in lengths) > 1  # two points adapt
-        turned = next((u for u in changed if u.field == "end.angle" and _is_back(after[u] - before[u])), None)
+        turns = {u: math.radians(after[u] - before[u]) for u in changed if u.field == "end.angle"}
+        turned = next((u for u, turn in turns.items() if math.cos(turn) < -_STILL), None)
         if way.name is None or not (turned or has_form) or not changed:
             continue
         unknowns = source_unknowns(way, way.owner)
@@ -222,10 +223,6 @@ def _lost_form(
             tuple(Label(span, label) for span in labels),
             (hint,),
         )
-
-
-def _is_back(turn: float) -> bool:
-    return math.cos(math.radians(turn)) < -_STILL
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:

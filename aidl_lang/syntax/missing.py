@@ -284,14 +284,10 @@ def bare_value(t: Trouble) -> SyntaxProblem | None:
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None
     span = t.span(t.first, t.before)
-    label = "a statement defines a name, compares, or calls something"
+    text, label = " ".join(span.text.split()), "a statement defines a name, compares, or calls something"
+    text = text if len(text) <= 40 else text[:37] + "…"
     hints = ("to constrain it, compare it: `… == …`", "to name it, write `name = …`")
-    return wrong("E0117", f"`{_shortened(span.text)}` alone says nothing", span, label, hints=hints)
-
-
-def _shortened(text: str) -> str:
-    text = " ".join(text.split())
-    return text if len(text) <= 40 else text[:37] + "…"
+    return wrong("E0117", f"`{text}` alone says nothing", span, label, hints=hints)
 
 
 def else_without_if(t: Trouble) -> SyntaxProblem | None:

@@ -9,7 +9,7 @@ from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, SymbolKind, SymbolScope
-from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
+from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
@@ -97,7 +97,8 @@ class Declarer:
         overloads = self.scope.callables.setdefault(name, [])
         symbol = self.resolver.enter(self.scope, node.name, complaints.kind_of(made), node)
         for other in overloads:
-            if _same_parameters(made, other) and other.node is not None:
+            is_same = [p[:2] for p in made.parameters] == [p[:2] for p in other.parameters]
+            if is_same and other.node is not None:
                 earlier = self.resolver.resolution.of_definition[other.node]
                 complaints.declared_twice(self.resolver, symbol.declarations[0], earlier)
                 break
@@ -230,10 +231,6 @@ class Declarer:
         self.resolver.resolution.uses[name] = known
         known.declarations.append(name)
         known.nodes.append(node)
-
-
-def _same_parameters(a: Signature, b: Signature) -> bool:
-    return [p[:2] for p in a.parameters] == [p[:2] for p in b.parameters]
 
 
 def _together(a: Branch, b: Branch) -> bool:
