@@ -206,14 +206,11 @@ def _never(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     wish = "" if weight is None else "the wish "
     if not near and any(isinstance(part, ast.Member) for part in ast.walk(node)):
         hints.append("a size that shall move is written as a first guess, as in `radius: guess(5)`")
-    it.report(
-        "E0513" if weight is None else "N0605",
-        f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}",
-        shape.span if shape is not None else node,
-        label="; ".join(false) or "false as written",
-        hints=hints,
-        secondary=places,
-    )
+    code = "E0513" if weight is None else "N0605"
+    message = f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}"
+    place = shape.span if shape is not None else node
+    label = "; ".join(false) or "false as written"
+    it.report(code, message, place, label=label, hints=hints, secondary=places)
 
 
 def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
