@@ -21,8 +21,8 @@ from pathlib import Path
 
 from aidl_dev.reference.short import short_calls
 from aidl_lang.checking.builtins import CUTS
-from aidl_lang.checking.registry import PRIMITIVES, PUBLIC
 from aidl_lang.checking.subset import Variant
+from aidl_lang.checking.types import PRIMITIVES, PUBLIC
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference
