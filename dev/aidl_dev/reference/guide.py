@@ -3,7 +3,7 @@ library, the grammar and the examples, where that file has a placeholder.
 
     {{calls TOPIC …}}      how the names of those topics are called, and the parts of shapes
     {{forms TOPIC …}}      the same without parts
-    {{names TOPIC …}}      those names alone
+    {{names TOPIC …}}      those names alone; after `rare` also those that `calls` leaves out
     {{fields}}             what each primitive can be asked for
     {{reserved}}           the words that cannot be names
     {{example NAME}}       the program `examples/NAME.aidl`
@@ -56,7 +56,7 @@ GENERATED = {
 
 
 def guide(variant: Variant = Variant.FULL) -> str:
-    """Returns the guide as Markdown. Raises KeyError for a placeholder, variant or topic that is not known."""
+    """Returns the guide as Markdown. Raises KeyError for an unknown placeholder or topic."""
     text = template()
     for block in _BLOCKS:
         text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)
@@ -159,8 +159,7 @@ def _arguments(variant: Variant, entry: Entry) -> str:
 
 def _is_laxer(one: str, other: str) -> bool:
     """Tells whether a form has the arguments of another, and lets more of them out."""
-    pairs = list(zip_longest(one.split(", "), other.split(", ")))
-    return all(a == b or (b is not None and a == f"{b}?") for a, b in pairs)
+    return all(a in (b, f"{b}?") for a, b in zip_longest(one.split(", "), other.split(", ")))
 
 
 def _factored(forms: Sequence[str]) -> str:
