@@ -8,18 +8,17 @@ from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.building.curves import DIRECTIONS
 from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered, seen
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure
-from aidl_lang.building.primitives import DIRECTIONS
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.arrays import each_once, scattered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
+from aidl_lang.solver.analysis import Motions, Part
 from aidl_lang.solver.gradients import Sparse, linearise
-from aidl_lang.solver.mobility import Motions, Part
-from aidl_lang.solver.problem import Problem
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import Valuation
 
 # --- Tests whether a motion goes on as it begins: a slide along a line may be the first of a way around

@@ -31,10 +31,9 @@ from aidl_lang.geometry.freedom.scene import (
     pattern,
 )
 from aidl_lang.geometry.solved import Motion
-from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver.analysis import Freedom, Part
 from aidl_lang.solver.gradients import connected
-from aidl_lang.solver.mobility import Part
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Solution
 
 # --- The motions possible in one part of a model, and the names of what moves.
 
