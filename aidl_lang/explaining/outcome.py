@@ -18,7 +18,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.staying import leaving_notes
-from aidl_lang.geometry.curves import Piece, bounds, inward, union_bounds
+from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -282,8 +282,7 @@ class _Measure:
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
 
     def extent(self, outline: Geometry) -> float:
-        left, bottom, right, top = union_bounds([bounds(c) for c in self._curves(outline.path)])
-        return max(right - left, top - bottom)
+        return larger_side(union_bounds([bounds(c) for c in self._curves(outline.path)]))
 
     def is_drawn(self, outline: Geometry) -> bool:
         """Tells whether an outline did not come out empty, which is told by itself."""
