@@ -23,9 +23,7 @@ K = TypeVar("K", bound=Hashable)
 T = TypeVar("T")
 
 _LIVES = 4
-"""How often a call may be begun that ends its process: another may have taken all the memory there is, or
-somebody ended it.
-"""
+"""How often a call may begin that ends its process: others may take the memory, or somebody ends it."""
 _AHEAD = 2
 """Calls that wait at the engine for each that is carried out, so that none of its places is idle."""
 _STALLED = 5

@@ -230,9 +230,7 @@ def described(character: str) -> str:
 
 
 def replacement(character: str) -> str | None:
-    """Returns a text to write for a character that the font lacks: spaces for a tab, a letter without its
-    accent; None for any other.
-    """
+    """Returns what stands for a missing character: spaces for a tab, a letter without accent, or None."""
     if character == "\t":
         return "    "
     known = plain_font()

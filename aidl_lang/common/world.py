@@ -142,9 +142,7 @@ class NotedWorld:
 
 
 class KeptWorld:
-    """The files of another world, each read once and kept as it was then, also in a pickle, which leaves the
-    other world behind.
-    """
+    """The files of another world, each read once and kept so, also in a pickle, which leaves that behind."""
 
     def __init__(self, world: World) -> None:
         self._world = world

@@ -192,9 +192,7 @@ def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[La
 
 
 def _stated(assertion: Assertion) -> Fix | None:
-    """Returns a fix that constrains what an assertion asks, before it; None if no `assert` of the author
-    stands there, or if it cannot be constrained.
-    """
+    """Returns a fix that constrains what an `assert` of the author asks, before it; None if impossible."""
     span, wording = assertion.span, assertion.wording
     before = span.source.text[: span.start].rstrip()
     is_own = isinstance(wording, Wording) and wording.node.span == span
@@ -213,9 +211,7 @@ def _is_measured(comparisons: Sequence[Comparison]) -> bool:
 
 
 def _can_be_stated(condition: Condition | bool) -> bool:
-    """Tells whether `constrain` takes a condition: comparisons that all hold, by relations that a solver
-    knows, of values known before everything is solved.
-    """
+    """Tells whether `constrain` takes a condition: comparisons, all to hold, of values known in solving."""
     if not isinstance(condition, Condition) or condition.operator != "and":
         return False
     parts = [part for part in condition.parts if isinstance(part, Comparison) and part.relation in RELATIONS]

@@ -263,9 +263,7 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
 
 
 def suffix_of(name: str, fallback: str | None = None) -> str:
-    """Returns the format for a file name: its own suffix, else the one asked for (`svg`). Raises ExportError
-    if neither is one.
-    """
+    """Returns a file name's own suffix, else the format asked for (`svg`). Raises ExportError if unknown."""
     own = PurePath(name).suffix.lower()
     said = f".{fallback.lower().lstrip('.')}" if fallback else ""
     for suffix in (own, said):

@@ -37,9 +37,7 @@ _TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
 
 
 def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
-    """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
-    be read when the whole is seen.
-    """
+    """Returns the box of `box` and all dimensions, and marks for each, sized to be read in the whole."""
     wanted = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
     size = larger_side(box)
     if not wanted or not size > 0:
@@ -56,9 +54,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
 
 @record()
 class Callout:
-    """A word at the end of a line that points to something. `spots`: where it may point to, with the
-    direction from which it comes.
-    """
+    """A word at the end of a line that points to one of `spots`, each with the direction to come from."""
 
     name: str
     word: str
@@ -89,9 +85,7 @@ def dimensioned_to_scale(
 def visible(
     wanted: Sequence[tuple[Dimension, ...]], model: SolvedModel, sheet: Sheet
 ) -> list[tuple[Dimension, ...]]:
-    """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts, and a
-    constraint mention what is clipped away.
-    """
+    """Drops dimensions that end where nothing is drawn, in a hole beyond what it cuts or clipped away."""
     stay = ("hand", "overall") if is_clipped(model.root) else ("hand", "overall", "constraint")
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 

@@ -411,9 +411,7 @@ class _Entities:
         return self._space.add_arc(center, radius, first, last, dxfattribs=attributes)
 
     def _ellipse(self, piece: Ellipse | EllipseArc, attributes: dict[str, Any]) -> Any:
-        """Adds an ellipse. DXF has the larger half-axis first, and runs from the first eccentric anomaly to
-        the last counter-clockwise.
-        """
+        """Adds an ellipse; DXF has the larger half-axis first, and anomalies that run counter-clockwise."""
         major, minor, angle = piece.rx, piece.ry, piece.angle
         first, sweep = round_range(piece)
         if minor > major:

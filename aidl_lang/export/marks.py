@@ -152,9 +152,7 @@ Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 @record()
 class Group:
-    """Marks that belong together, visible only within `clip`. `name` is unique in a picture; `attributes`
-    identify it to programs.
-    """
+    """Marks seen within `clip` only. `name` is unique in a picture; `attributes` are for programs."""
 
     name: str
     marks: tuple[Mark, ...]
@@ -256,9 +254,7 @@ def coarse(picture: Picture, pixel: float) -> Picture:
 
 
 def resolved(picture: Picture, pixel: float) -> Picture:
-    """Returns the picture with dashes that no `pixel`, mm, can show as what they look like: a paler line.
-    (Of a million dashes resvg draws none.)
-    """
+    """Returns the picture with paler lines for dashes below a `pixel`, mm: of a million resvg draws none."""
     return _redrawn(picture, lambda mark: _blurred(mark, pixel))
 
 

@@ -282,9 +282,7 @@ _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str = "mm") -> str:
-    """Returns the picture as an SVG document in its true size, or so many pixels wide and high. Its
-    coordinates are in `units`.
-    """
+    """Returns the picture as SVG, in its true size or so many pixels wide and high, drawn in `units`."""
     if units != "mm":
         picture = scaled(picture, 1 / UNITS[units])
     left, _, _, top = picture.box

@@ -434,9 +434,7 @@ def _note(structure: SolvedStructure, way: SolvedGeometry, found: Sequence[Cross
 
 
 def _order_fix(way: SolvedGeometry) -> Fix | None:
-    """Returns the fix that swaps two neighbouring corners of a polygon of literals; None unless there is one
-    polygon without crossings that is found so.
-    """
+    """Returns the fix that swaps neighbouring corners of a literal polygon, if just one has no crossings."""
     written = _POLYGON.search(way.span.text) if way.span else None
     sides = list(way.curves())
     corners = [side.start for side in sides if isinstance(side, Line)]

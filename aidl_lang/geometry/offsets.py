@@ -297,9 +297,7 @@ _NEAR = 1e-9
 
 @record(slots=True)
 class _HullContact:
-    """A curve that the hull runs along, about from `t0` to `t1` (which may pass 1 on a closed curve), or
-    only its end there.
-    """
+    """A curve along the hull, about from `t0` to `t1` (past 1 on a closed curve), or only its end there."""
 
     curve: Piece
     t0: float

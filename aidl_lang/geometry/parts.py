@@ -275,9 +275,7 @@ def upright_turn(part: Part) -> float:
 
 
 def smallest_size(part: Part) -> Size:
-    """Returns the sides of the smallest rectangle around the material of a part, mm; the longer one first
-    where the part is turned for it.
-    """
+    """Returns the sides, mm, of the least rectangle around a part, the longer first if turned for it."""
     turn = upright_turn(part)
     left, bottom, right, top = (
         region_bounds(part.body.region.mapped(Motion(turn).piece)) if turn else part.body.box

@@ -176,9 +176,7 @@ def filled(
     number: int,
     rule: Literal["EvenOdd", "NonZero"] = "EvenOdd",
 ) -> Section:
-    """Returns the area in outlines whose pieces are the curves of a network from `number` on; outlines too
-    small to be seen beside the rest are left out.
-    """
+    """Returns the area in outlines of a network's curves from `number` on, without those too small to see."""
     polygons = []
     for outline in outlines:
         uses = [use for own in network.uses[number : number + len(outline)] for use in own]

@@ -384,9 +384,7 @@ class SolvedModel:
 
     @property
     def is_unfinished(self) -> bool:
-        """True if outlines are to be derived from others, corners to be finished, or structures to be clipped
-        (see `geometry.outlines`).
-        """
+        """True if there is something to derive, to finish or to clip (see `geometry.outlines`)."""
         return any(s.finishes or s.clip for s in self.root.walk()) or any(
             g.recipe for g in self.root.walk_geometry()
         )

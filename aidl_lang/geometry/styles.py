@@ -39,9 +39,7 @@ class Shade:
 
 @record()
 class Turn:
-    """The directions of a structure in the frame of the root: `first` is that of its x axis in degrees,
-    `sense` is -1 where it is mirrored.
-    """
+    """The directions of a structure in the root's frame: its x axis, degrees, and -1 where mirrored."""
 
     first: float = 0.0
     sense: float = 1.0

@@ -260,9 +260,7 @@ class Survey:
 
 
 class NothingThereError(AidlError, KeyError):
-    """Raised if there is nothing to measure at a path. `known` are the paths there are, `near` those that may
-    have been meant.
-    """
+    """Nothing to measure at a path: `known` are the paths there are, `near` those perhaps meant."""
 
     def __init__(self, path: str, reason: str, near: Sequence[str], known: Sequence[str]) -> None:
         what = f"`{path}` {reason}" if reason else f"there is no `{path}` in the drawing"

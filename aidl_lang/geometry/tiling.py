@@ -166,9 +166,7 @@ class Lattice:
 
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
-    """Returns the strokes of all copies as far as they lie inside; with `whole` those of the copies no part
-    of which lies outside.
-    """
+    """Returns the strokes of all copies that lie inside; with `whole` of those that lie inside wholly."""
     single, running = _told_apart(cell, lattice, region_bounds(region)) if not whole else (cell, [])
     pieces = [p for one in clipped_each(running, region) for p in one.inner]
     if not single:
@@ -184,9 +182,7 @@ def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, wh
 
 
 def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) -> Region:
-    """Returns what lies inside of all copies of an area; with `whole` the copies no part of which lies
-    outside.
-    """
+    """Returns what lies inside of all copies of an area; with `whole` the copies that lie inside wholly."""
     inner, crossing = (
         [cell.mapped(partial(_moved, way=way)) for way in ways]
         for ways in _sorted(cell.pieces, region, lattice)
@@ -210,9 +206,7 @@ def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: f
 
 
 def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
-    """Returns the middle or the first corner of the box about a region that stands along a step; `sense` is
-    that of the frame.
-    """
+    """Returns the middle or first corner of a region's box along a step, in a frame of some `sense`."""
     length = math.hypot(*step)
     x, y = step[0] / length, step[1] / length
 

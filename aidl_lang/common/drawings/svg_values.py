@@ -296,9 +296,7 @@ class _Pen:
 
 
 def _arc(start: Vec, end: Vec, rx: float, ry: float, rotation: float, large: bool, positive: bool) -> Stroke:
-    """Returns an arc by its ends (SVG 2, B.2.4): in the frame of the ellipse, with its radii as units, it is
-    one of a unit circle.
-    """
+    """Returns an arc by its ends (SVG 2, B.2.4): in its ellipse's frame and radii, one of a unit circle."""
     if rx == 0.0 or ry == 0.0 or start == end:
         return start, end
     c, s = _cos_sin(rotation)
@@ -332,9 +330,7 @@ SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "po
 
 
 def outline(node: Node, page: tuple[float, float]) -> tuple[list[Stroke], bool]:
-    """Returns the curves of a shape, and whether all of it could be read; `page` is what percentages are of.
-    Raises ValueMistake.
-    """
+    """Returns a shape's curves and whether all was read; percentages are of `page`. Raises ValueMistake."""
     if node.tag == "path":
         return path(node.attributes.get("d", ""))
     return list(_strokes(node, page)), True

@@ -156,9 +156,7 @@ class TerminalStyle:
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
-    """Tells whether to print in colour: on a terminal only; `NO_COLOR` and `FORCE_COLOR` overrule, in that
-    order (no-color.org).
-    """
+    """Tells whether to colour: on a terminal, unless `NO_COLOR` or `FORCE_COLOR` overrule, in that order."""
     if environment.get("NO_COLOR"):
         return False
     if environment.get("FORCE_COLOR", "0") != "0":

@@ -465,9 +465,7 @@ class _Walk:
             yield replace(_alone(appeared), sort="appeared", sizes=self._sizes_alone(appeared, 1))
 
     def _majority(self, pair: StructurePair, expected: Move, is_root: bool) -> Move | None:
-        """Returns the motion of most things in a structure, if it is not `expected`; None for a root of which
-        something stayed.
-        """
+        """Returns the motion of most in a structure, if not `expected`; None for a root with what stayed."""
         if pair.follows(expected) or (is_root and any(item.follows(STILL) for item in pair.items)):
             return None
         return next((move for move in self._candidates(pair) if pair.follows(move)), None)

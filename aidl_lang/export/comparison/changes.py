@@ -27,9 +27,7 @@ _SAME_ANGLE = 1e-4
 
 @record(slots=True)
 class Move:
-    """A rigid motion: reflects x if `mirrored`, turns about the origin by `turn` degrees, then shifts by (dx,
-    dy) mm.
-    """
+    """A rigid motion: reflects x if `mirrored`, turns by `turn` degrees, then shifts by (dx, dy) mm."""
 
     dx: float = 0.0
     dy: float = 0.0

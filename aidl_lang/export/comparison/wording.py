@@ -32,9 +32,7 @@ _MOST = 6
 """Most fields of one geometry, and most names of a list, that are reported."""
 _DIGITS = (5, 7, 9, 12)
 _ROUNDING, _NOTHING, _HARDLY = 1e-7, 1e-9, 1e-6
-"""Bounds of values shown as 0: of a point relative to its larger coordinate, of any number, of a shift
-relative to the drawing.
-"""
+"""Values shown as 0: of points relative to the larger coordinate, of shifts relative to the drawing."""
 _MAIN_SIZES = ("width", "height", "area")
 _MEMBER = re.compile(r"(.*)\[(-?\d+)\]")
 

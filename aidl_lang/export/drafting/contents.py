@@ -188,9 +188,7 @@ class Content:
 
 
 def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
-    """Returns the sheets that are needed: one for a single part, else one of all parts with a list of them,
-    and one for each that differs from the others.
-    """
+    """Returns the sheets: one for a single part, else one of all with a list, and one per different part."""
     root, styles = model.root, drawing.styles
     if len(drawing.bodies) < 2:
         style = drawing.bodies[0].style if drawing.bodies else styles[root.path]

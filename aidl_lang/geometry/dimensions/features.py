@@ -309,9 +309,7 @@ def original(geometry: Geometry) -> Geometry:
 
 
 def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
-    """Tells whether a size is exact (`param`) or written as a number (`size`), maybe as the argument of a
-    template; None if it follows from others.
-    """
+    """Tells whether a size is exact (`param`) or written (`size`); None if it follows from others."""
     if value.expression.is_constant:
         return "param"
     kept = all(

@@ -294,9 +294,7 @@ def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
 
 
 _Masked: TypeAlias = tuple[Thing | None, Floats, Floats]
-"""A thing, and its x and y among the observables of a part, as 0 and 1; None for several things that keep
-together.
-"""
+"""A thing, and its x and y among a part's observables as 0 and 1; None for what keeps together."""
 
 _Told: TypeAlias = tuple[Motion, Ints]
 """A motion, and the observables that move in it."""
