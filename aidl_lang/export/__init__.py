@@ -381,29 +381,23 @@ PICTURES = (".svg", ".png", ".pdf")
 
 def render(picture: Picture, suffix: str, options: Options) -> bytes:
     """Writes a single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
-    if suffix == ".svg":
-        from aidl_lang.export.svg import to_svg
-
-        return to_svg(picture, units=options.units).encode()
-    if suffix == ".png":
-        from aidl_lang.export.pdf import to_png
-
-        return to_png(picture, options.pixels)
-    from aidl_lang.export.pdf import to_pdf
-
-    return to_pdf([picture], "AIDL")
+    return rendered([picture], suffix, options, "AIDL").data
 
 
 def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str) -> Exported:
-    """Writes pictures in the format of a file suffix among `PICTURES`: a PDF has a page for each, of others
-    there is a file for each. Raises as `export` does.
+    """Writes pictures in a format among `PICTURES`: a PDF has a page for each, else there is a file for each.
+
+    Raises as `export` does.
     """
     if suffix == ".svg":
-        data, *further = (render(page, suffix, options) for page in pages)
-        return Exported(data, tuple(further))
-    from aidl_lang.export.pdf import character_notes, to_pdf
+        from aidl_lang.export.svg import to_svg
 
+        data, *further = (to_svg(page, units=options.units).encode() for page in pages)
+        return Exported(data, tuple(further))
+    from aidl_lang.export.pdf import character_notes, to_pdf, to_png
+
+    notes = character_notes(pages)
     if suffix == ".pdf":
-        return Exported(to_pdf(pages, title), notes=character_notes(pages))
-    data, *further = (render(page, suffix, options) for page in pages)
-    return Exported(data, tuple(further), character_notes(pages))
+        return Exported(to_pdf(pages, title), notes=notes)
+    data, *further = (to_png(page, options.pixels) for page in pages)
+    return Exported(data, tuple(further), notes)
