@@ -171,9 +171,7 @@ class Exporter:
         return replace(made, notes=(*notes, *_unlisted(job, suffix), *unsaid, *made.notes))
 
     def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
-        """Writes each part that differs from the others by itself, flat and with its lower left corner at the
-        origin. Raises as `export` does.
-        """
+        """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
         from aidl_lang.export.cut_list import jobs_of_parts
 
         if suffix in (".json", ".csv"):

@@ -472,9 +472,7 @@ def _close_with_outlines(
 def region_of(
     geometry: Iterable[tuple[SolvedGeometry, Sequence[tuple[SolvedGeometry, Piece]]]],
 ) -> tuple[Region, list[SolvedGeometry]]:
-    """Returns the region that geometries enclose together, each given with its primitives and their curves,
-    and the primitives that bound nothing.
-    """
+    """Returns the region of geometries with their primitives, and primitives that bound nothing."""
     curves: list[Piece] = []
     shapes = []
     for g, leaves in geometry:

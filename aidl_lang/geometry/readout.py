@@ -373,9 +373,7 @@ class _Reader:
 def _glyph(
     text: Geometry, name: str, glyph: Glyph, bridge: float, at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
-    """Returns one character of a text, with its curves as parts. `bridge`: the width of its bridges in units
-    of its height, 0 for none.
-    """
+    """Returns a character, its curves as parts; `bridge`: the width of bridges per height, 0 for none."""
     checkpoint()
     outline = glyph.curves if glyph.is_nested else united(glyph.curves)
     outline = stencilled(outline, bridge) if bridge else outline
