@@ -226,7 +226,8 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
     None for such as are not one line.
     """
     if len(curves) == 1 and curves[0].type == "circle":
-        return Way((_circle(curves[0], here),), is_closed=True)
+        turn = -1.0 if clockwise(curves[0], here) else 1.0
+        return Way((_circle(curves[0], here, turn, (1.0, 0.0)),), is_closed=True)
     if any(curve.type == "circle" or (curve.type == "ellipse" and len(curves) > 1) for curve in curves):
         return None
     both = [pair for c in curves for pair in _stretches(c, here)]
@@ -280,18 +281,14 @@ def _next(
     return None
 
 
-def _circle(curve: Geometry, here: Structure) -> Stretch:
-    core = view(curve, here)
-    x, y = xy(core["center"])
-    radius = number(core["radius"])
-    turn = ex.constant(-1.0 if clockwise(curve, here) else 1.0)
-    return Stretch(
-        (ex.add(x, radius), y),
-        ex.mul(turn, ex.constant(90.0)),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(turn, _DEGREES), radius),
-    )
+def _circle(circle: Geometry, here: Structure, turn: float, out: tuple[float, float]) -> Stretch:
+    """Returns a circle from the point in the direction `out` on, counter-clockwise for a `turn` of 1."""
+    core = view(circle, here)
+    (x, y), radius = xy(core["center"]), number(core["radius"])
+    u, v = (ex.mul(ex.constant(c), radius) for c in out)
+    heading = ex.constant(math.degrees(math.atan2(turn * out[0], -turn * out[1])))
+    length, bow = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.constant(turn * 180 / math.pi), radius)
+    return Stretch((ex.add(x, u), ex.add(y, v)), heading, length, (x, y), bow)
 
 
 def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
@@ -318,7 +315,8 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
     line, or closed.
     """
     if len(curves) == 1 and curves[0].type == "circle":
-        return Way((_written_round(curves[0], here, inside=inside is True),), is_closed=True)
+        turn = 1.0 if inside is True else -1.0
+        return Way((_circle(curves[0], here, turn, (0.0, turn)),), is_closed=True)
     way = way_along(curves, here)
     if way is None or way.is_closed:
         return None
@@ -328,18 +326,6 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
         ahead = way.at(ex.mul(way.length, ex.constant(0.5)))[1].value
         backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == (inside is True)
     return Way(tuple(s.turned_round for s in reversed(way.stretches)), is_closed=False) if backwards else way
-
-
-def _written_round(circle: Geometry, here: Structure, *, inside: bool) -> Stretch:
-    core, turn = view(circle, here), 1.0 if inside else -1.0
-    (x, y), radius = xy(core["center"]), number(core["radius"])
-    return Stretch(
-        (x, ex.add(y, ex.mul(ex.constant(turn), radius))),
-        ex.constant(180.0),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(ex.constant(turn), _DEGREES), radius),
-    )
 
 
 def _value(place: Place) -> tuple[float, float]:

@@ -142,7 +142,6 @@ def _dearest(tie: _Tie, standing: _Standing) -> _Party | None:
 
 
 def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
-    """Yields the comparisons of a call over equals, put together if they concern the same coordinates."""
     groups: list[tuple[set[Unknown], list[tuple[Comparison, list[_Party]]]]] = []
     for comparison in constraint.comparisons:
         if not comparison.parties:
@@ -174,7 +173,6 @@ def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
 
 
 def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:
-    """Yields the parties that a comparison could move."""
     mentioned = senses.mentioned(comparison)
     for every in dict.fromkeys(comparison.parties):
         if near := senses.near(comparison, mentioned & every):

@@ -177,7 +177,6 @@ def _shown(values: Sequence[float], digits: int) -> str:
 
 
 def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> str:
-    """Returns a sum or product with numbers in place of names; empty for anything else."""
     if not _is_calculated(node):
         return ""
     from aidl_lang.syntax.expression_printer import format_expression
@@ -212,7 +211,6 @@ def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
 
 
 def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:
-    """Yields the named parts of a calculation."""
     match node:
         case ast.Binary(left=left, right=right):
             yield from _leaves(left)

@@ -77,15 +77,12 @@ class Assignment:
                     give_name(member, name, place, container, self.node)
             else:
                 pattern.members[index] = self.value(member, place)
-        self._moves_as_frame(pattern)
-        return pattern
-
-    def _moves_as_frame(self, pattern: Pattern) -> None:
-        """Makes the position of a pattern of structures a frame: it counts only if something mentions it."""
+        # The position of a pattern of structures is a frame: it counts only if something mentions it.
         for structure, _ in self.first.values():
             for unknown in ex.unknowns([structure.frame.x, structure.frame.y]):
                 if unknown.holder is pattern.settings and not unknown.kept:
                     unknown.frame_of = structure
+        return pattern
 
     def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
         motion, source = copy.motion, copy.source
@@ -139,7 +136,6 @@ class Assignment:
 
 
 def _framed(source: Structure, here: Structure) -> Frame:
-    """Returns the frame of a structure as one above it sees it."""
     frame, around = source.frame, source.parent
     while around is not None and around is not here:
         frame, around = of_frame(around.frame).frame(frame), around.parent

@@ -246,7 +246,6 @@ def _yes_or_no(values: list[Value]) -> str:
 
 
 def _numbers(values: list[Value], dimension: units.Dimension) -> list[float] | None:
-    """Returns numbers of a dimension, or without one; None if there is anything else among the values."""
     found = [v.value for v in values if isinstance(v, Num) and v.dimension in (None, dimension)]
     return found if len(found) == len(values) else None
 

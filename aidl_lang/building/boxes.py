@@ -119,7 +119,6 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
 
 
 def _interior(structure: Structure) -> Iterable[Unknown]:
-    """Returns the unknowns that place the contents of a structure, each in its own frame."""
     if structure.interior is not None:
         return structure.interior
     found = dict.fromkeys(
@@ -263,7 +262,6 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
 
 
 def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
-    """Tells whether a geometry is drawn in the box of a structure."""
     at: object = g
     while isinstance(at, Geometry):
         if at.construction:
@@ -276,7 +274,6 @@ def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool
 
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
-    """Yields candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
         return _made(primitive, primitive.recipe, here, side)
     return curves.reach(primitive, here, side)

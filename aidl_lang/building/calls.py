@@ -107,7 +107,6 @@ def _env_of_arguments(site: CallSite, env: Env) -> Env:
 def _given(
     it: Interpreter, site: CallSite, receiver: Value | None, node: ast.Call, env: Env
 ) -> tuple[list[Value], Sequence[ast.Node]]:
-    """Returns the arguments of a call, its receiver among them, and the text each comes from."""
     given = [evaluate(it, at, env) if word is None else word for at, word in site.written]
     if receiver is None or node.receiver is None or isinstance(receiver, Namespace):
         return given, site.nodes
@@ -215,7 +214,6 @@ def invoke(
 def _inside(
     it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
 ) -> Env:
-    """Returns the environment of the body of a definition: its parameters, with what they get."""
     inner = Env(Scope(candidate.scope), env.here, env.reach)
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
@@ -238,7 +236,8 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    _hoist_lets(scope, block)
+    lets = [s for s in block.statements if isinstance(s, ast.Let | ast.Assign)]
+    scope.values.update({s.name.text: LetBinding(s.value, scope) for s in lets})
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -274,12 +273,6 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         message = f"`{node.span.one_line}` says nothing: it relates two things or more"
         hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
         it.report("E0343", message, node, hints=[hint])
-
-
-def _hoist_lets(scope: Scope, block: ast.Block) -> None:
-    for statement in block.statements:
-        if isinstance(statement, ast.Let | ast.Assign):
-            scope.values[statement.name.text] = LetBinding(statement.value, scope)
 
 
 # --- Shapes --------------------------------------------------------------------------------------

@@ -348,7 +348,6 @@ def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 @cache
 def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, bool], ...]]:
-    """Returns the points and the numbers among the parameters of a kind that are its fields."""
     (signature,) = SIGNATURES[kind]
     fields = [each for each in signature.parameters if each[0] in PRIMITIVES[kind].types]
     points = tuple(name for name, of, _ in fields if isinstance(of, PointType))

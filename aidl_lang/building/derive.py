@@ -104,9 +104,10 @@ class Copier:
 
     def _contents(self, source: Geometry, names: Scope, copy: Geometry) -> None:
         copy.scope = scope = Scope(names.parent, copy)
+        is_turned = self._swaps_sides and names.values.keys() >= _SIDES
         for name, binding in names.values.items():
             new = self._renamed(name, names)
-            if name == "angle" and self._swaps_sides and self._is_boxed(names) and isinstance(binding, Num):
+            if name == "angle" and is_turned and isinstance(binding, Num):
                 # With left and right exchanged, the direction from left to right stays.
                 turned = self._number(name, binding, source.owner)
                 scope.values[new] = replace(turned, expression=opposite(turned.expression))
@@ -135,10 +136,6 @@ class Copier:
         words = [_OPPOSITE[w] if w in sides else w for w in stem.split("_")]
         new = "_".join(words)
         return new + bracket + index if new in names.values else name
-
-    @staticmethod
-    def _is_boxed(names: Scope) -> bool:
-        return names.values.keys() >= _SIDES
 
     # --- Values --------------------------------------------------------------------------------
 

@@ -137,7 +137,9 @@ class _Editing:
     def _by_arguments(self, motion: Motion) -> Geometry | None:
         """Returns the same call's result with its arguments moved; None if that does not move the shape."""
         it = self.it
-        calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
+        value = self.node.value
+        parts = (value, value.then, value.otherwise) if isinstance(value, ast.Conditional) else (value,)
+        calls = [c for c in parts if isinstance(c, ast.Call)]
         before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)
         it.edits |= dict.fromkeys(calls, lambda binding, given: self._moved(binding, given, motion))
         try:
@@ -181,10 +183,6 @@ class _Editing:
         self.refers = self.refers or referred(value)
 
 
-def _branches(node: ast.Expression) -> tuple[ast.Expression, ...]:
-    return (node.then, node.otherwise) if isinstance(node, ast.Conditional) else ()
-
-
 def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
     """Yields the omitted positions and directions of a call with their defaults."""
     definition = binding.signature.node
@@ -208,7 +206,6 @@ def _at(x: float, y: float) -> PointVal:
 
 
 def _are_alike(a: Geometry, b: Geometry, env: Env) -> bool:
-    """Tells whether two geometries draw the same curves as written."""
     one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
     return len(one) == len(other) and all(map(_is_same, one, other))
 

@@ -70,7 +70,6 @@ def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
 
 
 def _target(call: ast.Call) -> ast.Expression | None:
-    """Returns the target of an edit call: `a` in `move(a, …)` and in `a.move(…)`."""
     if call.receiver is not None:
         return call.receiver
     named = (a.value for a in call.arguments if a.name is None or fold(a.name.text) == "x")
@@ -78,7 +77,6 @@ def _target(call: ast.Call) -> ast.Expression | None:
 
 
 def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.Expression, ...]] | None:
-    """Returns name and indices of `a[i][j]`; None for other expressions."""
     indices: list[ast.Expression] = []
     while isinstance(node, ast.Index):
         indices.insert(0, node.index)
@@ -98,7 +96,6 @@ def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope)
 
 
 def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> frozenset[str]:
-    """Returns the targets of calls that are statements of a body, its loops and branches."""
     if (known := it.edited_names.get(id(statements))) is not None:
         return known
     found: set[str] = set()

@@ -330,7 +330,6 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
-    """Reports why an operation on constants has no value."""
     if op == "^" and a.value < 0 and not b.value.is_integer():
         return _no_value(it, node, "it takes the root of a negative number")
     divisor = {"/": b, "^": a}.get(op)

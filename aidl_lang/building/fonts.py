@@ -81,7 +81,6 @@ def _of_file(it: Interpreter, name: str) -> Font:
 
 
 def _writer(it: Interpreter) -> str:
-    """Returns the path of the file in which the text is written."""
     authored = (node for node in reversed(it.call_sites) if node.span.source not in it.library_sources)
     source = next(authored, it.program.main).span.source
     if source is it.program.main.source:

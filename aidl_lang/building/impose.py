@@ -249,7 +249,6 @@ def _by_formulas(
 
 
 def _foreseen(comparison: Comparison) -> Comparison:
-    """Returns a comparison with the boxes of outlines made of others as they can be foreseen."""
     left, right = foreseen(comparison.left, comparison.right)
     changed = replace(comparison, left=left, right=right)
     moved = changed.placed - unmoved(comparison.left, comparison.right)
@@ -271,7 +270,6 @@ def _look_again(
 
 
 def _is_angle(node: ast.Node) -> bool:
-    """Tells whether a part of a statement asks for the direction of something."""
     match node:
         case ast.Member(name=name) | ast.Call(callee=name):
             return fold(name.text) == "angle"
@@ -279,7 +277,6 @@ def _is_angle(node: ast.Node) -> bool:
 
 
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
-    """Returns a geometry in the boxes of comparisons that is derived of some outside of their structure."""
     spoken_of = {s for c in comparisons for s in c.boxes}
     return next(
         (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
@@ -287,7 +284,6 @@ def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) 
 
 
 def _boxes_of(g: Geometry) -> set[Structure]:
-    """Returns the structures whose boxes a geometry is in."""
     around: set[Structure] = set()
     structure = None if g.construction else g.owner
     while structure is not None:

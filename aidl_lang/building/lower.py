@@ -26,7 +26,7 @@ from aidl_lang.building.model import (
 )
 from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.values import Num, PointVal
-from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
@@ -233,7 +233,6 @@ class _Lowering:
                     self._name_thing(constraint.holder, unknown.owner, thing)
 
     def _name_thing(self, holder: Structure, s: Structure, thing: Hashable) -> None:
-        """Notes a thing of `s` in it, and in each structure up to the holder the one that it is in."""
         for structure in chain(s):
             if structure is holder:
                 return
@@ -243,7 +242,6 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        """Returns the number of an expression on the tape."""
         known, make, leaf = self.node_of, self.make, self._leaf
         if root in known:
             return known[root]
@@ -274,7 +272,6 @@ class _Lowering:
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 
     def _observed(self) -> Iterator[Expression]:
-        """Yields the expressions of the numbers that define the drawing."""
         for s, found in self.seen.items():
             for at in found:
                 yield from at
@@ -326,7 +323,8 @@ class _Lowering:
     def _row(self, comparison: Comparison) -> Row:
         tape = self.tape
         left, right = self._node(comparison.left), self._node(comparison.right)
-        scale = self._magnitude(comparison.dimension)
+        length, angle = comparison.dimension or LENGTH
+        scale = float(self.size**length * _RADIAN**angle)
         if comparison.relation == "==":
             difference = tape.sub(left, right)
             if comparison.dimension == ANGLE:
@@ -339,11 +337,6 @@ class _Lowering:
         if comparison.relation in (">=", ">"):
             left, right = right, left
         return Row(tape.sub(left, right), Relation.AT_MOST, scale)
-
-    def _magnitude(self, dimension: MaybeDimension) -> float:
-        """Returns a typical value of a residual, by which its tolerance is measured."""
-        length, angle = dimension or LENGTH
-        return float(self.size**length * _RADIAN**angle)
 
     def _bounds(self) -> Iterator[Constraint]:
         """Yields the bounds that shapes demand of their numbers and that hold as written, as constraints: no
@@ -375,7 +368,6 @@ def _is_exact(at: _Seen) -> bool:
 
 
 def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
-    """Yields the comparisons that all have to hold for a condition; none if there is more to it."""
     if not isinstance(condition, Condition) or condition.operator != "and":
         return
     for part in condition.parts:
@@ -386,7 +378,6 @@ def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
 
 
 def _is_bound(part: Comparison) -> bool:
-    """Tells whether a comparison is an inequality that holds at the first guesses."""
     if part.relation in ("==", "!=") or part.left.is_open or part.right.is_open:
         return False
     low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
@@ -395,7 +386,8 @@ def _is_bound(part: Comparison) -> bool:
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
     """Returns the children that belong to the drawing around them: all that lie in a part or in an assembly
-    within another, and in the root holes and drawings beside parts; but none that stands still, as its place was given in the frame of the root.
+    within another, and in the root holes and drawings beside parts; but none that stands still, as its place
+    was given in the frame of the root.
     """
     frames = [(c, c.frame) for c in parent.children]
     children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
@@ -418,7 +410,6 @@ def _axis(unknown: Unknown) -> int:
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
-    """Yields the frames that place a structure in the one that holds it."""
     for s in chain(structure):
         if s is holder:
             return
@@ -464,7 +455,6 @@ def _is_spanned(unknown: Unknown) -> bool:
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.intp]:
-    """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.intp)
 

@@ -204,7 +204,6 @@ def _arc(g: Geometry, here: Structure) -> _Side:
 
 
 def _round(g: Geometry, here: Structure) -> _Side:
-    """Returns a circle or an ellipse as a piece without ends."""
     core = view(g, here)
     c = xy(core["center"])
     radii = [number(core[name]) for name in (("rx", "ry") if g.type == "ellipse" else ("radius", "radius"))]

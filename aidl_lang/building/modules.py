@@ -29,7 +29,9 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
     if len(roots) == 1 and not loose:
         it.root = root = Structure("assembly", "", None, None)
         hoist_values(scope, statements, root)
-        _register_params(it, scope)
+        for binding in list(scope.values.values()):
+            if isinstance(binding, ParamBinding):
+                read_param(it, binding, binding.node)
         root = build_structure(it, roots[0], scope, None, ())
     else:
         name = re.sub(r"\W+", "_", PurePath(module.source.name).stem).strip("_") or "model"
@@ -48,16 +50,9 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
     return root
 
 
-def _register_params(it: Interpreter, scope: Scope) -> None:
-    for binding in list(scope.values.values()):
-        if isinstance(binding, ParamBinding):
-            read_param(it, binding, binding.node)
-
-
 def _file_scope(
     it: Interpreter, module: ast.Module, library: Scope, loading: dict[ast.Module, Scope]
 ) -> Scope:
-    """Returns the scope of a file: its definitions and what it imports."""
     if module in loading:
         return loading[module]
     scope = loading[module] = Scope(library)

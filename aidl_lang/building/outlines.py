@@ -76,7 +76,11 @@ def _outline(kind: str, *words: str) -> Function:
             operands.append(_lattice(it, a, node, env))
         said = {name: _word(it, name, a.get(name), node) for name in words}
         if None in said.values() or (len(operands) < 2 and kind in ("union", "intersect", "difference")):
-            return _too_few(it, kind, node) if None not in said.values() else NOTHING
+            if None not in said.values():
+                name = node.callee.text
+                hint = f"as in `{name}(a, b)`"
+                it.report("E0337", f"`{name}` takes two outlines or more", node, hints=[hint])
+            return NOTHING
         if _negative(it, a, node):
             return NOTHING
         it.count_entity(node)
@@ -133,12 +137,6 @@ def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometr
     return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
 
 
-def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
-    name = node.callee.text
-    it.report("E0337", f"`{name}` takes two outlines or more", node, hints=[f"as in `{name}(a, b)`"])
-    return NOTHING
-
-
 def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> str | None:
     allowed = CORNER_WORDS[name]
     if value is None:
@@ -188,7 +186,6 @@ _KEPT = {"offset": 0, "tiled": 1}
 
 
 def _take_over(geometry: Geometry, env: Env) -> None:
-    """Turns the sources into guides, which are not drawn themselves."""
     assert geometry.recipe is not None
     keep_unnamed(geometry)
     here = env.scope.declaring().container or env.here

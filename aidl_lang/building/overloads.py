@@ -110,7 +110,6 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
 
 @lru_cache(maxsize=4096)
 def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> CallSite:
-    """Returns the site of a call within the library, which is the same for all programs."""
     return CallSite(node, list(signatures))
 
 

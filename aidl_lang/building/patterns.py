@@ -181,7 +181,6 @@ def _grid(call: _Call) -> Value:
 
 
 def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
-    """Lays out members at whole numbers of steps from the first, in one direction or in two."""
     if "center" in call.a and "start" in call.a:
         return call.wrong(
             "a pattern is placed by its `center` or by the `start` of its first member, not by both",
@@ -309,7 +308,6 @@ def _along(call: _Call) -> Value:
 
 
 def _evenly(call: _Call, way: Way) -> list[Expression] | None:
-    """Returns the ways to members that are as far apart everywhere."""
     name = next((n for n in ("inset", "margin") if n in call.a), None)
     inset = call.size(name) if name and not (way.is_closed and name == "margin") else ex.ZERO
     length = way.length
@@ -378,7 +376,6 @@ def _way(call: _Call) -> Way | None:
 
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
-    """Returns the number of members and the way from each to the next."""
     if "n" in call.a:
         n = call.count("n")
         if n is None:

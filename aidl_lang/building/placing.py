@@ -38,7 +38,9 @@ def placing(
         every = frozenset().union(*parties)
         return replace_placed(condition, every, () if _is_given_a_place(definition, binding) else parties)
     positional = [values[i] for i in binding.positional]
-    if _delegates(definition) and not (binding.gathered and len(positional) > 1):
+    only = definition.body.statements[0] if len(definition.body.statements) == 1 else None
+    delegates = isinstance(only, ast.ExpressionStatement) and isinstance(only.value, ast.Call)
+    if delegates and not (binding.gathered and len(positional) > 1):
         return condition
     if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
         positional.pop()  # the value that a measure is set to
@@ -73,12 +75,3 @@ def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) ->
 
 
 _PLACES = BoxType | PointType | GeometryType | StructureType
-
-
-def _delegates(definition: ast.ConstraintDefinition) -> bool:
-    """Tells whether a definition consists of one call, which then decides."""
-    match definition.body.statements:
-        case (ast.ExpressionStatement(value=ast.Call()),):
-            return True
-        case _:
-            return False

@@ -79,7 +79,6 @@ class Placing(Generic[N]):
         return x, y
 
     def _way(self, s: Structure) -> tuple[_Step[N], ...]:
-        """Returns the frames from that of a structure to the one in the root."""
         if (known := self._ways.get(s)) is None:
             known = () if s.parent is None else (self._step(s), *self._way(s.parent))
             self._ways[s] = known

@@ -66,7 +66,6 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Reports that a definition of the library makes no sense of its arguments."""
     why = a["why"]
     assert isinstance(why, TextVal)
     it.refuse(node, why.value)

@@ -82,10 +82,13 @@ def _made(
 def _named(
     it: Interpreter, node: ast.Assign, value: Value, scope: Scope, here: Structure, indices: tuple[int, ...]
 ) -> Value:
-    """Returns the value under its new name: a literal point becomes geometry."""
     container = scope.declaring().container or here
     if isinstance(value, PointVal) or (
-        isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
+        isinstance(value, ListVal)
+        and not indices
+        and isinstance(node.value, ast.List)
+        and len(node.value.items) == 2
+        and all(isinstance(i, ast.Number | ast.Unary) for i in node.value.items)
     ):
         at = as_point(it, value, node.value, Env(scope, here, Reach.OWN))
         if at is None:
@@ -98,14 +101,6 @@ def _named(
     if isinstance(value, Geometry | ListVal):
         adopt(value, node.name.text, indices, container, node)
     return value
-
-
-def _is_literal_point(node: ast.Expression) -> bool:
-    return (
-        isinstance(node, ast.List)
-        and len(node.items) == 2
-        and all(isinstance(i, ast.Number | ast.Unary) for i in node.items)
-    )
 
 
 def _structure(it: Interpreter, node: ast.Structure, scope: Scope, here: Structure) -> None:

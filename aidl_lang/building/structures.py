@@ -120,7 +120,6 @@ def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: 
 
 
 def _around(scope: Scope, name: str, structure: Structure) -> Scope:
-    """Returns the scope around a body, with its structure by name, which is no member of it."""
     around = Scope(scope)
     around.values[name] = structure
     return around

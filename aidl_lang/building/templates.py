@@ -31,7 +31,6 @@ def passed(
 
 
 def _drawn(value: Value) -> Geometry | Structure | None:
-    """Returns a geometry or a structure that a value is, or holds; None if there is none."""
     if isinstance(value, Geometry | Structure):
         return value
     held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()

@@ -287,7 +287,6 @@ def type_of(value: Value) -> Type:
 
 @cache
 def _types() -> Mapping[type, Callable[[Any], Type]]:
-    """Returns functions that make the type of a value, by its class."""
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.model import Condition, Geometry, Structure
 

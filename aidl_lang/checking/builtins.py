@@ -276,8 +276,13 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"})
-"""Curves of the library that follow two points, an ancestor's included, and hold no equations."""
+CONNECTING = frozenset(
+    (
+        *("coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"),
+        *("strip", "ram", "link", "hinge", "bracket"),
+    )
+)
+"""Shapes of the library that follow points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
     (
