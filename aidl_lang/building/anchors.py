@@ -142,6 +142,7 @@ def _dearest(tie: _Tie, standing: _Standing) -> _Party | None:
 
 
 def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
+    """Yields the comparisons of a call over equals, put together if they concern the same coordinates."""
     groups: list[tuple[set[Unknown], list[tuple[Comparison, list[_Party]]]]] = []
     for comparison in constraint.comparisons:
         if not comparison.parties:
@@ -218,7 +219,6 @@ def _placer(unknown: Unknown) -> Structure | None:
 
 
 def _felt(comparison: Comparison, evaluate: ex.Evaluator) -> bool:
-    """Tells whether a comparison changes when positions move."""
     left, right = comparison.left, comparison.right
     now, then = left.value - right.value, evaluate(left) - evaluate(right)
     return not abs(then - now) <= _FLAT * max(1.0, abs(left.value), abs(right.value))

@@ -87,6 +87,7 @@ def _one_by_one(relation: str, left: Value, right: Value) -> list[tuple[Value, V
 
 
 def _is_pair(values: Sequence[Value]) -> bool:
+    """Tells whether the members of a list may be the coordinates of a point."""
     return len(values) == 2 and all(isinstance(value, Num) for value in values)
 
 

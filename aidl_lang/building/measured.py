@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.cubics_along import Cubic, way
+from aidl_lang.building.along import Cubic, way
+from aidl_lang.building.curves import clockwise, number, sweep, view, xy
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.building.motion import Place
-from aidl_lang.building.primitives import clockwise, number, sweep, view, xy
 from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 
@@ -149,9 +149,6 @@ def _encloses(outline: Sequence[tuple[float, float]], spot: tuple[float, float])
     return sum(crossed) % 2 == 1
 
 
-# --- Pieces ----------------------------------------------------------------------------------------
-
-
 def _sum(*terms: tuple[float, Expression]) -> Expression:
     return reduce(ex.add, (ex.mul(ex.constant(by), term) for by, term in terms))
 
@@ -204,6 +201,7 @@ def _arc(g: Geometry, here: Structure) -> _Side:
 
 
 def _round(g: Geometry, here: Structure) -> _Side:
+    """Returns a circle or an ellipse as a piece without ends."""
     core = view(g, here)
     c = xy(core["center"])
     radii = [number(core[name]) for name in (("rx", "ry") if g.type == "ellipse" else ("radius", "radius"))]
