@@ -85,9 +85,7 @@ class _Tries:
     def answered(
         self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
     ) -> list[Diagnostic]:
-        """Returns the diagnostics, those on constants with values that would fit. `everything` is all that is
-        reported.
-        """
+        """Returns the diagnostics, those on constants with values that would fit; `everything` has all."""
         solving = self.settings.solving
         if not (solving.explain and has_errors(found)):
             return found
@@ -107,9 +105,7 @@ class _Tries:
     def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
-        """Builds the program with ambiguous calls read otherwise, or conditions over constants stated. None
-        if it is wrong then.
-        """
+        """Builds the program with calls read otherwise, or conditions stated; None if wrong then."""
         built, found = build(
             self.source,
             self.world,
@@ -138,9 +134,7 @@ def check(
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
-    """Returns the canonical form of a program, names spelled as they are defined; None if it does not
-    parse.
-    """
+    """Returns the canonical form of a program, names as they are defined; None if it does not parse."""
     from aidl_lang.syntax.printer import format_module
 
     with working:
@@ -280,7 +274,6 @@ def _freed(lowered: Lowered, solution: Solution, watch: Stopwatch) -> Freedom:
 
 
 def _is_troubled(solution: Solution) -> bool:
-    """Tells whether something failed, gave way, or holds only far from the first guesses."""
     return bool(solution.failures) or any(s.concession is not None or s.despite for s in solution.stages)
 
 
@@ -301,7 +294,6 @@ def _explained(
 def _elsewhere(
     built: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
 ) -> list[Diagnostic]:
-    """Returns notes on what holds only far from the first guesses."""
     if other is None and not _is_troubled(solution):
         return []
     from aidl_lang.explaining.rereading import elsewhere_notes

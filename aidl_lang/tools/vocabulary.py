@@ -143,9 +143,7 @@ class Vocabulary:
         return {**lists, "synonyms": dict(self.synonyms)}
 
     def named(self) -> dict[str, str]:
-        """Returns every public and built-in name, with the name of its class; a synonym has that of its
-        meaning.
-        """
+        """Returns every public and built-in name with its class; a synonym with that of its meaning."""
         found = {word: name for name in NAMES for word in getattr(self, name)}
         return {**found, **{word: found[target] for word, target in self.synonyms}}
 
@@ -190,9 +188,7 @@ def vocabulary() -> Vocabulary:
 
 
 def unclaimed() -> frozenset[str]:
-    """Returns words and signs of the grammar without a class: empty unless somebody is changing the
-    grammar.
-    """
+    """Returns words and signs of the grammar without a class: empty unless the grammar is being changed."""
     claimed = {
         word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()
     }
@@ -212,7 +208,6 @@ def _unit_signs() -> tuple[str, ...]:
 
 
 def _named() -> dict[str, tuple[str, ...]]:
-    """Returns the public names by class, in the order of the reference."""
     found: dict[str, list[str]] = {name: [] for name in NAMES}
     for entry in reference().entries.values():
         if entry.sort != "word":

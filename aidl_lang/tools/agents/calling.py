@@ -25,9 +25,7 @@ _PAIR = {"name", "value"}
 
 @record()
 class Answer:
-    """The answer to the model: a text, the same as data, and pictures (PNG). `is_error` for a refused call; a
-    program that is wrong is no error.
-    """
+    """The answer to the model: text, data and pictures (PNG). Only for a refused call `is_error` is true."""
 
     text: str
     data: Mapping[str, Any]
@@ -120,9 +118,7 @@ def _of_union(value: object, kinds: Sequence[Any]) -> object:
 
 
 def _pairs(value: object) -> list[tuple[object, object]]:
-    """Returns the items of a mapping, or of a list of pairs of a name and a value as strict schemas have
-    them.
-    """
+    """Returns the items of a mapping, or of pairs of name and value as strict schemas have them."""
     if isinstance(value, Mapping):
         return list(value.items())
     if not isinstance(value, list) or not all(isinstance(v, Mapping) and set(v) == _PAIR for v in value):
@@ -162,7 +158,6 @@ def _text(value: object) -> str:
 
 
 def _shown(value: object) -> str:
-    """Returns a value as it came, for a message."""
     text = json.dumps(value)
     return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"
 

@@ -243,9 +243,7 @@ def drawn(
     *,
     dimensioned: bool,
 ) -> Drawn:
-    """Returns the result of a program in some formats, for its reader. Raises RefusalError for an unknown
-    `path`.
-    """
+    """Returns a program's result in some formats, for its reader. Raises RefusalError: an unknown `path`."""
     making = _Making(compiled, limits, dimensioned)
     model, shortened = making.model(path) if "model" in formats else (None, None)
     files = [f for f in dict.fromkeys(formats) if f not in ("png", "model")]
@@ -411,7 +409,6 @@ def contact(pair: Contact) -> str:
 
 
 def _file(export: Export) -> str:
-    """Returns a file as text for a reader, to whom bytes say nothing."""
     if export.encoding == "base64":
         return f"{export.format}: made, {len(export.content)} characters in base64, which only the data has"
     return f"{export.format}:\n{export.content}"

@@ -107,9 +107,7 @@ class Reported(Result):
 
 
 def data(result: object) -> Any:
-    """Returns a result as dictionaries, lists, numbers and texts, for JSON; numbers that are not finite are
-    null.
-    """
+    """Returns a result as data for JSON; numbers that are not finite are null."""
     return rounded(_plain(result))
 
 

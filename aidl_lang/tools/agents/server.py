@@ -120,9 +120,7 @@ def _add_prompts(server: Server) -> None:
 
 
 def serve(root: Path | None = None, listener: socket | None = None, path: str = "/mcp") -> None:
-    """Serves until the client goes: over standard input and output, or over HTTP on a bound socket, at a path
-    that whoever asks must know.
-    """
+    """Serves until the client goes: over standard streams, or HTTP on a bound socket at a secret path."""
     workers = Workers(Tools(Workspace(root)))
     server = Server(workers)
     try:

@@ -190,9 +190,7 @@ def quantity(text: str) -> Quantity | str:
 
 
 def _spelled(text: str) -> str:
-    """Returns a text as the language has it. Half an inch is `1/2in` to all who measure in inches, where the
-    language would divide by two inches.
-    """
+    """Returns a text as the language has it: `1/2in` is half an inch, not one divided by two inches."""
     text = text.replace("\u2212", "-")
     if _COMMA.fullmatch(text.lstrip("+-").rstrip("".join(UNITS) + " ")):
         text = text.replace(",", ".")
@@ -217,7 +215,6 @@ def _added(zero: str, expression: str) -> float | str:
 
 
 def _is_alone(source: SourceFile, start: int, length: int) -> bool:
-    """Tells whether what was typed is one expression and nothing beside it."""
     statements = parser.parse(source).module.statements
     value = statements[0].value if isinstance(statements[0], ast.Param) else None
     return len(statements) == 2 and value is not None and value.span.end >= start + length
@@ -284,9 +281,7 @@ def _declaration(knob: Knob, source: SourceFile) -> ast.Param:
 
 
 def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
-    """Returns the value as the program writes it: a number in the unit that it was given in, or that stands
-    there now.
-    """
+    """Returns the value as the program writes it: in the unit given, else in the one that stands there."""
     if isinstance(knob.value, bool):
         if not isinstance(value, bool):
             raise _misfit(knob, value, "true or false")
@@ -308,9 +303,7 @@ def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
 
 
 def typed(knob: Knob, text: str) -> Quantity:
-    """Returns the number that a text means for a knob, in mm or degrees. Raises RefusalError if it means
-    none, or one of another kind.
-    """
+    """Returns the number, in mm or degrees, that a text means for a knob. Raises RefusalError."""
     found = quantity(text)
     if isinstance(found, str):
         why = found

@@ -97,7 +97,6 @@ def _is_unheard() -> bool:
 
 
 def _ended(argv: Sequence[str] | None) -> int:
-    """Returns the exit code of the command line, all that went wrong told."""
     try:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
@@ -121,7 +120,6 @@ def _ended(argv: Sequence[str] | None) -> int:
 
 
 def _run(words: Sequence[str]) -> int:
-    """Returns the exit code of a verb."""
     if not words:
         sys.stdout.write(_GREETING)
         return 0
@@ -151,7 +149,6 @@ class _Output(FileIO):
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Returns the parser for a command line, with the options of its verb."""
     parser = argparse.ArgumentParser(
         prog="aidl",
         description="AIDL: a text language for 2D CAD. Say relationships, get a constraint-solved drawing.",
@@ -178,9 +175,7 @@ def registering(verb: str) -> Callable[[argparse.ArgumentParser], None]:
 
 
 def _seldom_search() -> None:
-    """Searches garbage seldom: most objects are needed until the command ends. Bounds the cost in a verb that
-    goes on, and saves the search at the end.
-    """
+    """Searches garbage seldom: most objects are needed until the command ends, or one of its rounds."""
     gc.set_threshold(_BETWEEN_SEARCHES)
     atexit.unregister(gc.freeze)
     atexit.register(gc.freeze)

@@ -112,7 +112,6 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
 
 
 def _profile(name: str | None) -> Profile | None:
-    """Returns the profile of a name, or the one in a file."""
     if name is None:
         return None
     from aidl_lang.export import ExportError
@@ -148,9 +147,7 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
 def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Writes all outputs once all could be made; returns their names, and diagnostics about them. What the
-    program read is not overwritten.
-    """
+    """Writes all outputs once all could be made, over nothing that was read. Returns names and remarks."""
     from aidl_lang.export import ExportError
     from aidl_lang.export.cut_list import contents
 
@@ -238,7 +235,6 @@ def _default_output(program: str) -> str:
 
 
 def _suffix(name: str, fallback: str | None) -> str:
-    """Returns the format of an output: its own suffix, else `--format`, else SVG on standard output."""
     from aidl_lang.export import ExportError, suffix_of
 
     try:
@@ -279,7 +275,6 @@ def run_compile(arguments: argparse.Namespace) -> int:
 
 
 def _show_stages(stages: Sequence[tuple[str, StageReport]]) -> None:
-    """Prints one line for each stage tried, in order: a parent comes after its children."""
     width = max((len(path) for path, _ in stages), default=0)
     width = max(width, len("structure"))
     say(f"{'structure':<{width}}  {'stage':<16}{'unknowns':>9}{'rows':>6}")
@@ -333,9 +328,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
 
 
 def _once(arguments: argparse.Namespace, memory: Memory) -> frozenset[Path]:
-    """Runs once, with one line of report. A file that is gone for a moment does not end the watch. Returns
-    the files that were read beside the program; none if it could not be run.
-    """
+    """Runs once, with one line of report; a missing file does not end the watch. Returns the files read."""
     from aidl_lang.common.render import one_line
 
     clock = time.strftime("%H:%M:%S")

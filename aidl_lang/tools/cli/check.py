@@ -93,9 +93,7 @@ _WHY = "it changes what you wrote, so the choice is yours", "it would make thing
 
 @record()
 class _Checked:
-    """The findings in a file, the titles of the fixes made, and the result of solving: `solved`, `partial`,
-    `failed`; "" if it was not tried.
-    """
+    """The findings in a file, the fixes made, and the status of solving; "" if it was not tried."""
 
     diagnostics: list[Diagnostic]
     fixes: tuple[str, ...] = ()
@@ -160,7 +158,6 @@ def run_check(arguments: argparse.Namespace) -> int:
 
 
 def _check(name: str, arguments: argparse.Namespace) -> _Checked:
-    """Checks one file; an unreadable file is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
 
     settings = pipeline.Settings.of(arguments.variant)
@@ -187,7 +184,6 @@ def _found(
     arguments: argparse.Namespace,
     fixes: tuple[str, ...] = (),
 ) -> _Checked:
-    """Returns the findings in a program as it stands."""
     from aidl_lang import pipeline
 
     if not arguments.solve:

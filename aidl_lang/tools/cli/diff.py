@@ -62,7 +62,6 @@ def run_diff(arguments: argparse.Namespace) -> int:
 
 
 def _suffix(name: str, arguments: argparse.Namespace) -> str:
-    """Returns the format of an output; refuses a missing one."""
     from aidl_lang.export import PICTURES
 
     files.require_directory(name)
@@ -119,7 +118,6 @@ def _refusal(name: str, compiled: Compiled) -> Diagnostic:
 
 
 def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -> None:
-    """Writes all pictures once all could be made."""
     if not outputs:
         return
     from aidl_lang.common.drawing_time import within

@@ -37,9 +37,7 @@ _PLAIN = {
 
 
 def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
-    """Returns the verbs and options that have every word of a query, each with its line; those named so
-    first.
-    """
+    """Returns the verbs and options with every word of a query, each with its line; those named so first."""
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
@@ -221,7 +219,6 @@ def run_guide(arguments: argparse.Namespace) -> int:
 
 
 def _topics(written: str) -> list[str]:
-    """Returns the names of the topics that are asked for."""
     from aidl_lang.tools.reference.collect import reference
 
     known = [topic.name for topic in reference().topics]

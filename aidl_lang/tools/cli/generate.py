@@ -227,7 +227,6 @@ def _number(value: int | None) -> str:
 
 
 def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
-    """Writes the kept program and reports what is still missing in it."""
     verdict = generation.verdict
     if verdict is None:
         last = generation.attempts[-1].reply
@@ -275,7 +274,6 @@ def _write_program(
 
 
 def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
-    """Writes the drawings of the program."""
     from aidl_lang import pipeline
     from aidl_lang.common.source import SourceFile
     from aidl_lang.export import ExportError

@@ -103,7 +103,6 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
 
 
 def _block(part: Part) -> Iterator[str]:
-    """Yields all measures of a part."""
     kinds = {"bodies": counted(part.bodies, "body", "bodies"), "body": "a body"}
     yield f"{part.path}: {kinds.get(part.kind, part.kind)}"
     left, bottom, right, top = part.box
@@ -153,7 +152,6 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
-    """Yields one line for each body."""
     heads = (
         "body",
         "area mm²",

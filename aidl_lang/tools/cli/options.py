@@ -158,7 +158,6 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_cutting(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for cutters and for printing 1:1."""
     value(
         parser,
         "--profile",
@@ -426,9 +425,7 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
 
 
 def said(arguments: argparse.Namespace) -> list[str]:
-    """Returns the options that say how a drawing is made, as far as they are not the default, as the command
-    line has them.
-    """
+    """Returns the options of a drawing that are not the default, as the command line has them."""
     _, defaults = _parser(add_variant, add_strict)
     asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}
     return [
@@ -444,7 +441,6 @@ def said(arguments: argparse.Namespace) -> list[str]:
 def _parser(
     *more: Callable[[argparse.ArgumentParser], None],
 ) -> tuple[argparse.ArgumentParser, dict[str, Any]]:
-    """Returns a parser for the options of a drawing, and their defaults by name."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     parser.add_argument("file", nargs="?")
     add_drawing(parser)
@@ -468,7 +464,6 @@ def _refused(message: str, *hints: str) -> AidlError:
 
 
 def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
-    """Returns an option as the command line has it."""
     option = f"--{name.replace('_', '-')}"
     if is_flag != isinstance(value, bool):
         has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"

@@ -98,7 +98,6 @@ def _screen(width: int | None) -> Screen:
 
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
-    """Returns the picture in a protocol."""
     from aidl_lang.export.marks import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)

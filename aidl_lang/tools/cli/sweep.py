@@ -368,7 +368,6 @@ def line(session: Session) -> str:
 
 
 def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
-    """Prints each failure with its messages and the command that reproduces it."""
     from aidl_lang.common.render import escape
     from aidl_lang.tools.sweeping.plan import labels
 

@@ -99,7 +99,6 @@ def called() -> dict[str, str]:
 
 @cache
 def _plain_names() -> dict[str, str]:
-    """Returns predefined names that are not called, with their classes."""
     words = vocabulary()
     found = dict.fromkeys(words.everywhere, "name.everywhere")
     return {**found, **dict.fromkeys(words.constants, "name.constant")}
@@ -170,11 +169,9 @@ class _Reader:
     # --- Names ------------------------------------------------------------------------------------
 
     def _kind(self, place: int) -> str:
-        """Returns the kind of the token at a place; END outside of the text."""
         return self.tokens[place].kind if 0 <= place < len(self.tokens) else END
 
     def _is_keyword(self, place: int) -> bool:
-        """Tells whether a word that may also be a name is a keyword here."""
         before, after = self._kind(place - 1), self._kind(place + 1)
         match self._kind(place):
             case "as":
@@ -237,7 +234,6 @@ class _Reader:
         return after not in ("=", ".")  # its body may still have to be written
 
     def _after_index(self, place: int) -> int:
-        """Returns the place after `[…]`, any number of them."""
         while self._kind(place) == "[":
             place = self._closing(place) + 1
         return place

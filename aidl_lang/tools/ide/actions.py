@@ -80,9 +80,7 @@ class Action:
 
 
 def drawn_alike(one: View, other: View) -> bool:
-    """Tells whether two programs solve and draw the same picture. Raises CannotError if a picture cannot be
-    made.
-    """
+    """Tells whether two programs solve and draw the same. Raises CannotError without a picture."""
     outcomes = [view.outcome for view in (one, other)]
     if any(outcome is None or not outcome.ok for outcome in outcomes):
         return False
@@ -135,7 +133,6 @@ def _is_at(view: View, place: tuple[object, int, int], start: int, end: int) -> 
 
 
 def _remedies(view: View, d: Diagnostic) -> Iterator[Fix]:
-    """Yields the fixes for each of the constraints in a conflict."""
     if d.code not in _CONFLICTS or view.outcome is None:
         return
     for conflict in view.outcome.conflicts():
@@ -202,9 +199,7 @@ _TITLES = {False: "Write solved values back as first guesses", True: "Write chan
 
 
 def writings(view: View, start: int, end: int) -> Iterator[Action]:
-    """Yields actions for the selection, or else the innermost structure around the cursor; and for the whole
-    file.
-    """
+    """Yields actions for the selection, or the innermost structure at the cursor; and for the whole file."""
     if view.outcome is None:
         return
     part, where = _part(view, start, end)
@@ -216,7 +211,6 @@ def writings(view: View, start: int, end: int) -> Iterator[Action]:
 
 
 def _part(view: View, start: int, end: int) -> tuple[Span | None, str]:
-    """Returns a part of the text with its name."""
     if start < end:
         return view.span(start, end), "selection"
     node = next(structures_around(view, start), None)
@@ -327,7 +321,6 @@ def _suggested(view: View, path: Sequence[ast.Node]) -> str:
 
 
 def _parameter(view: View, call: ast.Call, inner: ast.Node) -> str | None:
-    """Returns the parameter that a nameless argument fills."""
     fits = view.program.inference.fits.get(call)
     given = next((a for a in call.arguments if a is inner and a.name is None), None)
     if not fits or given is None:
@@ -388,9 +381,7 @@ def _dedented(view: View, node: ast.Structure) -> str:
 
 
 def _passed(view: View, node: ast.Structure) -> list[Symbol]:
-    """Returns the outer names that a structure's body uses. Raises CannotError for one that cannot be passed
-    to a template.
-    """
+    """Returns the outer names that a body uses. Raises CannotError for one that cannot be passed."""
     found: dict[Symbol, None] = {}
     for mention in mentions(view):
         symbol = mention.symbol
@@ -573,7 +564,6 @@ def _origin(root: SolvedStructure, path: str) -> Vec | None:
 
 
 def _number_of(structure: SolvedStructure, name: str) -> float | None:
-    """Returns a number of a structure, or of some geometry in it."""
     thing, _, field = name.rpartition(".")
     path = f"{structure.path}.{thing}" if thing else structure.path
     values: list[object] = [s.params.get(field) for s in structure.walk() if s.path == path]

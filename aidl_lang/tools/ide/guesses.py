@@ -29,9 +29,7 @@ SAME = 1e-6
 
 
 def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance: float = SAME) -> bool:
-    """Tells whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole
-    lies.
-    """
+    """Tells whether two outcomes draw the same, name by name; with `slid`, wherever the whole lies."""
 
     def is_near(a: float, b: float) -> bool:
         return abs(a - b) <= tolerance or (math.isnan(a) and math.isnan(b))
@@ -59,7 +57,6 @@ def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]
 
 
 def _numbers(value: object, at: Vec) -> Iterator[float]:
-    """Yields the numbers of a curve or a point; a pair is a place, taken relative to `at`."""
     match value:
         case (float() as x, float() as y):
             yield from (x - at[0], y - at[1])
@@ -247,9 +244,7 @@ def _given_to_function(
 # Every proposal is tried: the edited text is solved again, and has to draw the same.
 
 _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
-"""Errors of a number, as shares of it (or of one for smaller numbers): each is tried if the one before it was
-too coarse. With none, all digits are written.
-"""
+"""Errors of a number, as shares of it (or of 1), tried in turn; with 0 all digits are written."""
 _MOST_TRIES = 8
 
 
@@ -267,9 +262,7 @@ def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False)
 
 
 def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting:
-    """Returns the edits that write solved values as first guesses, in a part of the text or in all of it;
-    with `sizes`, the values of the kept sizes that had to change. Raises CannotError.
-    """
+    """Returns the edits that write solved values as guesses, with `sizes` as sizes. Raises CannotError."""
     targets = _targets(view, span, sizes)
     if not targets:
         what = "kept size had to change" if sizes else "first guess was solved to something else"
@@ -289,7 +282,6 @@ def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> st
 
 
 def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
-    """Returns the numbers to write, with their values."""
     outcome, kept = view.outcome, as_kept(view)
     if outcome is None or outcome.evaluate is None or kept is None:
         return {}
@@ -350,7 +342,6 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
 
 
 def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]) -> dict[Guess, float]:
-    """Returns the numbers that solve to other values than intended, with these values."""
     now = guesses(again)
     if len(now) != len(order):
         return {}

@@ -50,9 +50,7 @@ def outline(view: View) -> list[Entry]:
 
 
 def search(project: Project, query: str) -> list[SymbolMatch]:
-    """Returns entries whose names have the letters of the query, in this order; whole names and beginnings
-    first.
-    """
+    """Returns entries whose names have a query's letters in this order, whole names and beginnings first."""
     wanted = fold(query)
     found = [
         each
@@ -142,9 +140,7 @@ _CLOSES = {"}": "{", "]": "[", ")": "("}
 
 @record()
 class Fold:
-    """Lines from `start`, which stays visible, to `end`, both from 1. `kind` is `region`, `comment` or
-    `imports`.
-    """
+    """Lines from `start`, which stays visible, to `end`, from 1; a `region`, `comment` or `imports`."""
 
     start: int
     end: int
@@ -184,7 +180,6 @@ def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
 
 
 def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Joins adjacent ranges of lines."""
     start = end = -1
     for first, last in lines:
         if first > end + 1:
@@ -200,9 +195,7 @@ def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
 
 
 def selections(view: View, offset: int) -> list[Span]:
-    """Returns the ranges around an offset, each larger than the one before and around it, the whole file
-    last.
-    """
+    """Returns the ranges around an offset, from the smallest to the whole file."""
     found: list[Span] = []
     for node in reversed(around(view.module, offset)):
         for span in (*_parts(node, offset), node.span):
@@ -214,9 +207,7 @@ def selections(view: View, offset: int) -> list[Span]:
 
 
 def _parts(node: ast.Node, offset: int) -> list[Span]:
-    """Returns the parts of a node that are no nodes: the name of a call or a member, the inside of a
-    block.
-    """
+    """Returns the parts of a node that are no nodes: the name of a call, the inside of a block."""
     match node:
         case ast.Call(callee=name) | ast.Member(name=name):
             return [name.span]
@@ -307,7 +298,6 @@ def _of_token(kind: str, text: str) -> str | None:
 
 
 def _heads(view: View) -> Iterator[Colored]:
-    """Yields words before names, and after `@`, which name nothing themselves."""
     for node in ast.walk(view.module):
         match node:
             case ast.Structure():
@@ -375,9 +365,7 @@ def colors(view: View) -> list[Color]:
 
 
 def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
-    """Returns the spellings of a colour at a place: its name if it has one, `#rrggbb`, and three numbers if
-    the place has three now.
-    """
+    """Returns the spellings of a colour: its name, `#rrggbb`, and three numbers if it has three now."""
     names = sorted(name for name in COLOR_NAMES if rgb(name) == color)
     written = [f'"{name}"' for name in names[:1]] + ['"#{:02x}{:02x}{:02x}"'.format(*color)]
     now = view.source.text[span.start : span.end]
@@ -385,9 +373,7 @@ def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
 
 
 def _literal(node: ast.Expression) -> object:
-    """Returns the value of an argument, a bare word being a text; None for an expression that must be
-    evaluated.
-    """
+    """Returns the value of an argument, a bare word being a text; None for what must be evaluated."""
     match node:
         case ast.String(value) | ast.Number(value, None, _) | ast.Name(value):
             return value

@@ -127,9 +127,7 @@ def parameter_node(signature: Signature, name: str) -> ast.Parameter | None:
 
 
 def free_name(view: View, name: str) -> str:
-    """Returns the name, or the first one with a number appended, that neither the text nor the library
-    has.
-    """
+    """Returns the name, numbered if the text or the library has it."""
     taken = {fold(node.text) for node in ast.walk(view.module) if isinstance(node, ast.Identifier | ast.Name)}
     taken |= set(map(fold, view.program.library.callables))
     candidate, count = name, 1
@@ -140,7 +138,6 @@ def free_name(view: View, name: str) -> str:
 
 
 def _imported_names(view: View, node: ast.Import) -> Iterator[Mention]:
-    """Yields the meaning of each name in `import a, b from "file"`."""
     target = view.resolution.imports.get(node)
     if target is None:
         return
@@ -185,9 +182,7 @@ class Refusal:
 
 
 def definitions(view: View, offset: int) -> list[Span]:
-    """Returns the declarations of the name at an offset, or the beginning of the file that an import names;
-    in this file, in others, or in the library (see `View.file`).
-    """
+    """Returns the declarations of the name at an offset, or the beginning of the file that is imported."""
     mention = mention_at(view, offset)
     if mention is not None:
         return [_place(view, declaration.span) for declaration in mention.symbol.declarations]
@@ -276,7 +271,6 @@ def declarations(view: View, symbol: Symbol) -> Iterator[Occurrence]:
 
 
 def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterator[Occurrence]:
-    """Yields occurrences in the view that was asked, and in all other programs."""
     yield from occurrences(view, place)
     for other in project.views_with(symbol.name):
         if other.path != view.path:
@@ -284,7 +278,6 @@ def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterat
 
 
 def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]:
-    """Orders occurrences by file and place, each once."""
     unique = {(o.path, o.span.start, o.span.end): o for o in found}
     return [unique[key] for key in sorted(unique)]
 
@@ -305,9 +298,7 @@ def renameable(view: View, offset: int) -> Span:
 
 
 def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
-    """Returns the edits that rename the thing named at an offset. Raises CannotError if the new name is not
-    one, or would change the meaning of any name.
-    """
+    """Returns the edits that rename a thing. Raises CannotError where any name would change its meaning."""
     mention = _own(view, offset)
     _require_name(name)
     found = references(project, view, offset)

@@ -264,9 +264,7 @@ def meant(signature: Signature, word: str, taken: set[str]) -> str | None:
 
 
 def _positional(signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]) -> list[str]:
-    """Returns the parameters of the arguments without a name, in order; those behind a named one fill what is
-    left.
-    """
+    """Returns the parameters of nameless arguments in order; those behind a named one fill what is left."""
     named = {meant(signature, word, set()) for word in words if word is not None}
     are_late = words[:1] != [None] and named != {None}
     names = [name for name, _, _ in signature.parameters if not (are_late and name in named)]

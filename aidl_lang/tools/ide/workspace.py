@@ -72,18 +72,14 @@ class Positions:
         return len(self._starts)
 
     def position(self, offset: int) -> Position:
-        """Returns the position of an offset; one outside the text is taken to its end, one in a line break to
-        its start.
-        """
+        """Returns the position of an offset; beyond the text its end, in a line break that's start."""
         offset = max(0, min(offset, self._ends[-1]))
         line = bisect_right(self._starts, offset) - 1
         offset = min(offset, self._ends[line])
         return line, self._units(offset) - self._units(self._starts[line])
 
     def offset(self, line: int, character: int) -> int:
-        """Returns the offset of a position; beyond a line it is the end of it, within a character its
-        start.
-        """
+        """Returns the offset of a position; beyond a line the end of it, within a character the start."""
         if line < 0:
             return 0
         if line >= self.lines:
@@ -99,7 +95,6 @@ class Positions:
         return self._units(end) - self._units(start)
 
     def _units(self, offset: int) -> int:
-        """Returns the units before an offset."""
         return offset + self._more[bisect_left(self._wide, offset)]
 
 
@@ -367,9 +362,7 @@ _PASSED_OVER = frozenset({"node_modules", "build", "dist", "__pycache__"})
 
 @record(frozen=False)
 class Workspace:
-    """`roots` are the folders searched for programs; `open` maps the absolute path of an open program to its
-    text.
-    """
+    """The programs below some folders; `open` has the texts of those in the editor by absolute path."""
 
     roots: Sequence[Path] = ()
     open: dict[Path, str] = field(default_factory=dict)

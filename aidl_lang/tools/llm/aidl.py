@@ -58,9 +58,7 @@ def _key(statement: ast.Statement) -> str:
 
 @record()
 class _Item:
-    """A statement in its text: `lead` is the text before it from the end of the line above on, and `tail` the
-    rest of its line.
-    """
+    """A statement in its text: `lead` is what stands before it behind the line above, `tail` after it."""
 
     node: ast.Statement
     lead: str
@@ -193,9 +191,7 @@ _PLANNED = (
 
 @record()
 class Aidl:
-    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` the
-    name of a program there.
-    """
+    """AIDL or a subset. Programs, called `file`, may import from `world`; None is nowhere."""
 
     variant: Variant = Variant.FULL
     world: World | None = None
@@ -259,9 +255,7 @@ class AidlConversation:
         return replace(verdict, feedback=told)
 
     def finish(self, verdict: Verdict) -> Verdict:
-        """Puts back what was lost and fits. A constraint that conflicts is given up only by the model, or the
-        reader of its report.
-        """
+        """Puts back what was lost and fits; a conflicting constraint only a model or reader gives up."""
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
         self.ledger.note(source, compiled)
@@ -338,7 +332,6 @@ def _what(loss: Loss) -> tuple[str, ...]:
 
 
 def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
-    """True for a program to be continued: it says `todo`, or has empty structures."""
     assert compiled.model is not None
     if any(structure.is_empty for structure in compiled.model.root.walk()):
         return True

@@ -26,9 +26,7 @@ _REPLY = re.compile(r"(?:(?!```).)*^```aidl\r?\n(?P<program>.*)```\s*", re.M | r
 
 
 def members(server: str, fenced: bool = True) -> Mapping[str, object]:
-    """Returns additional members of a request to one of SERVERS; without `fenced` the reply is a bare
-    program.
-    """
+    """Returns more members of a request to one of SERVERS; without `fenced` the reply is a bare program."""
     format = "llguidance" if server.endswith(_ENGINE) else "gbnf"
     return _MEMBERS[server.removesuffix(_ENGINE)](export(format, fenced))
 

@@ -90,9 +90,7 @@ def _remedy(name: str) -> list[str]:
 
 
 def _fitting(picture: Picture, data: bytes) -> Image:
-    """Returns the file itself if it is small enough, else its first frame as PNG or, when that is too long,
-    JPEG.
-    """
+    """Returns the file if it is small enough, else its first frame as PNG, or JPEG if that is too long."""
     from PIL import ImageOps
 
     is_upright = picture.getexif().get(_ORIENTATION, 1) == 1

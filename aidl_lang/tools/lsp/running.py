@@ -57,9 +57,7 @@ class Job(Generic[T]):
 
 
 class Lane:
-    """Does one piece of work at a time; of those waiting under one key, only the newest. All methods belong
-    to the loop's thread; `finished` is called there after each piece.
-    """
+    """Does one piece of work at a time, of those under one key the newest; for use in the loop's thread."""
 
     def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
         self._executor = _executor(name)
@@ -302,9 +300,7 @@ class Runner:
         *,
         first: bool = True,
     ) -> T:
-        """Returns the result of a function run in the solving thread, before waiting work or behind it. Only
-        the newest request under a key is done: the others raise Cancelled, as does an unwanted one.
-        """
+        """Returns a result from the solving thread, before waiting work or behind it; cancels older ones."""
         found: asyncio.Future[T] = self._loop.create_future()
 
         def work() -> T:
@@ -381,7 +377,6 @@ class Runner:
             self.listener.took_long(document)
 
     def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
-        """Runs a view, in the solving thread."""
         began = time.monotonic()
 
         def is_unwanted() -> bool:
@@ -438,9 +433,7 @@ def is_library(path: Path) -> bool:
 
 
 def _stands_on(view: View, path: Path) -> bool:
-    """True if a program imports a file, directly or not, or names it as a font; or has a missing import,
-    which may be there now.
-    """
+    """True if a program imports a file, directly or not, names it as a font, or has a missing import."""
     modules = view.resolution.modules
     if is_data(path):
         return any(path.name in module.source.text for module in modules)

@@ -198,9 +198,7 @@ def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.Abstr
 
 
 def claim_standard_streams() -> tuple[int, int]:
-    """Returns descriptors of the former standard input and output. A stray `print` then goes to standard
-    error, and nobody else reads what the client writes.
-    """
+    """Returns descriptors of the former standard streams; a stray `print` then goes to standard error."""
     sys.stdout.flush()
     incoming, outgoing = os.dup(0), os.dup(1)
     if sys.platform == "win32":

@@ -105,9 +105,7 @@ class Protocol(LanguageServerProtocol):
         self.handle_message(message)
 
     def _has_asked(self, number: object) -> bool:
-        """Tells whether a request of the server has this number. pygls keeps those of the client in the same
-        table, and would take an answer to one of those for its outcome.
-        """
+        """Tells whether the server asked by this number; pygls has the client's in the same table."""
         return isinstance(number, str) and number in self._result_types
 
     def _require_time(self, method: str) -> None:
@@ -300,9 +298,7 @@ class Server(LanguageServer):
         return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
 
     async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
-        """Returns the data of the present text, or a newer one; with its outcome if that is there in time.
-        None for a text that is longer than programs are: there is nothing to ask about it.
-        """
+        """Returns the data of the present text or a newer one, solved if in time; None if it is too long."""
         serial = document.serial
         await document.until_seen(serial)
         if patience:

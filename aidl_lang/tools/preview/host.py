@@ -90,9 +90,7 @@ class Host:
     # --- The text
 
     async def noticed(self, paths: Iterable[Path] | None = None) -> None:
-        """Takes note of files that have, or may have changed, of all of the program unless some are given;
-        the program's own is read in any case.
-        """
+        """Takes note of files that may have changed, all unless given; the program's own in any case."""
         while True:
             looks = self.text.looks
             found = asyncio.ensure_future(asyncio.to_thread(files.text_of, self.path))
@@ -232,7 +230,6 @@ class Host:
         self._go_on(page)
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
-        """Has a request of a page answered, most by the server."""
         if request.method in OWN:
             self._spawn(self._answer(page, request, self._changes[request.method], then))
             return
@@ -248,7 +245,6 @@ class Host:
 
     @property
     def _changes(self) -> dict[str, Callable[[Json], None]]:
-        """Returns what carries out each of `OWN`, given its parameters. They raise CannotError."""
         return {
             "aidl/undo": lambda _: self.text.undo(),
             "aidl/redo": lambda _: self.text.redo(),

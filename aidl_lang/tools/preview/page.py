@@ -96,9 +96,7 @@ _INVALID = "this page sent no changes of a text"
 
 
 def typed(text: str, changes: Any) -> str:
-    """Returns a text after changes by line and character, all of them counted in the text before. Line ends
-    become those that the text has. Raises CannotError for what is no such change.
-    """
+    """Returns a text after changes counted in it, with its line ends. Raises CannotError for what is none."""
     if not isinstance(changes, list):
         raise CannotError(_INVALID)
     positions, found = Positions(text), _LINE_END.search(text)

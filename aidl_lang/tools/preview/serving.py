@@ -12,9 +12,7 @@ from aidl_lang.tools.preview.local import Door
 from aidl_lang.tools.preview.site import MOST_PAGES, site
 
 _CONNECTIONS = 8 * MOST_PAGES
-"""Most connections. A browser opens some more for the files of a page; others are told that there are too
-many.
-"""
+"""Most connections. A browser opens some more for the files of a page; others are refused."""
 
 
 class Served:

@@ -35,9 +35,7 @@ _TOO_BIG = 1009
 
 
 def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
-    """Returns the application. `addresses` are the values of `Host` by which it may be called, as
-    `localhost:80`.
-    """
+    """Returns the application, which answers to these values of `Host`, as `localhost:80`."""
     routes = [
         Route("/{token}/", _index),
         Route("/{token}/pane/{name}", _file),
@@ -75,7 +73,6 @@ async def _index(request: Request) -> Response:
 
 @cache
 def _files() -> dict[str, Path]:
-    """Returns the files of the pane that pages may ask for, by name."""
     return {file.name: file for file in PANE.iterdir() if file.suffix in KINDS}
 
 

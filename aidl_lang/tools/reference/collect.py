@@ -44,18 +44,14 @@ class Doc:
 
     @property
     def lies(self) -> str:
-        """Returns how a shape lies at angle 0 and where it is held: what follows `Lies` in its paragraph;
-        "" for one that its name tells and that is held at the middle of its box.
-        """
+        """Returns how a shape lies at angle 0, and where it is held; "" for one told by name and middle."""
         said = _LIES.search(self.text)
         return " ".join(said[1].split()) if said else ""
 
 
 @record()
 class Overload:
-    """One form of a name: its text, its description, its file, and its definition in the library if it has
-    one.
-    """
+    """One form of a name: its text, description, file, and definition in the library if it has one."""
 
     form: str
     doc: Doc
@@ -164,7 +160,6 @@ def reference() -> Reference:
 
 
 def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
-    """Returns topics by their names, in the order of reading."""
     topics = {section.topic.name: section.topic for section in sections}
     for source in sources:
         name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
@@ -208,7 +203,6 @@ def _start(entry: Entry) -> int:
 
 
 def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
-    """Returns the entry of a name; None for one that is not public."""
     overloads = [Overload(written(n), doc(n.doc or ""), _where(n), n) for n in nodes if not _is_helper(n)]
     leading = [o for o in overloads if o.doc.line]
     if not leading:
@@ -367,9 +361,7 @@ def speaking_of(query: str) -> list[Entry]:
 
 
 def _scored(query: str) -> list[tuple[Entry | str, float]]:
-    """Returns what fits a query, best first, each with its share of the words; equal ones in the order of the
-    reference.
-    """
+    """Returns what fits a query, best first, each with its share of the words; else as in the reference."""
     words = list(dict.fromkeys(stems(query)))
     documents = _documents()
     wanted = "".join(_WORD.findall(query)).casefold()
@@ -415,9 +407,7 @@ def _of_code(code: str) -> _Document:
 
 
 def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
-    """Returns the words of some texts, each with the weight of its most important text; repetition adds
-    little.
-    """
+    """Returns the words of some texts, each with its most important text's weight; repetition adds little."""
     weights: dict[str, float] = {}
     for weight, text in parts:
         for word, times in Counter(stems(text)).items():

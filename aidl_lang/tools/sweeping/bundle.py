@@ -257,9 +257,7 @@ def to_data(outcome: Outcome) -> dict[str, Any]:
 
 
 def from_data(data: Any) -> Outcome:
-    """Reads an outcome from JSON that anybody may have written. Raises ValueError, TypeError or KeyError for
-    data that is none.
-    """
+    """Reads an outcome from JSON of any source. Raises ValueError, TypeError or KeyError for what is none."""
     faults = tuple(Fault(**each) for each in data["faults"])
     strings = [
         data["status"],

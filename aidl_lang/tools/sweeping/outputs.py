@@ -86,9 +86,7 @@ def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
 
 
 def safe(text: str) -> str:
-    """Returns a value as a part of a file's name: letters, digits and a few marks, of bounded length, and
-    never one that a file system reads otherwise (`..`, `CON`, a leading dot).
-    """
+    """Returns a value as part of a file's name: short, and none that a system reads otherwise (`CON`)."""
     kept = "".join(c if _is_plain(c) else "_" for c in unicodedata.normalize("NFC", text))
     kept = re.sub(r"__+", "_", kept).strip("_. ") if kept != text else kept
     kept = re.sub(r"\.\.+", ".", kept).lstrip(".").rstrip(". ")
@@ -102,9 +100,7 @@ def _is_plain(character: str) -> bool:
 
 
 def distinct(names: Iterable[str]) -> Iterator[str]:
-    """Yields the names of variants made different: of several that a file system may take for one, each but
-    the first gets its number.
-    """
+    """Yields names made different: of several alike for some file system, each but the first is numbered."""
     taken: set[str] = set()
     for number, name in enumerate(names, 1):
         made, path, mark = name, PurePath(name), f"~{number}"
@@ -198,9 +194,7 @@ class Drawings:
     """Writes the drawings of variants, each under a name of its own below the folder of its pattern."""
 
     def __init__(self, outputs: Outputs, plan: Plan, reads: Reads) -> None:
-        """Names the drawings of all variants; of names that are alike all but the first get a number. Raises
-        AidlError if one of them was read.
-        """
+        """Names the drawings of all variants, numbering equal names. Raises AidlError if one was read."""
         self.renamed = 0
         self._patterns = outputs.patterns
         self._names = [list(self._named(each, plan)) for each in outputs.patterns]
@@ -240,9 +234,7 @@ class Drawings:
 
 
 def write(name: str, data: bytes) -> None:
-    """Replaces a file in one step, if its content differs; a link is replaced, not followed. Raises
-    AidlError.
-    """
+    """Replaces a file, or a link, in one step if its content differs. Raises AidlError."""
     path = Path(name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

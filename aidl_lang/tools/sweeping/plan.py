@@ -80,9 +80,7 @@ def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
 
 
 def axis(name: str, written: str, knobs: Sequence[Knob], *, is_drawn: bool = False) -> Axis:
-    """Reads the values of a param as the command line has them. `is_drawn` says that values are drawn at
-    random from a range, which needs no number of them then. Raises AidlError.
-    """
+    """Reads a param's values as written. A range of one that `is_drawn` needs no number. Raises AidlError."""
     knob = knob_named(name, knobs)
     if written.strip() == "*":
         return _all_of(knob)
@@ -409,7 +407,6 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
 
 
 def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
-    """Yields the rows of a CSV file, each with the number of its line."""
     try:
         text = reads.contents(path, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
@@ -431,7 +428,6 @@ def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
 
 
 def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Knob | None]:
-    """Returns the params of the columns; None for a column that is none and resembles none."""
     by_name = {fold(knob.path): knob for knob in knobs}
     paths = [knob.path for knob in knobs]
     found: list[Knob | None] = []

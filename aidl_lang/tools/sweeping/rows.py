@@ -76,9 +76,7 @@ def said(fault: Fault) -> str:
 
 
 class Columns:
-    """The columns of a table: the number, other fields of the orders, params, then what came of it. A result
-    whose name a param has taken is called `result_NAME`.
-    """
+    """Columns: number, other fields, params, results; `result_NAME` for one whose name a param has."""
 
     def __init__(self, plan: Plan, timings: bool = True) -> None:
         self._plan = plan
@@ -138,9 +136,7 @@ ARROW_EXTRA = "parquet"
 
 
 def to_csv(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as CSV, with a byte order mark: lists are joined by semicolons, nothing stands where
-    nothing is known.
-    """
+    """Returns a table as CSV with a byte order mark; lists are joined by semicolons."""
     cells = ([_csv(cell) for cell in columns.cells(row)] for row in rows)
     return csv_text([columns.names, *cells]).encode("utf-8-sig", "backslashreplace")
 
@@ -173,9 +169,7 @@ def to_parquet(columns: Columns, rows: Sequence[Row]) -> bytes:
 
 
 def to_arrow(columns: Columns, rows: Sequence[Row]) -> pyarrow.Table:
-    """Returns a table as Arrow has it. A column that has numbers and texts is of texts. Raises AidlError
-    without pyarrow.
-    """
+    """Returns a table as Arrow's; mixed columns are of texts. Raises AidlError without pyarrow."""
     require("pyarrow", "a table of Arrow", ARROW_EXTRA)
     import pyarrow
 

@@ -46,9 +46,7 @@ _WARM = "aidl_lang.tools.sweeping.warm"
 def opened(
     source: SourceFile, world: World | None, settings: pipeline.Settings
 ) -> tuple[Bundle, Gathering, tuple[Knob, ...]]:
-    """Returns a program as it travels, the files that it may ask for, and its params. Raises AidlError for a
-    program that is wrong as written.
-    """
+    """Returns a program as it travels, files it may ask for, its params. Raises AidlError if wrong."""
     from aidl_lang.common.world import MemoryWorld
 
     gathering = Gathering(world or MemoryWorld({}))
@@ -111,9 +109,7 @@ def _written(given: Value) -> str:
 
 
 def joined(words: Sequence[str]) -> str:
-    """Returns words as a shell reads them; one with characters that a terminal does not show is written
-    `$'…'`.
-    """
+    """Returns words as a shell reads them; `$'…'` for characters that a terminal does not show."""
     return " ".join(shlex.quote(word) if word.isprintable() else _escaped(word) for word in words)
 
 
@@ -316,9 +312,7 @@ class Session:
         return len(self.rows) == len(self.job.plan)
 
     def __iter__(self) -> Iterator[Row]:
-        """Runs the sweep. Whatever ends it, what is done by then is kept where there are outputs; tables are
-        written once it is over.
-        """
+        """Runs the sweep. Whatever ends it, what is done is kept where there are outputs; tables last."""
         start = time.monotonic()
         job = self.job
         with ExitStack() as stack:

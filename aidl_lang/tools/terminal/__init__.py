@@ -83,9 +83,7 @@ _CHUNK = 4096
 
 
 def kitty(png: bytes, columns: int, rows: int) -> str:
-    """Returns the picture over so many cells, in chunks. A terminal answers unless told not to (`q=2`), and
-    the shell would take the answer for typing.
-    """
+    """Returns the picture over so many cells, in chunks; `q=2`, or the terminal would answer to the shell."""
     text = standard_b64encode(png).decode()
     chunks = [text[k : k + _CHUNK] for k in range(0, len(text), _CHUNK)]
     heads = [f"a=T,f=100,q=2,c={columns},r={rows}"] + ["q=2"] * (len(chunks) - 1)
@@ -318,9 +316,7 @@ def _code(colour: Colour, true_colour: bool) -> str:
 
 
 def nearest(colour: Colour) -> int:
-    """Returns the number of the nearest of the 256 colours of xterm, without the first 16, which themes
-    change.
-    """
+    """Returns the nearest of xterm's 256 colours, without the first 16, which themes change."""
     cube = [min(range(6), key=lambda k: abs(_LEVELS[k] - part)) for part in colour]
     grey = min(max(round((sum(colour) / 3 - 8) / 10), 0), 23)
     choices = [
@@ -440,7 +436,6 @@ def _tiles(pixels: Any, across: int, down: int) -> Any:
 
 @cache
 def _shapes() -> tuple[str, Any]:
-    """Returns the characters, and the darkness of each in the pixels of its cell."""
     import numpy as np
 
     y, x = np.mgrid[0.5:8, 0.5:4]

@@ -110,7 +110,6 @@ def _beginning(word: str) -> str:
 
 
 def _operations(context: Context) -> Iterator[Draft]:
-    """Yields statements that change existing geometry: `fillet(…)`, `move(…)`, `union(…)`."""
     yield from _calls(context, vocabulary().operations, _OPERATIONS)
 
 
@@ -185,7 +184,6 @@ def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) ->
 
 
 def _soft(site: EditSite, word: str) -> bool:
-    """Tells whether a contextual keyword, elsewhere a name, is a keyword here."""
     match word:
         case "as":
             return site.takes("as", "NAME", ";") and not site.automaton.between_statements
@@ -202,9 +200,7 @@ def truths(site: EditSite) -> Iterator[Draft]:
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:
-    """Returns the completions at an offset, the likeliest first, at most `MOST`. `files` lists the programs
-    of the workspace, for imports.
-    """
+    """Returns the likeliest `MOST` completions at an offset. `files` lists what may be imported."""
     spot = spot_at(view, offset)
     match spot.where:
         case Where.COMMENT:
@@ -297,7 +293,6 @@ def _of_import(site: EditSite, files: Files | None) -> Iterator[Draft]:
 
 
 def _is_free(site: EditSite) -> bool:
-    """Tells whether anything can be proposed: not where a new name is given."""
     before = site.spot.before
     if before is None:
         return True
@@ -309,7 +304,6 @@ _NAMING = ("param", "var", "let", "fn", "shape", "constraint", "alias", "for", "
 
 
 def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
-    """Yields drafts by the node that the placeholder became."""
     site, node, above = context.site, context.site.node, context.site.parent()
     match node, above:
         case ast.Identifier(), ast.Member(value=value):
@@ -346,7 +340,6 @@ def _attribute(context: Context) -> ast.Attribute | None:
 
 
 def _at_call(context: Context, files: Files | None) -> Iterator[Draft]:
-    """Yields statements for a call by itself, values for any other."""
     if isinstance(context.site.parent(2), ast.ExpressionStatement):
         if context.site.begins_statement or not context.site.may_end:
             yield from statements(context)

@@ -43,9 +43,7 @@ _HEAD = "| a ╲ b |"
 
 @record()
 class Form:
-    """A form of a constraint of `a`, or of `a` and `b`, and the kinds of things it takes; `second` is "" for
-    a single one.
-    """
+    """A form of a constraint, and the kinds of things (a, b) that it takes; of a single one b is ""."""
 
     name: str
     text: str
@@ -83,7 +81,6 @@ def read(page: str) -> Mapping[str, tuple[Form, ...]]:
 
 
 def _told(words: str) -> frozenset[tuple[str, str]]:
-    """Parses `any two, but no number`, or the kinds of a single thing."""
     if words.startswith("any two"):
         but = {word.strip() for word in re.split(r", but no | and no ", words)[1:]}
         left = [kind for kind in kinds() if kind not in but]
@@ -137,7 +134,6 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
 
 
 def _latest(things: Sequence[KnownName]) -> list[KnownName]:
-    """Returns the last few things of each kind, in order of declaration."""
     counts: Counter[str] = Counter()
     found = []
     for known in reversed(things):
@@ -187,7 +183,6 @@ def _tier(form: Form, things: Sequence[KnownName]) -> float:
 
 
 def _chosen(form: Form, things: Sequence[KnownName]) -> Iterator[tuple[KnownName, KnownName | None]]:
-    """Yields things that a form takes, in order of declaration."""
     for number, a in enumerate(things):
         first = kind_of(a.fact)
         if (first, "") in form.pairs:

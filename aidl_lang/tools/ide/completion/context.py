@@ -123,7 +123,6 @@ class Context:
         return Around(self.view.program.inference, self._of_argument).wanted(self.path)
 
     def _of_argument(self) -> Wanted:
-        """Returns the parameter types that the argument may fill, over all possible overloads."""
         if self.call is None:
             return self._of_attribute()
         number = self.call[1]
@@ -203,9 +202,7 @@ class Context:
                 return all(p.holder in self.scope.homes for p in reads)
 
     def callables(self) -> Iterator[tuple[str, Symbol | None]]:
-        """Yields the callable names of this program and its imports, the nearest first, with the alias of an
-        alias.
-        """
+        """Yields the callable names of this program and its imports, nearest first, with an alias."""
         seen: set[str] = set()
         outermost = self.view.resolution.library_scope
         for scope in self.scope.chain():
@@ -283,9 +280,7 @@ class Wanted:
     name: str = ""
 
     def distance(self, given: Type) -> int | None:
-        """Returns how far a type is from the wanted ones; None if it does not fit. An unknown type may
-        fit.
-        """
+        """Returns how far a type is from the wanted ones; None if it does not fit, as an unknown one may."""
         if isinstance(given, AnyType):
             return _PERHAPS
         found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
@@ -345,7 +340,6 @@ def _is_run_through(node: ast.Node, above: ast.Node) -> bool:
 
 
 def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Wanted:
-    """Returns the types that a statement, or another fixed place, wants."""
     match above:
         case ast.Point():
             return Wanted((NumberType(LENGTH),))
@@ -378,7 +372,6 @@ def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> 
 
 
 def _alike(kind: Type) -> Wanted:
-    """Returns the types that may be compared with, or added to, a type."""
     match kind:
         case NumberType(dimension):
             return Wanted((NumberType(dimension), NumberType(None)))

@@ -31,9 +31,7 @@ from aidl_lang.tools.vocabulary import vocabulary
 # --- One completion entry.
 
 MOST = 200
-"""Most entries of a list. A list of that length may be incomplete: the editor asks again as the word
-grows.
-"""
+"""Most entries of a list. After that many the editor asks again as the word grows."""
 
 
 def nothing() -> str:
@@ -110,9 +108,7 @@ def escaped(text: str) -> str:
 
 
 def written_out(snippet: Snippet) -> str:
-    """Writes a snippet for completion: indented as programs are, the cursor at its end unless it says
-    otherwise.
-    """
+    """Writes a snippet for completion: indented as programs are, without `$0` at its end."""
     return snippet.body.replace("\t", "    ").removesuffix("$0")
 
 

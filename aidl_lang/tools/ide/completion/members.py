@@ -66,7 +66,6 @@ def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
 
 
 def _of_file(context: Context, scope: SymbolScope | None) -> Iterator[Draft]:
-    """Yields the names of `import … as`."""
     if scope is None:
         return
     check = context.view.program.inference
@@ -90,7 +89,6 @@ _Named = Iterator[tuple[float, str, Symbol | None]]
 
 
 def _names(context: Context, fact: Fact) -> _Named:
-    """Returns the names of members, each with its tier and declaration."""
     match fact.type:
         case StructureType() if fact.of is not None:
             yield from _declared(context.view.resolution.scope_of(fact.of), fact.of)
@@ -126,7 +124,6 @@ def _declared(scope: SymbolScope, node: ast.Node) -> _Named:
 
 
 def _of_shape(context: Context, definition: ast.Node) -> _Named:
-    """Returns the named parts of a shape, then its parameters."""
     assert isinstance(definition, ast.ShapeDefinition)
     scope = body_of(context.view.program.inference, definition)
     for part in parts(definition):
@@ -139,7 +136,6 @@ def _of_shape(context: Context, definition: ast.Node) -> _Named:
 
 
 def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol | None) -> Draft:
-    """Returns a member with the type that the checker infers."""
     check = context.view.program.inference
     identifier = ast.Identifier(name, span=context.path[-1].span)
     nothing = ast.Name(name, span=context.path[-1].span)
@@ -266,7 +262,6 @@ def named_arguments(context: Context) -> Iterator[Draft]:
 
 
 def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
-    """Returns the parameters that no other argument fills."""
     taken = {name for n, name in enumerate(reading.taken) if n != number}
     node = reading.signature.node
     related = {p.name.text for p in things(node)} if isinstance(node, ast.ConstraintDefinition) else set()

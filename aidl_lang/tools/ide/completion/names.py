@@ -115,13 +115,11 @@ def calls(context: Context) -> Iterator[Draft]:
 
 
 def _is_whole_value(context: Context) -> bool:
-    """True if the place is the whole value of a name: `rim = …`."""
     above = context.site.parent()
     return isinstance(above, ast.Assign) and not context.in_items
 
 
 def _takes_things(context: Context) -> bool:
-    """True if geometry may stand at the place."""
     kinds = context.wanted.types
     things = (GeometryType, StructureType, ListType, AnyType)
     if context.call is None:
@@ -265,9 +263,7 @@ def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
 
 
 def _may_stand(context: Context, node: ast.Callable) -> bool:
-    """Tells whether a definition fits the place: constraints among constraints, elsewhere callables that give
-    a value.
-    """
+    """Tells whether a definition fits: constraints among constraints, what gives a value elsewhere."""
     is_demand = context.use is Use.CONSTRAINT
     return isinstance(node, ast.ConstraintDefinition) == is_demand or isinstance(node, ast.FunctionDefinition)
 

@@ -92,7 +92,6 @@ def pulled(outcome: Compiled, pull: Pull, to: Vec) -> tuple[Compiled, Vec] | Non
 
 
 def _wishing(model: Model, evaluate: Evaluator, by: Pull, to: Vec) -> Model:
-    """Returns the model with the wish that moves the point, and the pin that holds another."""
     more = [pull(model, by.grip, by.way.directions, to, _WEIGHT)]
     if by.pin is not None:
         more.append(pull(model, by.pin, AXES, by.pin.at(evaluate), None))
@@ -171,9 +170,7 @@ class Handle:
 
 @record()
 class Dragged:
-    """The result of dragging a point: `view` is the program as shown meanwhile, `at` the place of the point.
-    `edits` are tried, which takes longer than the rest.
-    """
+    """A dragged point: `view` is the program meanwhile, `at` the point's place; `edits` take longer."""
 
     view: View
     at: Vec
@@ -262,7 +259,6 @@ def _ways(view: View) -> Ways:
 
 @lru_cache(maxsize=4)
 def _editable(view: View) -> tuple[Guess, ...]:
-    """Returns the numbers that dragging may write."""
     return tuple(guess for guess in guesses(view) if not guess.is_shared)
 
 
@@ -298,9 +294,7 @@ def _is_slide(view: View, handle: str) -> bool:
 
 
 def _slides(view: View, handle: str) -> bool:
-    """Tells whether numbers of the text hold the whole drawing where a point is dragged: often there are
-    some, and the solver puts it back all the same.
-    """
+    """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway."""
     return _can_slide(view, _ways(view).whole[handle].directions)
 
 
@@ -371,7 +365,6 @@ def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
 
 
 def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
-    """Returns the fewest and shortest numbers that place the point as shown."""
     shown = dragged.view.outcome
     assert shown is not None
     changed = _changed(view, shown)
@@ -391,7 +384,6 @@ def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
 
 
 def _changed(view: View, shown: Compiled) -> list[tuple[Guess, float]]:
-    """Returns the numbers that dragging changed, with their new values."""
     assert view.outcome is not None
     assert view.outcome.evaluate is not None
     assert shown.evaluate is not None
@@ -411,9 +403,7 @@ def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> 
 
 
 def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
-    """Tells whether the edited text solves with the point where it was shown, without errors other than those
-    shown meanwhile.
-    """
+    """Tells whether the edited text solves with the point as shown, and with no further errors."""
     again = edited(view, edits, hasty())
     assert again.outcome is not None
     assert view.outcome is not None

@@ -49,9 +49,7 @@ def moved_by_params(view: View, known: Sequence[Grip]) -> dict[str, tuple[str, .
 
 
 def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
-    """Returns the program with one or two params changed so that a point comes near a place, the point, and
-    the edits of their defaults.
-    """
+    """Returns the program with one or two params changed, the point, and the edits of their defaults."""
     slopes, tries = dict(_slopes(view).get(grip.id, {})), _tries(view)
     values: dict[str, float] = {}
     at = _place_in(view, grip.id)
@@ -82,7 +80,6 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
 
 @lru_cache(maxsize=4)
 def _slopes(view: View) -> Mapping[str, Slopes]:
-    """Returns the slopes of each point that follows params."""
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
         return {}
@@ -112,7 +109,6 @@ def _numeric(view: View) -> Iterator[Knob]:
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    """Returns the declaration of a param whose value is a number in the text."""
     if knob.span is None or knob.span.source is not view.source:
         return None
     if (node := view.params_written.get(knob.span)) is None:
@@ -157,9 +153,7 @@ def _place_in(view: View, grip: str) -> Vec | None:
 
 
 class _Tries:
-    """Runs of a view with other values of params. A drag tries much the same values at each of its steps, so
-    the last ones are kept: the next step begins at the nearest.
-    """
+    """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
 
     def __init__(self, view: View) -> None:
         self.view = view
@@ -175,9 +169,7 @@ class _Tries:
         return self._shown[key]
 
     def place(self, grip: str, values: Mapping[str, float], *, likely: bool = False) -> Vec | None:
-        """Returns the place of a point with these values; None if they do not solve. `likely` ones are run at
-        once as they will be shown.
-        """
+        """Returns a point's place with these values, None if unsolved. `likely` ones will be shown."""
         key = frozenset(values.items())
         if key not in self._places:
             if not (likely or key in self._shown):
@@ -192,9 +184,7 @@ class _Tries:
         return self._places[key].get(grip)
 
     def nearest(self, grip: str, path: str, values: Mapping[str, float], to: Vec) -> tuple[float, Vec] | None:
-        """Returns the value of a param, beside the given ones of others, that brought a point nearest to a
-        place, and where that was.
-        """
+        """Returns the value of a param, beside others, that brought a point nearest to a place; and where."""
         beside = frozenset((other, value) for other, value in values.items() if other != path)
         known = [
             (value, at)
@@ -214,9 +204,7 @@ def _tries(view: View) -> _Tries:
 def _value(
     tries: _Tries, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
 ) -> float | None:
-    """Returns the param value that brings a point nearest to a place along its way; None if only the present
-    one solves.
-    """
+    """Returns the value that brings a point nearest to a place along its way; None if no other solves."""
     assert tries.view.outcome is not None
     knob = next(k for k in tries.view.outcome.knobs if k.path == path)
     slope = math.hypot(*way)
@@ -244,9 +232,7 @@ def _value(
 
 
 def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:
-    """Returns how far a param could move a point along a wanted way within its range, weighted by its effect
-    per unit.
-    """
+    """Returns how far a param could move a point along a way in its range, weighted by effect per unit."""
     assert view.outcome is not None
     knob = next(k for k in view.outcome.knobs if k.path == path)
     slope, along = math.hypot(*way), _along(wanted, way)
@@ -273,7 +259,6 @@ def _rounded(knob: Knob, value: float, tolerance: float) -> float:
 
 
 def _along(v: Vec, way: Vec) -> float:
-    """Returns the length of a vector along a way."""
     return (v[0] * way[0] + v[1] * way[1]) / math.hypot(*way)
 
 

@@ -86,7 +86,6 @@ def _structures(structure: Structure, depth: int) -> Iterator[tuple[int, Structu
 
 
 def _of_structure(model: Model, structure: Structure, depth: int) -> Iterator[Grip]:
-    """A structure by the middle of its box."""
     box = box_of(structure, model.root)
     middle = box.field("center") if box is not None else None
     if isinstance(middle, PointVal):
@@ -106,7 +105,6 @@ def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]
 
 
 def _arguments(geometry: Geometry) -> Iterator[tuple[str, PointVal]]:
-    """The points that a compound shape is made by."""
     if isinstance(geometry.scope, Scope):
         for name in geometry.arguments:
             value = geometry.scope.values.get(name)
@@ -155,9 +153,7 @@ _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 @record()
 class Way:
-    """The motion of a point: along any of some directions (unit vectors, one or two), while another point, by
-    its id, stays, since otherwise everything would move along.
-    """
+    """The motion of a point along one or two unit vectors; the point `pin` stays, lest everything move."""
 
     directions: tuple[Vec, ...]
     pin: str | None = None
@@ -178,9 +174,7 @@ class Ways:
 
 
 def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
-    """Returns the wish that a point be somewhere, along some directions; without a weight, a hard
-    constraint.
-    """
+    """Returns the wish that a point be somewhere along some directions; hard without a weight."""
     rows = []
     for u, v in directions:
         x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)

@@ -65,7 +65,6 @@ def _keyword(entry: Entry) -> str:
 
 
 def _compared(view: View, token: Token) -> str:
-    """Returns both sides of a comparison, and how well it holds."""
     path = around(view.module, token.start)
     node = path[-1]
     if not isinstance(node, ast.Comparison):
@@ -175,9 +174,7 @@ class Hover:
 
 
 def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
-    """Returns the hover for the word at an offset, or for the expression selected from there to `end`; None
-    for anything else.
-    """
+    """Returns the hover for the word at an offset, or for the expression from there to `end`."""
     if end is not None and end > offset:
         return _of_selection(view, offset, end)
     spot = spot_at(view, offset)
@@ -245,7 +242,6 @@ def _doc(symbol: Symbol) -> str:
 
 
 def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    """Returns the solved values of a name as a list."""
     solved = solved_of(view)
     if solved is None:
         return not_solved(view)
@@ -277,9 +273,7 @@ def _expression(mention: Mention) -> ast.Expression | None:
 
 
 def _body_path(mention: Mention, path: Sequence[ast.Node]) -> Sequence[ast.Node]:
-    """Returns the nodes around a name as its readers see them: the members of an array belong outside the
-    loop, and its variable to the turns of it.
-    """
+    """Returns the nodes around a name for its readers: an array is outside the loop, a variable in a turn."""
     symbol = mention.symbol
     if symbol.is_array and mention.is_declaration:
         loops = [n for n, node in enumerate(path) if isinstance(node, ast.For)]
@@ -302,7 +296,6 @@ def _range(symbol: Symbol) -> str:
 
 
 def _of_call(view: View, call: ast.Call, path: Sequence[ast.Node], symbol: Symbol) -> str:
-    """Describes a call: its form first, then the name."""
     candidates = view.resolution.candidates.get(call, ())
     if not candidates:
         return ""
@@ -328,7 +321,6 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
 
 
 def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
-    """Describes a parameter's value; for the geometry made of it, the solved one."""
     solved = solved_of(view)
     made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
     if solved is None or made is None or argument.name is None:
@@ -346,7 +338,6 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
 
 
 def _of_selection(view: View, start: int, end: int) -> Hover | None:
-    """Returns the hover for the selected expression, ignoring blanks around it."""
     text = view.source.text[start:end]
     start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
     path = around(view.module, start)

@@ -64,9 +64,7 @@ class Solved:
         return frozenset(self.outcome.model.mobility().free) if self.outcome.model else frozenset()
 
     def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[BuiltValue]:
-        """Returns the values of an expression, the first of many; `path` are the nodes around it, outermost
-        first. Returns none for one that has an error in it, or makes something.
-        """
+        """Returns the first values of an expression; none with errors. `path` are the nodes around."""
         if _depth(node) > _DEEPEST:
             return []
         found: list[BuiltValue] = []
@@ -181,9 +179,7 @@ def solved_of(view: View) -> Solved | None:
 
 
 def _owner(path: Sequence[ast.Node]) -> int | None:
-    """Returns the innermost node with a body around the last one; None within a function or a constraint,
-    which have no values of their own.
-    """
+    """Returns the innermost node with a body around the last one; None where nothing has its own values."""
     for number in range(len(path) - 1, -1, -1):
         node = path[number]
         inside = path[number + 1] if number + 1 < len(path) else None
@@ -219,7 +215,6 @@ def _below(root: Structure, path: str) -> str:
 
 
 def _all_of(found: Iterable[Geometry]) -> Iterator[Geometry]:
-    """Yields geometry with all its parts."""
     stack = list(found)
     while stack:
         yield (top := stack.pop(0))

@@ -98,9 +98,7 @@ def _number(solved: Solved, value: Num) -> str | None:
 
 
 def standing(solved: Solved, value: Num) -> str:
-    """Returns how far a number may change: `free`, `kept`, `solved`, `exact`; "" for a constant, and if that
-    is not known.
-    """
+    """Returns how far a number may change: `free`, `kept`, `solved`, `exact`; "" if constant or unknown."""
     unknowns = list(ex.unknowns([value.expression]))
     changing = [u for u in unknowns if not u.exact and u in solved.evaluate.values]
     if not changing:
@@ -142,7 +140,6 @@ def _point(solved: Solved, value: PointVal) -> str | None:
 
 
 def _frame(env: Env) -> str:
-    """Returns the name of the frame of coordinates, unless it is the root's."""
     return f" (in {env.here.name})" if env.here.parent is not None else ""
 
 

@@ -129,7 +129,6 @@ class _Flow:
         return moving
 
     def _at(self, k: int) -> tuple[Expression, Expression]:
-        """Returns a point in the frame of the root."""
         if k not in self._in_root:
             _, structure, x, y = self._points[k]
             self._in_root[k] = convert(x, y, structure, self._model.root)
@@ -153,9 +152,7 @@ def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]
 
 @record()
 class _Thing:
-    """Moving points of one thing with a box. `velocity` is their mean; `spin` radians, about the `middle`, in
-    the same time.
-    """
+    """Moving points of a thing. `velocity` is their mean; `spin` radians about the `middle` in that time."""
 
     box: Bounds
     places: Sequence[Vec]
@@ -191,9 +188,7 @@ class _Thing:
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 
     def arrows(self, kind: str, slow: float) -> Iterator[Arrow]:
-        """Yields one arrow for a slide; for growth, arrows from its ends outwards. Points slower than `slow`
-        stand still.
-        """
+        """Yields an arrow for a slide; for growth, some outwards. Points slower than `slow` stand still."""
         if kind == "turn" or (kind == "together" and self.is_turning):
             return
         if kind in ("slide", "together") and math.hypot(*self.velocity) > slow:
@@ -235,7 +230,6 @@ class _Thing:
 
 
 def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]:
-    """Yields the things that move in a motion, if they have points and a place."""
     nudged = flow.nudged(motion)
     if nudged is None:
         return
@@ -288,7 +282,6 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
 
 
 def _numbered(group: Group, elements: Elements) -> Group:
-    """Returns the group of a structure with its number."""
     number = elements.number.get(group.attributes.get("data-path", ""))
     if number is None:
         return group
@@ -342,7 +335,6 @@ def _large_first(
 
 
 def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | None:
-    """Returns the area that a structure covers."""
     is_structure = isinstance(drawn.model, SolvedStructure)
     region = drawing.regions.get(drawn.element.path) if is_structure else None
     if not region:
@@ -363,7 +355,6 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
 
 
 def _drawn_dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
-    """Returns the dot of a point."""
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
 
@@ -418,7 +409,6 @@ def _status(outcome: Compiled) -> str:
 def _painted(
     drawn: Compiled, found: Elements, show: Collection[str]
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    """Returns the SVG; or, if painting takes too long, the diagnostics about that."""
     try:
         with within(drawn.limit, "painting"):
             return svg_of(drawn, found, set(show) & set(LAYERS)), ()
@@ -432,7 +422,6 @@ def with_handles(made: Preview, view: View) -> Preview:
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
-    """Yields those handles that still exist, at their present places."""
     outcome, wanted = view.outcome, {handle.id: handle for handle in known}
     if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
         return
@@ -448,7 +437,6 @@ def _is_anything_drawn(outcome: Compiled) -> bool:
 
 
 def _ways(view: View, found: Elements) -> Iterator[Way]:
-    """Yields the remaining motions; none for the picture of an earlier text."""
     if view.outcome is not None and not view.is_stale:
         yield from ways(view.outcome, found)
 
@@ -461,9 +449,7 @@ def tried(
     *,
     rests: bool = False,
 ) -> View:
-    """Returns the view with other values of some params; why they do not hold is explained if what changes
-    them `rests`. Raises Cancelled as `run` does.
-    """
+    """Returns the view with other params; failures are explained if what changes them `rests`."""
     how = settings if rests else hasty(settings)
     return run(view, view, memory, {**(view.params or {}), **knobs}, how)
 

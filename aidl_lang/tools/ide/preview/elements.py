@@ -237,7 +237,6 @@ def _sizes(geometry: SolvedGeometry) -> str:
 
 
 def _extent(thing: SolvedStructure | SolvedGeometry) -> str:
-    """Returns width and height as text."""
     box = box_of(thing)
     return "" if box is None else f"{_mm(box[2] - box[0])} × {_mm(box[3] - box[1])} mm"
 
@@ -257,7 +256,6 @@ def elements_at(view: View, offset: int) -> list[int]:
 
 
 def _constrained(view: View, found: Elements, place: Span) -> list[int]:
-    """Returns the elements that the smallest constraint around a place relates."""
     if view.drawn is None or view.drawn.model is None:
         return []
     places, around = Places(view), list[tuple[int, ConstraintReport]]()

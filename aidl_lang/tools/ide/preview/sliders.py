@@ -28,9 +28,7 @@ _SLACK = 1e-9
 
 
 def sliders(view: View) -> Iterator[Slider]:
-    """Yields the params of the text, in order of writing; of one too broken to have any, those of the
-    picture, which cannot be written.
-    """
+    """Yields the params in order of writing; of a broken text those of the picture, which are read only."""
     outcome, places = view.outcome, Places(view)
     known = outcome.knobs if outcome is not None else ()
     if not known and view.is_stale and view.drawn is not None:
@@ -55,9 +53,7 @@ def sliders(view: View) -> Iterator[Slider]:
 
 
 def set_knob(view: View, path: str, value: Value) -> list[Edit]:
-    """Returns the edits that make a value the default of a param; a text for a number is worked out. Raises
-    RefusalError for an invalid one.
-    """
+    """Returns the edits that make a value, or a text's worth, a param's default. Raises RefusalError."""
     knob = _knob(view, path)
     declared = _declaration(view, knob)
     if declared is None or knob.span is None:
@@ -88,7 +84,6 @@ def _knob(view: View, path: str) -> Knob:
 
 
 def _is_typed(knob: Knob, value: Value) -> bool:
-    """Tells whether a value is a text that means a number."""
     return isinstance(value, str) and _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
 
 
@@ -119,7 +114,6 @@ def _require_sense(view: View, edits: list[Edit]) -> None:
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    """Returns the declaration of a param in the texts of the view; None for one of the library."""
     return None if knob.span is None else view.params_written.get(knob.span)
 
 
@@ -159,9 +153,7 @@ _QUOTED = re.compile("`([^`]+)`")
 def problems(
     view: View, elements: Elements, painting: Sequence[Diagnostic] = (), *, tried: bool = False
 ) -> Iterator[Problem]:
-    """Yields the diagnostics of the text, and those of painting it, each with its elements and points. Of
-    values that are only tried none has a fix: fixes are of the text.
-    """
+    """Yields the diagnostics with elements and points; of values that are only tried none has a fix."""
     finder = _Finder(view, elements)
     for found in (*view.diagnostics, *painting):
         yield Problem(

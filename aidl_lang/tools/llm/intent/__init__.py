@@ -195,9 +195,7 @@ class Restored:
 
 @record(eq=False)
 class _Noted:
-    """A program of the conversation, and the items that no later one has; for each, its replacement in the
-    next program, if any.
-    """
+    """A program, and the items that no later one has, each with its replacement in the next, if any."""
 
     inventory: Inventory
     last: dict[Item, Item | None] = field(default_factory=dict)
@@ -239,9 +237,7 @@ class Ledger:
         self._noted.append(_Noted(here, dict.fromkeys(here.items)))
 
     def restore(self, source: SourceFile) -> Restored:
-        """Puts back what an earlier program had and this one lacks: one after another, each kept only if the
-        program still solves, without new errors or failed asserts.
-        """
+        """Puts back what an earlier program had, one by one, as long as no error or failed assert comes."""
         settled = (State.IMPLIED, State.CONFLICTS, State.MENDED)
         known = self._known if source.text == self._text else ()
         prober = self._prober(source, _RESTORING)
@@ -315,16 +311,12 @@ def _count(inventory: Inventory, item: Item | None) -> int:
 
 
 def _lesser(item: Item, heir: Item) -> Item:
-    """Returns which of a statement and its replacement is left out when both are lost: the older, except for
-    a wish.
-    """
+    """Returns which of a lost statement and its lost replacement to leave out: the older, or a wish."""
     return heir if strength(heir) < strength(item) else item
 
 
 def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
-    """True for a loss to report, or to try: a right statement may have been rewritten to one that says less.
-    Offers of diagnostics are no losses.
-    """
+    """True for a loss to report or try, as a rewritten statement may be; what diagnostics offer is none."""
     match fate:
         case Fate.GONE:
             return not item.may_go
@@ -363,7 +355,6 @@ def _squeezed(text: str) -> str:
 
 
 def _mark(item: Item) -> str:
-    """Returns the trace of an item in a text that could not be read."""
     node = item.node
     if item.kind is Kind.STRUCTURE:
         return "".join(item.span.text.split("{")[0].split())
@@ -416,9 +407,7 @@ class _Restoring:
 
 
 def _has_room(loss: Loss, changes: Changes) -> bool:
-    """True if something can be put back as it was: it is gone, and at the place of a structure or geometry
-    stands nothing new, perhaps its replacement.
-    """
+    """True if something can be put back as it was: nothing new stands in the place of the thing itself."""
     if loss.fate is Fate.FEWER or loss.kind not in _THINGS:
         return loss.fate is not Fate.FEWER
     home = changes.paths.get(loss.item.home, loss.item.home)

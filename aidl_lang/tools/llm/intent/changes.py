@@ -65,13 +65,10 @@ class _Matching:
         self.taken.add(other.thing)
 
     def _home(self, item: Item) -> Path | None:
-        """Returns the present path of the structure that holds a thing."""
         return self.found.get(item.home) if item.home in self.before.things else item.home
 
     def _in_place(self, item: Item) -> Item | None:
-        """Returns the thing of the same name in the same structure; an index may have come or gone with a
-        loop.
-        """
+        """Returns the thing of the same name in the same structure, with or without the index of a loop."""
         home = self._home(item)
         if home is None:
             return None
@@ -81,9 +78,7 @@ class _Matching:
         return things.get(path) or things.get(name) or self.turns.get(name)
 
     def _elsewhere(self, item: Item) -> Item | None:
-        """Returns the thing of the same name in another structure, if that is new there; geometry also has to
-        be alike.
-        """
+        """Returns the thing of the same name in another structure, if new there; geometry must be alike."""
         name = item.thing[len(item.home) :]
         candidates = self._free(item, self.by_name.get(name, ()))
         if item.kind is Kind.GEOMETRY:
@@ -140,9 +135,7 @@ def _root(inventory: Inventory) -> Item | None:
 
 
 def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:
-    """Returns the content of each structure, in words that do not depend on the names in it, and these
-    names.
-    """
+    """Returns the content of each structure in words that do not depend on its names, and these names."""
     contents = {item.thing: Counter[object]() for item in inventory.things.values()}
     for item in inventory.items:
         for path in (item.home[:k] for k in range(1, len(item.home) + 1)):
@@ -236,9 +229,7 @@ def _decides(item: Item) -> frozenset[str]:
 
 
 def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
-    """Returns the fate of a param: it keeps its name; a new one is recognised by its words, wherever it
-    stands.
-    """
+    """Returns the fate of a param: it keeps its name, or is recognised by its words wherever it stands."""
     params = [i for i in after.items if i.kind is Kind.PARAM]
     path = (*paths.get(item.home, item.home), item.thing[-1])
     for other in params:
@@ -280,9 +271,7 @@ _Marks = Callable[[Item | _Read], Iterable[object]]
 
 
 class _Statements:
-    """Pairs statements, the surest pairs first. Each is taken once, except that a relation may stand for
-    several equations on the same things.
-    """
+    """Pairs statements once, the surest first; a relation may stand for several equations on its things."""
 
     def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
         self.fates: dict[Item, tuple[Fate, Item | None]] = {}
@@ -304,7 +293,6 @@ class _Statements:
         self._phase(Fate.WEAKENED, _weaker, _about, _says_instead)
 
     def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
-        """Pairs items that share a mark, and fit."""
         marked: dict[object, list[Item]] = {}
         for other in self.free:
             for mark in marks(other):

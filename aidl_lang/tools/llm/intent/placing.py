@@ -53,7 +53,6 @@ def put_back(item: Item, changes: Changes) -> PutBack | None:
 
 
 def _instead(wish: Item, words: str) -> PutBack:
-    """Replaces a wish."""
     is_bare = any(step.key == CONSTRAIN for step in wish.steps)
     words = words if is_bare else f"constrain {words}"
     text = wish.span.source.text
@@ -80,7 +79,6 @@ def _words(item: Item, changes: Changes, home: Path) -> str:
 
 
 def _exchanged(span: Span, names: Mapping[ast.Node, str]) -> str:
-    """Returns the text of a statement with names in it replaced."""
     text = span.text
     for node in sorted(names, key=lambda node: -node.span.start):
         start, end = node.span.start - span.start, node.span.end - span.start
@@ -172,9 +170,7 @@ def _inserted(before: str, added: str, after: str, words: str) -> PutBack:
 
 
 def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) -> PutBack:
-    """Inserts after the nearest thing that stood above it and still exists; else at the beginning of the
-    block.
-    """
+    """Inserts after the nearest thing that stood above it and still exists, else at a block's beginning."""
     above = 0
     for other in changes.before.items:
         if other is item:
@@ -195,7 +191,6 @@ def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) ->
 
 
 def _turned(item: Item, changes: Changes) -> PutBack | None:
-    """Returns the later program with the rotation of a thing in its head, or among its arguments."""
     path = changes.paths.get(item.thing)
     owner = changes.after.things[path].node if path is not None else None
     if not isinstance(owner, ast.Structure | ast.Assign):
@@ -278,9 +273,7 @@ class Trial:
 
 
 class Prober:
-    """Tries losses in one program: at most so many times, and no more after some time. `clashed` are items
-    that were in a conflict.
-    """
+    """Tries losses in one program, a limited number and time; items of `clashed` were in a conflict."""
 
     def __init__(
         self, name: str, world: World | None, settings: Settings, most: int, clashed: Collection[Item]
@@ -296,9 +289,7 @@ class Prober:
         return Reader.of(source).compiled(compile(source, self.world, settings=self.settings))
 
     def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
-        """Puts an item back into the later program, whose outcome is `base`. If more is to follow, as
-        constraints of a structure, it may touch nothing yet.
-        """
+        """Puts an item back into the program of outcome `base`. The first of several may touch nothing."""
         here = changes.after.source
         is_over = self.left <= 0 or time.thread_time() > self.end
         if is_over or base is None or not stands(base):
@@ -340,9 +331,7 @@ def stands(compiled: Compiled | None) -> bool:
 
 
 def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[Diagnostic]:
-    """Yields errors of a result that its base did not have, and parts that touch nothing, except those that
-    touched nothing `before` either.
-    """
+    """Yields errors that the base lacks, and parts that touch nothing except those that did so `before`."""
     contacts = (d for d in before.diagnostics if d.code in CONTACTS)
     known = Counter(_mark(d) for d in (*base.diagnostics, *contacts))
     for d in result.diagnostics:
@@ -368,18 +357,14 @@ def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[
 def _is_implied(
     stated: Sequence[ConstraintReport], item: Item, fate: Fate, own: Span, result: Compiled
 ) -> bool:
-    """True if the program says as much without an item. An inequality that is simply gone counts as lost even
-    if sizes and parameters happen to keep it now; its replacement may say more.
-    """
+    """True if the program says as much without an item; of an inequality, only what replaced it can."""
     if item.kind is not Kind.CONSTRAINT and not (item.kind is Kind.ROTATION and stated):
         return False
     return (fate is Fate.REWRITTEN or _is_exact(stated)) and result.follows(own)
 
 
 def _is_mended(stated: Sequence[ConstraintReport], now: Item, parties: Sequence[str], base: Compiled) -> bool:
-    """True if the replacement of a conflicting statement asks for as much: an equation for an equation, or
-    anything but the opposite of an inequality.
-    """
+    """True if a replacement asks for as much: an equation, or anything but the opposite of an inequality."""
     heirs = _stated_in(base, now.span)
     if _is_exact(stated):
         return bool(heirs) and _is_exact(heirs)

@@ -33,9 +33,7 @@ _SILENT = {_AGAIN: "false", "x-aidl-silent": "true"}
 
 
 class Client(httpx2.Client):
-    """A client that does not repeat requests after a timeout, as the SDKs would at a cost and without
-    effect.
-    """
+    """A client that does not repeat requests after a timeout, which the SDKs do at a cost without effect."""
 
     def send(self, request: httpx2.Request, **options: Any) -> httpx2.Response:
         try:
@@ -109,9 +107,7 @@ class Server(ABC):
         self._client.close()
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
-        """Returns a reply, retrying when the stream breaks off; the cost of a broken one, and so the sum, is
-        unknown.
-        """
+        """Returns a reply, retrying broken streams; the cost of a broken one, and so the sum, is unknown."""
         spent = Usage()
         for _ in range(self._connection.retries + 1):
             draft = Draft(hear, self._model)
@@ -167,7 +163,6 @@ class Server(ABC):
 
     @contextmanager
     def _failures(self) -> Iterator[None]:
-        """Raises the SDK's errors as errors of the provider."""
         sdk = self._sdk
         try:
             yield
@@ -188,7 +183,6 @@ class Server(ABC):
             raise ProviderError("E0935", "the messages hold characters that are not Unicode text") from None
 
     def _refusal(self, error: Any) -> ProviderError:
-        """Returns the error for an HTTP status."""
         status: int = error.status_code
         said = self._words(error.body)
         because = f" ({status}): {said}" if said else f" ({status})"
@@ -212,7 +206,6 @@ class Server(ABC):
         return ProviderError("E0935", f"the request was refused{because}", *_remedies(said.lower()))
 
     def _models_hint(self) -> Iterator[str]:
-        """Yields the available models; a server without a list probably has a wrong address."""
         try:
             known = self._models()
         except self._sdk.APIError:
@@ -224,7 +217,6 @@ class Server(ABC):
         yield f"the server has {_few(near, known)}"
 
     def _models(self) -> list[str]:
-        """Returns the server's list of models; raises the SDK's errors."""
         try:
             listed = dig(self._client.models.list().model_dump(warnings=False), "data")
         except (ValueError, AttributeError):  # something else than a list came
@@ -284,13 +276,11 @@ def _events(stream: Any) -> Iterator[object]:
 
 
 def _few(names: list[str], known: list[str]) -> str:
-    """Returns some of the known names."""
     shown = names[:_SHOWN]
     return ", ".join([*shown, "…"] if len(shown) < len(known) else shown)
 
 
 def _remedies(said: str) -> Iterator[str]:
-    """Yields remedies for a refused request, if its words tell the reason."""
     if any(sign in said for sign in _TOO_LONG):
         yield "guide and conversation are longer than the model reads: take one that reads more"
         yield "servers of your own: OLLAMA_CONTEXT_LENGTH=16384, llama-server -c, vllm --max-model-len"

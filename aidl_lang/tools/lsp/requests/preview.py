@@ -162,9 +162,7 @@ class Pictures:
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
     ) -> T | None:
-        """Returns the result of a function run in the solving thread; None if the document is closed, a newer
-        request came, or, unless it goes first, the text changed.
-        """
+        """Returns a result from the solving thread; None if the document changed, or a newer asked."""
         serial = document.serial
 
         def is_unwanted() -> bool:
@@ -329,7 +327,6 @@ class _Requests:
         return document
 
     def _outdate_tries(self, given: OfDocument) -> None:
-        """Cancels the viewer's earlier tries."""
         self._asked[given.uri, given.viewer] += 1
 
     async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
@@ -349,9 +346,7 @@ class _Requests:
         function: Callable[[], T],
         is_outdated: Callable[[], bool] = lambda: False,
     ) -> T:
-        """Runs a function in the solving thread, unless the text changes meanwhile, or a newer request comes
-        under the key.
-        """
+        """Runs a function in the solving thread, unless the text changes or a newer request has the key."""
 
         def is_unwanted() -> bool:
             return document.version != asked.known.version or not document.is_open or is_outdated()

@@ -251,7 +251,6 @@ def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
 
 
 def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeAction]:
-    """Returns the actions at a range, without edits for a client that can ask for these later."""
     span = asked.convert.span(params.range)
     resolves = asked.can("text_document.code_action.resolve_support")
     made = []
