@@ -126,9 +126,6 @@ def shown_fields(kind: type) -> Iterator[dataclasses.Field[Any]]:
     return (f for f in dataclasses.fields(kind) if f.repr)
 
 
-# --- Diagnostics -----------------------------------------------------------------------------------
-
-
 def findings(diagnostics: Sequence[Diagnostic]) -> Findings:
     """Returns diagnostics as findings, errors first."""
     ranked = sorted(diagnostics, key=lambda d: "EWN".index(d.code[0]))
@@ -166,9 +163,6 @@ def _cut(text: str) -> str:
 def joined(blocks: Iterable[str]) -> str:
     """Joins paragraphs that are not empty, with an empty line between two."""
     return "\n\n".join(filter(None, (block.rstrip() for block in blocks)))
-
-
-# --- Programs --------------------------------------------------------------------------------------
 
 
 @record()
@@ -333,9 +327,6 @@ class Conflicts(Reported):
     degrees_of_freedom: int | None
     motions: list[str]
     findings: Findings
-
-
-# --- Reading ---------------------------------------------------------------------------------------
 
 
 @record()

@@ -142,8 +142,6 @@ class Workspace:
             )
 
 
-# --- Changes the default of a `param` in the text of a program, to a number as people type it.
-
 # --- Numbers as people type them, with units, sums and fractions: `12cm`, `80 + 20`, `1/2in`, `3 1/2in`.
 
 LONGEST = 200

@@ -74,9 +74,6 @@ def _density(text: str) -> tuple[str, float]:
     return name, value
 
 
-# --- Text ----------------------------------------------------------------------------------------
-
-
 def _lines(found: Survey, asked: bool) -> Iterator[str]:
     from aidl_lang.common.render import escape
 
@@ -214,9 +211,6 @@ def _place(p: Vec, size: float) -> str:
 
 def _mass(grams: float) -> str:
     return f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"
-
-
-# --- JSON ----------------------------------------------------------------------------------------
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:

@@ -192,9 +192,6 @@ def _is_kept(became: Expression) -> bool:
     return isinstance(became.payload, Unknown) and became.payload.kept
 
 
-# --- Numbers with a name -------------------------------------------------------------------------
-
-
 def _read_more_than_once(view: View) -> Iterator[ast.Node]:
     """Yields the numbers of a name that is read more than once: another use may compute with it."""
     uses = view.resolution.uses
@@ -278,9 +275,6 @@ def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> st
     return shortest(value, precision * max(1.0, abs(value))) + guess.unit
 
 
-# --- Choosing ------------------------------------------------------------------------------------
-
-
 def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
     outcome, kept = view.outcome, as_kept(view)
     if outcome is None or outcome.evaluate is None or kept is None:
@@ -304,9 +298,6 @@ def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
 def _holds_changed_size(guess: Guess) -> bool:
     """True for the number of a kept size, by itself or as the place of a further point of a geometry."""
     return any(unknown.kept for unknown in guess.unknowns)
-
-
-# --- Trying --------------------------------------------------------------------------------------
 
 
 def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:

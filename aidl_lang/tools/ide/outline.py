@@ -219,8 +219,6 @@ def _parts(node: ast.Node, offset: int) -> list[Span]:
             return []
 
 
-# --- The role of each word of a program, for colours that follow its meaning, and the colours that it names.
-
 # --- The role of each word of a program, for colours that follow its meaning.
 #
 # Types and modifiers are the standard ones of editors; themes colour them without knowing AIDL.

@@ -162,8 +162,6 @@ def _alias_target(view: View, node: ast.Alias) -> Iterator[Mention]:
         yield Mention(node.target.span, node, symbol or Symbol(found[0], SymbolKind.BUILTIN))
 
 
-# --- Where names are defined and used: definitions, links to files, references, and renaming everywhere.
-
 # --- Reasons for which a request cannot be carried out.
 
 

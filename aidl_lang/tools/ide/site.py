@@ -164,9 +164,6 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
     return Spot(Where.NUMBER, offset, start, token.end, before, token)
 
 
-# --- Code ------------------------------------------------------------------------------------------
-
-
 @record(eq=False)
 class EditSite:
     """A place under editing in its program.

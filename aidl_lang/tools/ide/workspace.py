@@ -30,8 +30,6 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.typecheck import Program
 
-# --- Places and edits of one text: positions of protocols, applying and finding edits, formatting.
-
 # --- Converts between offsets in a text and lines and characters of protocols: in UTF-16 units, or as
 # agreed.
 #
@@ -168,8 +166,6 @@ def format_range(view: View, wanted: Span) -> list[Edit]:
     end = len(text) if end < 0 else end + 1
     return [e for e in format_document(view) if e.span.start < end and e.span.end >= start]
 
-
-# --- The programs of a project in an editor, and a view of each with all that is known of it.
 
 # --- One text of a program with all that is known of it, from which every question of an editor is answered.
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from aidl_lang.pipeline import Compiled
 
 
-# --- Messages to and from a language model: texts, pictures, and programs in replies.
-
 # --- Pictures for a model: whole files of known formats, no larger than a model looks at.
 
 MAX_FILE = 50_000_000

@@ -159,8 +159,6 @@ def _nowhere(scheme: str, name: str) -> Path:
     return Path(os.path.normpath(f"{os.path.abspath(os.sep)}{scheme}:/{name}"))
 
 
-# --- Values of the server made those of the protocol, settings read from it, diagnostics published.
-
 # --- Values of the server made those of the protocol, and settings read from it.
 
 LONGEST_DELAY = 5_000

@@ -184,9 +184,6 @@ def _target(alias: str, aliases: Mapping[str, str]) -> str:
     return alias
 
 
-# --- The library ---------------------------------------------------------------------------------
-
-
 def _library_entries(loaded: library.Library) -> list[Entry]:
     nodes: dict[str, list[ast.Callable | ast.Let]] = {}
     for name, signatures in loaded.callables.items():

@@ -36,9 +36,6 @@ def written(node: ast.Callable | ast.Let) -> str:
     return f"{node.name.text}({items})"
 
 
-# --- Parts ---------------------------------------------------------------------------------------
-
-
 @record()
 class Part:
     """A named part of a shape or template: `edges[i]` for an array; `type` is "" if that is not known."""
@@ -111,9 +108,6 @@ def made_shape(node: ast.FunctionDefinition) -> str | None:
             return callee.text
         case _:
             return None
-
-
-# --- Constraints ---------------------------------------------------------------------------------
 
 
 def things(node: ast.Callable) -> list[ast.Parameter]:

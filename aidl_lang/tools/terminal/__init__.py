@@ -13,8 +13,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
 
-# --- The picture protocols of a terminal, the size of its screen, and pixels in the form of each.
-
 # --- The size of a terminal, and of a picture in it.
 
 CELL = (8, 16)
@@ -218,8 +216,6 @@ def _encodable(name: str, sample: str, encoding: str) -> str:
         return "ascii"
     return name
 
-
-# --- Pictures made of characters: half blocks, dots of braille, ASCII by shape, and lettering in them.
 
 # --- Pictures made of characters: grids of cells, lettering in them, and the text that they become.
 

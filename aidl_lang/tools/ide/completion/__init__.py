@@ -145,9 +145,6 @@ def _shapes(context: Context) -> Iterator[Draft]:
         )
 
 
-# --- Words that go on ------------------------------------------------------------------------------
-
-
 def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
     """Yields words that continue the present statement: `at`, `in`, `step`, `and`, …"""
     words = vocabulary()
@@ -215,9 +212,6 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
     return ranked(drafts, view.span(spot.start, spot.end), prefix)
 
 
-# --- Strings and numbers ---------------------------------------------------------------------------
-
-
 def _in_string(view: View, spot: Spot, files: Files | None) -> Iterator[Draft]:
     """Yields files of an import, and the words that an attribute or an argument takes."""
     before = spot.before
@@ -258,9 +252,6 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     return context_of(
         EditSite(view, Spot(Where.CODE, start, start, start, spot.before), automaton, shown, path)
     )
-
-
-# --- Code ------------------------------------------------------------------------------------------
 
 
 def _in_code(view: View, spot: Spot, files: Files | None) -> list[Completion]:

@@ -212,9 +212,6 @@ def _filled(form: Form, things: Sequence[KnownName]) -> str:
     return head + bracket + _LETTER.sub(place, rest)
 
 
-# --- Definitions of the program --------------------------------------------------------------------
-
-
 def _own(
     context: Context, name: str, signatures: Sequence[Signature], things: Sequence[KnownName], behind: float
 ) -> Draft:

@@ -131,9 +131,6 @@ _FAVOURITES = ("mm", "deg")
 _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool", "list", "box")
 
 
-# --- Numbers ---------------------------------------------------------------------------------------
-
-
 def units(context: Context | None) -> Iterator[Draft]:
     """Yields units after a number, those of the wanted dimension first."""
     wanted = context.wanted.types if context is not None else ()
@@ -147,9 +144,6 @@ def units(context: Context | None) -> Iterator[Draft]:
 def _worth(unit: str, factor: float, dimension: Dimension) -> str:
     base = "mm" if dimension == UNITS["mm"][1] else "degrees"
     return str(dimension) if factor == 1.0 else f"{factor:.6g} {base}"
-
-
-# --- Attributes ------------------------------------------------------------------------------------
 
 
 def attributes(is_called: bool) -> Iterator[Draft]:
@@ -183,9 +177,6 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
         yield Draft(word, kind, 0.0, word if is_quoted or (bare and kind == "word") else f'"{word}"')
 
 
-# --- Types -----------------------------------------------------------------------------------------
-
-
 def types(context: Context | None) -> Iterator[Draft]:
     """Yields types after `:` in a parameter, and shapes by their names."""
     for number, word in enumerate(dict.fromkeys((*_PLAIN_TYPES, *PARAMETER_TYPES))):
@@ -198,9 +189,6 @@ def types(context: Context | None) -> Iterator[Draft]:
             yield Draft(
                 name, "shape", 2.0 - (name in own), describe=partial(of_callable, name, tuple(found[1]))
             )
-
-
-# --- The choices of an argument --------------------------------------------------------------------
 
 
 def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:
@@ -262,9 +250,6 @@ def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
 
 def _is_name(node: ast.Expression, name: str) -> bool:
     return isinstance(node, ast.Name) and node.text == name
-
-
-# --- Files -----------------------------------------------------------------------------------------
 
 
 def files(site_path: Path, listed: Files | None, *, quoted: bool = False) -> Iterator[Draft]:

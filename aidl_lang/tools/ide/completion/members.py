@@ -156,9 +156,6 @@ def _field(name: str, fact: Fact) -> str:
     return joined([fenced(f"{name}: {fact.type}")])
 
 
-# --- Calls behind a dot ----------------------------------------------------------------------------
-
-
 def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     """Yields `a.above(…)`: constraints among constraints, functions elsewhere."""
     if isinstance(fact.type, AnyType | RecordType):
@@ -218,9 +215,6 @@ def _method(context: Context, name: str, signatures: list[Signature], tier: floa
         is_snippet,
         describe=partial(names.about_call, name, tuple(signatures)),
     )
-
-
-# --- Indices ---------------------------------------------------------------------------------------
 
 
 def indices(context: Context, index: ast.Index) -> Iterator[Draft]:

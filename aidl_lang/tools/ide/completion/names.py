@@ -84,9 +84,6 @@ def about(symbol: Symbol) -> str:
     return of_entry(entry) if entry is not None else ""
 
 
-# --- Callables -------------------------------------------------------------------------------------
-
-
 def calls(context: Context) -> Iterator[Draft]:
     """Yields the callables that give a value."""
     is_whole = _is_whole_value(context)

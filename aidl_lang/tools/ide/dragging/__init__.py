@@ -222,9 +222,6 @@ def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refu
     return _pulled(view, grip, to, step)
 
 
-# --- What can be dragged -------------------------------------------------------------------------
-
-
 def _grips_of(view: View) -> dict[str, Grip]:
     return {grip.id: grip for grip in _grips(view)}
 
@@ -359,9 +356,6 @@ def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
         return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
     shown, at = found
     return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
-
-
-# --- Writing it into the text --------------------------------------------------------------------
 
 
 def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:

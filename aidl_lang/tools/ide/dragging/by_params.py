@@ -75,9 +75,6 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
     return shown, at, edits
 
 
-# --- What follows a param ------------------------------------------------------------------------
-
-
 @lru_cache(maxsize=4)
 def _slopes(view: View) -> Mapping[str, Slopes]:
     outcome = view.outcome
@@ -147,9 +144,6 @@ def _place_in(view: View, grip: str) -> Vec | None:
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
         return None
     return next((g.at(outcome.evaluate) for g in grips(outcome.built) if g.id == grip), None)
-
-
-# --- How far to turn it --------------------------------------------------------------------------
 
 
 class _Tries:

@@ -188,9 +188,6 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
     return Hover(*told) if told is not None else None
 
 
-# --- Names -----------------------------------------------------------------------------------------
-
-
 def _of_name_at(view: View, offset: int) -> Description | None:
     mention = mention_at(view, offset)
     if mention is None:
@@ -292,9 +289,6 @@ def _range(symbol: Symbol) -> str:
     return f"May be set to {node.domain.span.one_line}{step}."
 
 
-# --- Calls -----------------------------------------------------------------------------------------
-
-
 def _of_call(view: View, call: ast.Call, path: Sequence[ast.Node], symbol: Symbol) -> str:
     candidates = view.resolution.candidates.get(call, ())
     if not candidates:
@@ -332,9 +326,6 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     found = solved.values(field, path[: path.index(made)])
     told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
     return joined([listed(told), failed(solved)])
-
-
-# --- Selections -----------------------------------------------------------------------------------
 
 
 def _of_selection(view: View, start: int, end: int) -> Hover | None:

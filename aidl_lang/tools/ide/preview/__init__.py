@@ -39,8 +39,6 @@ from aidl_lang.tools.ide.preview.protocol import FREEDOM, LAYERS, Arrow, Preview
 from aidl_lang.tools.ide.preview.sliders import conflicts, problems, set_knob, sliders, worked_out
 from aidl_lang.tools.ide.workspace import SETTINGS, View, hasty, run
 
-# --- Makes the preview of a view: a picture whose shapes say which element they are, and its data.
-
 # --- The remaining motions as arrows and arcs on the drawing.
 #
 # A motion of the model gives the velocity of each unknown. The velocities of points follow by changing the
@@ -252,8 +250,6 @@ def _mean(vectors: Sequence[Vec]) -> Vec:
 def _dot(a: Vec, b: Vec) -> float:
     return a[0] * b[0] + a[1] * b[1]
 
-
-# --- Makes the preview of a view: a picture whose shapes say which element they are, and its data.
 
 # --- The picture as SVG whose shapes say which element they are: `data-element`, a number of `elements`.
 #

@@ -16,8 +16,6 @@ from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, na
 from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, dotted, new_errors, stands
 from aidl_lang.tools.llm.intent.taking import inventory
 
-# --- The intents of the programs of a conversation, one after another, and losses in words.
-
 # --- A loss of a conversation.
 
 
@@ -65,8 +63,6 @@ class Loss:
         """The loss in words."""
         return phrase(self)
 
-
-# --- The intents of the programs of a conversation, one after another, and losses in words.
 
 # --- Losses in words, for a language model and for reports.
 

@@ -59,9 +59,6 @@ def _instead(wish: Item, words: str) -> PutBack:
     return _inserted(text[: wish.span.start], words, text[wish.span.end :], words)
 
 
-# --- Words -------------------------------------------------------------------------------------------
-
-
 def _words(item: Item, changes: Changes, home: Path) -> str:
     """Returns the statement in its author's words, with present names."""
     if item.kind is Kind.STRUCTURE:
@@ -116,9 +113,6 @@ def _seen_from(path: Path, home: Path) -> str:
 def dotted(path: Path) -> str:
     """Returns a path as it is written: `dial.finger[3].rim`."""
     return "".join(p if p.startswith("[") or not i else f".{p}" for i, p in enumerate(path))
-
-
-# --- Places ------------------------------------------------------------------------------------------
 
 
 def _found(body: ast.Block, steps: Sequence[Step], changes: Changes) -> tuple[ast.Block, Sequence[Step]]:

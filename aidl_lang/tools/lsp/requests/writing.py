@@ -28,8 +28,6 @@ from aidl_lang.tools.lsp.params import EntryRequest, read
 from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
-# --- Inlay hints, lenses and code actions, with the command that tries the ends of params.
-
 # --- The command that tries the ends of params, and its results for the lenses above them.
 
 CHECK_ENDS = "aidl.checkEnds"
