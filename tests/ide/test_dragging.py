@@ -247,10 +247,6 @@ def test_a_param_set_from_outside_is_not_turned() -> None:
     assert handles(held) == []
 
 
-def test_points_that_follow_params_can_be_left_out() -> None:
-    assert handles(seen(SHELF, solved=True), params=False) == []
-
-
 # --- What there is -------------------------------------------------------------------------------
 
 

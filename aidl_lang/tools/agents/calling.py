@@ -185,7 +185,12 @@ class Workers:
         except Exception as error:
             if (limit := limit_met(error)) is None:
                 raise
-            return _given_up(_WHY[limit].format(self.seconds))
+            diagnostic = Diagnostic(
+                "E0943",
+                f"the call {_WHY[limit].format(self.seconds)} and was given up",
+                hints=("ask for less: fewer parts, smaller arrays, no outlines worked out of many others",),
+            )
+            return Answer(compact([diagnostic]), {}, is_error=True)
 
     def close(self) -> None:
         self._pool.close()
@@ -196,12 +201,3 @@ _WHY = {
     Limit.DEATH: "ended the process that worked on it",
     Limit.MEMORY: "needs more memory than there is for it",
 }
-
-
-def _given_up(why: str) -> Answer:
-    diagnostic = Diagnostic(
-        "E0943",
-        f"the call {why} and was given up",
-        hints=("ask for less: fewer parts, smaller arrays, no outlines worked out of many others",),
-    )
-    return Answer(compact([diagnostic]), {}, is_error=True)

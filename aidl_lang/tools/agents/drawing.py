@@ -250,7 +250,13 @@ def drawn(
     exports = [export for f in files if (export := making.export(f)) is not None]
     png = making.png() if "png" in formats else None
     bodies, contacts = _bodies(compiled), _contacts(compiled)
-    left = _left_out(compiled)
+    drawing = compiled.drawing
+    counts = {
+        "params": len(compiled.knobs),
+        "bodies": len(drawing.bodies) if drawing else 0,
+        "contacts": len(drawing.pairs) if drawing else 0,
+    }
+    left = [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
     diagnostics = [*compiled.diagnostics, *reader.diagnostics(making.notes)]
     return Drawn(
         compiled.ok,
@@ -412,16 +418,6 @@ def _file(export: Export) -> str:
     if export.encoding == "base64":
         return f"{export.format}: made, {len(export.content)} characters in base64, which only the data has"
     return f"{export.format}:\n{export.content}"
-
-
-def _left_out(compiled: Compiled) -> list[str]:
-    drawing = compiled.drawing
-    counts = {
-        "params": len(compiled.knobs),
-        "bodies": len(drawing.bodies) if drawing else 0,
-        "contacts": len(drawing.pairs) if drawing else 0,
-    }
-    return [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
 
 
 def left_out(what: str, count: int) -> str:

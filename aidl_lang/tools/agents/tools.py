@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 from aidl_lang import pipeline
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
-from aidl_lang.common.diagnostics import Edit, has_errors
+from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.common.records import record
@@ -223,7 +223,7 @@ class Tools:
         if before.status == "wrong":
             raise RefusalError(*before.errors)
         edit = workspace.edit_of(workspace.find(before.knobs, name), source, value)
-        text = _edited(source, edit)
+        text = source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
         workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
@@ -270,10 +270,6 @@ class Tools:
         reader = world.reader(source)
         compiled = pipeline.compile(source, world, params, self.workspace.limits.settings)
         return source, reader.compiled(compiled), reader
-
-
-def _edited(source: SourceFile, edit: Edit) -> str:
-    return source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
 
 
 def _changes(before: Compiled, after: Compiled) -> str:

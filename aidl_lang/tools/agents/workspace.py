@@ -176,7 +176,10 @@ def quantity(text: str) -> Quantity | str:
     text = text.strip()
     if not text or len(text) > LONGEST or "\n" in text or "\r" in text:
         return _NONE
-    expression = _spelled(text)
+    text = text.replace("\u2212", "-")
+    if _COMMA.fullmatch(text.lstrip("+-").rstrip("".join(UNITS) + " ")):
+        text = text.replace(",", ".")
+    expression = _FRACTION.sub(_fraction, _APART.sub("", text))
     found = {unit: _added(zero, expression) for unit, zero in _ZEROS.items()}
     values = {unit: value for unit, value in found.items() if isinstance(value, float)}
     if not values:
@@ -185,14 +188,6 @@ def quantity(text: str) -> Quantity | str:
     units = set(_SUFFIX.findall(expression))
     unit, value = next(iter(values.items()))
     return Quantity(value, unit if len(values) == 1 else "", units.pop() if len(units) == 1 else None)
-
-
-def _spelled(text: str) -> str:
-    """Returns a text as the language has it: `1/2in` is half an inch, not one divided by two inches."""
-    text = text.replace("\u2212", "-")
-    if _COMMA.fullmatch(text.lstrip("+-").rstrip("".join(UNITS) + " ")):
-        text = text.replace(",", ".")
-    return _FRACTION.sub(_fraction, _APART.sub("", text))
 
 
 def _fraction(found: re.Match[str]) -> str:
@@ -235,7 +230,15 @@ _NAMED = 12
 
 def edit_of(knob: Knob, source: SourceFile, value: float | str | bool) -> Edit:
     """Returns the edit that makes a value the default. Raises RefusalError for an invalid one."""
-    return edit_at(knob, _declaration(knob, source), value)
+    if knob.span is None or knob.span.source is not source:
+        where = f"`{knob.span.source.name}`" if knob.span else "another file"
+        raise refusal(
+            "E0945", f"`{knob.path}` is declared in {where}", "edit that file as a program of its own"
+        )
+    # The tree that the program was built from is not kept.
+    found = (n for n in ast.walk(parser.parse(source).module) if isinstance(n, ast.Param))
+    start = knob.span.start
+    return edit_at(knob, next(n for n in found if n.span.start == start), value)
 
 
 def edit_at(knob: Knob, declared: ast.Param, value: float | str | bool) -> Edit:
@@ -264,18 +267,6 @@ def require_in_range(compiled: Compiled, span: Span) -> None:
         at = d.span
         if d.code == _OUTSIDE and at and at.source is span.source and at.start == span.start:
             raise RefusalError(Diagnostic("E0945", d.message, hints=d.hints))
-
-
-def _declaration(knob: Knob, source: SourceFile) -> ast.Param:
-    if knob.span is None or knob.span.source is not source:
-        where = f"`{knob.span.source.name}`" if knob.span else "another file"
-        raise refusal(
-            "E0945", f"`{knob.path}` is declared in {where}", "edit that file as a program of its own"
-        )
-    # The tree that the program was built from is not kept.
-    found = (n for n in ast.walk(parser.parse(source).module) if isinstance(n, ast.Param))
-    start = knob.span.start
-    return next(n for n in found if n.span.start == start)
 
 
 def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:

@@ -272,7 +272,8 @@ class _Reader:
                 self.stack[-1].header, self.stack[-1].opens = "", False
                 self.stack.append(_Inside("items"))
             case "{":
-                self._leave_calls()
+                while self.stack[-1].role not in _BLOCKS:
+                    self.stack.pop()
                 self.stack[-1].header = ""
                 nested = self.stack[-1].role == "constraints"
                 self.stack.append(_Inside("constraints" if nested else self.opens))
@@ -304,11 +305,6 @@ class _Reader:
             self.opens = "constraints"
         elif kind == "then":
             self.opens = "block"  # `constrain if a then b else c` is one expression
-
-    def _leave_calls(self) -> None:
-        """Leaves unclosed calls, which contain no braces but those of blocks among their arguments."""
-        while self.stack[-1].role not in _BLOCKS:
-            self.stack.pop()
 
     def _role(self, place: int) -> str:
         before = self._kind(place - 1)

@@ -119,7 +119,7 @@ def fixes(view: View, start: int, end: int) -> Iterator[Action]:
                 offered.append(fix)
                 yield _action(fix, d, is_preferred=False)
     if any(d.fix is not None and d.fix.is_sure for d in view.diagnostics):
-        yield Action("Apply all fixes", "source.fixAll", lambda: _everything(view))
+        yield Action("Apply all fixes", "source.fixAll", partial(_everything, view))
 
 
 def _places(d: Diagnostic) -> list[tuple[object, int, int]]:
@@ -234,17 +234,13 @@ _SHORT = 2
 def namings(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields the action for the number at a selection, if a `param` may replace it."""
     path = around(view.module, start)
-    number = _number(path)
+    last = path[-1]
+    number = last if isinstance(last, ast.Number) else None
     if number is None or number.span.end < end or any(isinstance(node, ast.Param) for node in path):
         return
     name = free_name(view, _suggested(view, path))
     title = f"Name this number as a param: `{name}`"
     yield Action(title, "refactor.extract", partial(_named, view, path, number, name))
-
-
-def _number(path: Sequence[ast.Node]) -> ast.Number | None:
-    last = path[-1]
-    return last if isinstance(last, ast.Number) else None
 
 
 def _named(view: View, path: Sequence[ast.Node], number: ast.Number, name: str) -> list[Edit]:

@@ -138,7 +138,9 @@ def guesses(view: View) -> list[Guess]:
         return []
     uses: dict[ast.Number | ast.Unary, list[Literal]] = {}
     for literal in outcome.built.literals:
-        if literal.node.span.source is view.source and _is_open(literal.became):
+        if literal.node.span.source is view.source and any(
+            not unknown.exact for unknown in ex.unknowns([literal.became])
+        ):
             uses.setdefault(literal.node, []).append(literal)
     named = set(_read_more_than_once(view)) if uses else set()
     found = (_guess(node, tuple(each), node in named, outcome.evaluate) for node, each in uses.items())
@@ -166,7 +168,7 @@ def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool,
         unit=unit,
         measure=unit or _MEASURES.get(uses[0].dimension or PLAIN, ""),
         path=uses[0].path,
-        is_kept=all(_is_kept(use.became) for use in uses),
+        is_kept=all((isinstance(use.became.payload, Unknown) and use.became.payload.kept) for use in uses),
         is_shared=named or len(uses) > 1,
         uses=uses,
     )
@@ -181,15 +183,6 @@ def _agreed(values: list[float]) -> float | None:
     first = values[0]
     same = all(abs(value - first) <= _SAME * max(1.0, abs(first)) for value in values)
     return first if same and math.isfinite(first) else None
-
-
-def _is_open(became: Expression) -> bool:
-    """True if the solver may change it: a number that was read while building is a constant after all."""
-    return any(not unknown.exact for unknown in ex.unknowns([became]))
-
-
-def _is_kept(became: Expression) -> bool:
-    return isinstance(became.payload, Unknown) and became.payload.kept
 
 
 def _read_more_than_once(view: View) -> Iterator[ast.Node]:
@@ -289,15 +282,10 @@ def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
             continue
         if not sizes and guess.is_kept:
             continue
-        if sizes and not _holds_changed_size(guess):
+        if sizes and not any(unknown.kept for unknown in guess.unknowns):
             continue
         found[guess] = value
     return found
-
-
-def _holds_changed_size(guess: Guess) -> bool:
-    """True for the number of a kept size, by itself or as the place of a further point of a geometry."""
-    return any(unknown.kept for unknown in guess.unknowns)
 
 
 def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:

@@ -337,7 +337,9 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     ordered = [reading for reading in everything if is_public(reading.signature)] or everything
     if not ordered:
         return None
-    best = _best(ordered, argument)
+    alike = [r for r in ordered if r.cost == ordered[0].cost]
+    having = [r for r in alike if _parameter(r, argument) is not None]
+    best = (having or alike)[0]
     listed = sorted(ordered, key=_place)
     overloads = tuple(_told(reading, argument) for reading in listed)
     return SignatureHelp(overloads, listed.index(best))
@@ -371,13 +373,6 @@ def _place(reading: Reading) -> tuple[int, str, int]:
     """Returns the sort key of definitions in the order of writing, built-ins first."""
     node = reading.signature.node
     return (0, "", 0) if node is None else (1, node.span.source.name, node.span.start)
-
-
-def _best(ordered: list[Reading], argument: int) -> Reading:
-    """Returns the meant overload: the first of those that fit alike and have a parameter for the argument."""
-    alike = [r for r in ordered if r.cost == ordered[0].cost]
-    having = [r for r in alike if _parameter(r, argument) is not None]
-    return (having or alike)[0]
 
 
 def _parameter(reading: Reading, argument: int) -> int | None:

@@ -64,6 +64,7 @@ def read_image(name: str, reads: Reads | None = None) -> Image:
 def to_image(data: bytes, name: str) -> Image:
     """Does as `read_image`, with the file's content, which tells the format rather than the name."""
     import PIL.Image
+    from PIL import ImageOps
 
     bomb = (PIL.Image.DecompressionBombError, PIL.Image.DecompressionBombWarning)
     try:
@@ -72,7 +73,14 @@ def to_image(data: bytes, name: str) -> Image:
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(data), formats=tuple(_TYPES)) as picture:
                 picture.load()
-                return _fitting(picture, data)
+                is_upright = picture.getexif().get(_ORIENTATION, 1) == 1
+                if is_upright and max(picture.size) <= MAX_SIDE and len(data) <= MAX_SENT and picture.format:
+                    return Image(_TYPES[picture.format], data)
+                upright = ImageOps.exif_transpose(picture)
+                upright = upright.convert("RGBA" if upright.has_transparency_data else "RGB")
+                upright.thumbnail((MAX_SIDE, MAX_SIDE))
+                as_png = _saved(upright, "PNG")
+                return as_png if len(as_png.data) <= MAX_SENT else _saved(_on_white(upright), "JPEG")
     except PIL.UnidentifiedImageError:
         raise ImageError(f"`{name}` is no PNG, JPEG, WebP or GIF", *_remedy(name)) from None
     except bomb:
@@ -85,20 +93,6 @@ def _remedy(name: str) -> list[str]:
     if Path(name).suffix in (".aidl", ".svg"):
         return [f"draw the program first: aidl compile {Path(name).with_suffix('.aidl')} -o picture.png"]
     return ["save it as PNG"]
-
-
-def _fitting(picture: Picture, data: bytes) -> Image:
-    """Returns the file if it is small enough, else its first frame as PNG, or JPEG if that is too long."""
-    from PIL import ImageOps
-
-    is_upright = picture.getexif().get(_ORIENTATION, 1) == 1
-    if is_upright and max(picture.size) <= MAX_SIDE and len(data) <= MAX_SENT and picture.format:
-        return Image(_TYPES[picture.format], data)
-    upright = ImageOps.exif_transpose(picture)
-    upright = upright.convert("RGBA" if upright.has_transparency_data else "RGB")
-    upright.thumbnail((MAX_SIDE, MAX_SIDE))
-    as_png = _saved(upright, "PNG")
-    return as_png if len(as_png.data) <= MAX_SENT else _saved(_on_white(upright), "JPEG")
 
 
 def _on_white(picture: Picture) -> Picture:

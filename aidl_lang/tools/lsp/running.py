@@ -144,11 +144,6 @@ class Answers:
         self._executor.shutdown(wait=False, cancel_futures=True)
 
 
-def gave_up(future: Future[Any]) -> bool:
-    """True for a run that was cancelled, by its future or while running."""
-    return future.cancelled() or isinstance(future.exception(), Cancelled)
-
-
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
 # the middle of the next run, and go through the library and everything else each time; here it does so in
 # the pauses, and what stays for good is put out of its sight. What a document stands for now is among that
@@ -395,7 +390,7 @@ class Runner:
     def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
         if not document.is_open or self._is_closing:
             return
-        if gave_up(future):
+        if future.cancelled() or isinstance(future.exception(), Cancelled):
             document.was_given_up = True
             if document.serial == known.serial:  # it made way for what is more urgent
                 self._solve(document, known)

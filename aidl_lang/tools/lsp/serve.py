@@ -172,15 +172,11 @@ class Output:
     def _run(self) -> None:
         try:
             while (data := self._waiting.get()) is not None:
-                _write(self._descriptor, data)
+                rest = memoryview(data)
+                while rest:
+                    rest = rest[os.write(self._descriptor, rest) :]
         except OSError:
             self._lost()
-
-
-def _write(descriptor: int, data: bytes) -> None:
-    rest = memoryview(data)
-    while rest:
-        rest = rest[os.write(descriptor, rest) :]
 
 
 def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.AbstractEventLoop) -> None:
@@ -298,12 +294,6 @@ def make_room() -> None:
 def _run(session: Coroutine[None, None, int]) -> int:
     make_room()
     code = asyncio.run(session)
-    _end_threads(code)
-    return code
-
-
-def _end_threads(code: int) -> None:
-    """Waits a little for cancelled work; some steps cannot be interrupted, and end with the process."""
     deadline = time.monotonic() + _LAST_SECONDS
     working = [t for t in threading.enumerate() if t is not threading.current_thread() and not t.daemon]
     for thread in working:
@@ -311,6 +301,7 @@ def _end_threads(code: int) -> None:
     if any(thread.is_alive() for thread in working):
         logging.shutdown()
         os._exit(code)
+    return code
 
 
 def _is_news(record: logging.LogRecord) -> bool:

@@ -58,14 +58,10 @@ def statements(context: Context) -> Iterator[Draft]:
     yield from kinds(site, _KINDS)
     yield from _keywords(site, _STATEMENTS)
     for draft in names.values(context):
-        yield _later(draft, _NAMES)
-    yield from _operations(context)
+        yield replace(draft, tier=_NAMES + draft.tier / 100)
+    yield from _calls(context, vocabulary().operations, _OPERATIONS)
     yield from _shapes(context)
     yield from constraints(context, behind=_LOW)
-
-
-def _later(draft: Draft, tier: float) -> Draft:
-    return replace(draft, tier=tier + draft.tier / 100)
 
 
 def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
@@ -107,10 +103,6 @@ def _beginning(word: str) -> str:
     if word in _OWN:
         return _OWN[word]
     return written_out(OF_WORD[word]) if word in OF_WORD else word
-
-
-def _operations(context: Context) -> Iterator[Draft]:
-    yield from _calls(context, vocabulary().operations, _OPERATIONS)
 
 
 def _calls(context: Context, found: tuple[str, ...], tier: float) -> Iterator[Draft]:
@@ -170,7 +162,13 @@ def _ends_block(site: EditSite) -> bool:
 
 def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) -> bool:
     if word in ("as", "from", "then"):
-        return _soft(site, word)
+        match word:
+            case "as":
+                return site.takes("as", "NAME", ";") and not site.automaton.between_statements
+            case "from":
+                return site.takes("from", "STRING") and not site.takes("NAME")
+            case _:
+                return site.takes(word) and not site.takes("NAME")
     if word == "not":
         return operand and is_condition and site.takes(word)
     if word == "if":  # behind a value, not as a statement of its own
@@ -178,16 +176,6 @@ def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) ->
             not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
         )
     return site.takes(word)
-
-
-def _soft(site: EditSite, word: str) -> bool:
-    match word:
-        case "as":
-            return site.takes("as", "NAME", ";") and not site.automaton.between_statements
-        case "from":
-            return site.takes("from", "STRING") and not site.takes("NAME")
-        case _:
-            return site.takes(word) and not site.takes("NAME")
 
 
 def truths(site: EditSite) -> Iterator[Draft]:
@@ -207,7 +195,8 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
         case Where.NUMBER:
             drafts = list(_behind_number(view, spot))
         case _:
-            return _in_code(view, spot, files)
+            site = site_at(view, spot)
+            return ranked(_drafts(site, files), site.replaced, site.prefix)
     prefix = view.source.text[spot.start : spot.offset]
     return ranked(drafts, view.span(spot.start, spot.end), prefix)
 
@@ -254,18 +243,16 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     )
 
 
-def _in_code(view: View, spot: Spot, files: Files | None) -> list[Completion]:
-    site = site_at(view, spot)
-    return ranked(_drafts(site, files), site.replaced, site.prefix)
-
-
 def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
     before = site.spot.before
     kind = before.kind if before is not None else ""
     if kind == "@":
         yield from drafts.attributes(site.following.startswith("("))
     elif kind in ("import", "from"):
-        yield from _of_import(site, files)
+        node = next((n for n in reversed(site.path) if isinstance(n, ast.Import)), None)
+        if node is not None:
+            yield from drafts.imported_names(site, node)
+        yield from drafts.files(site.original.path, files, quoted=True)
     elif _is_free(site):
         context = context_of(site)
         if context is not None:
@@ -274,13 +261,6 @@ def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
             yield from kinds(site, 1.0) if not site.automaton.between_statements else ()
         if kind != ".":
             yield from clauses(site, is_condition=context is not None and context.wanted == CONDITION)
-
-
-def _of_import(site: EditSite, files: Files | None) -> Iterator[Draft]:
-    node = next((n for n in reversed(site.path) if isinstance(n, ast.Import)), None)
-    if node is not None:
-        yield from drafts.imported_names(site, node)
-    yield from drafts.files(site.original.path, files, quoted=True)
 
 
 def _is_free(site: EditSite) -> bool:
@@ -302,7 +282,10 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
         case ast.Identifier(), ast.Call(receiver=receiver) if receiver is not None:
             yield from members(context, receiver)
         case ast.Identifier(), ast.Call():
-            yield from _at_call(context, files)
+            is_statement = isinstance(context.site.parent(2), ast.ExpressionStatement)
+            if not is_statement or context.site.begins_statement or not context.site.may_end:
+                yield from statements(context) if is_statement else _value(context)
+                yield from importing(context, files)
         case ast.Identifier(), ast.Structure() if node is above.kind_word:
             yield from kinds(site, 1.0)
         case ast.Identifier(), ast.Parameter() if node is above.type:
@@ -328,16 +311,6 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
 def _attribute(context: Context) -> ast.Attribute | None:
     above = context.site.parent(2)
     return above if isinstance(above, ast.Attribute) else None
-
-
-def _at_call(context: Context, files: Files | None) -> Iterator[Draft]:
-    if isinstance(context.site.parent(2), ast.ExpressionStatement):
-        if context.site.begins_statement or not context.site.may_end:
-            yield from statements(context)
-            yield from importing(context, files)
-    else:
-        yield from _value(context)
-        yield from importing(context, files)
 
 
 def _value(context: Context) -> Iterator[Draft]:

@@ -124,7 +124,10 @@ class Context:
 
     def _of_argument(self) -> Wanted:
         if self.call is None:
-            return self._of_attribute()
+            attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
+            if attribute is None:
+                return Wanted()
+            return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
         number = self.call[1]
         kinds: dict[Type, None] = {}
         name = ""
@@ -139,12 +142,6 @@ class Context:
                 kinds[kind.element] = None
             kinds[kind] = None
         return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
-
-    def _of_attribute(self) -> Wanted:
-        attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
-        if attribute is None:
-            return Wanted()
-        return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
 
     @cached_property
     def values(self) -> list[KnownName]:
@@ -351,7 +348,9 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted((_NUMBER, _WHOLE))
         case ast.For() | ast.ForArguments() | ast.Comprehension() if _is_run_through(node, above):
             return Wanted((ListType(ANY), RangeType()))
-        case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
+        case ast.Index() | ast.Structure() | ast.Assign() if (
+            node is above.index if isinstance(above, ast.Index) else node in above.indices
+        ):
             return Wanted((_WHOLE,))
         case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
             return CONDITION
@@ -365,10 +364,6 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted((kind,))
         case _:
             return Wanted()
-
-
-def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> bool:
-    return node is above.index if isinstance(above, ast.Index) else node in above.indices
 
 
 def _alike(kind: Type) -> Wanted:

@@ -13,7 +13,7 @@ from aidl_lang.building.outlines import CORNER_WORDS
 from aidl_lang.checking import library
 from aidl_lang.checking.builtins import WORDED
 from aidl_lang.checking.types import PARAMETER_TYPES, AnyType, NumberType, Signature, TextType
-from aidl_lang.checking.units import UNITS, Dimension
+from aidl_lang.checking.units import UNITS
 from aidl_lang.common.colors import COLOR_NAMES
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.materials import densities
@@ -138,12 +138,8 @@ def units(context: Context | None) -> Iterator[Draft]:
     for number, (unit, (factor, dimension)) in enumerate(UNITS.items()):
         fits = dimension in dimensions
         tier = number / 10 + 2.0 * (bool(dimensions) and not fits) - (unit in _FAVOURITES)
-        yield Draft(unit, "unit", tier, detail=_worth(unit, factor, dimension))
-
-
-def _worth(unit: str, factor: float, dimension: Dimension) -> str:
-    base = "mm" if dimension == UNITS["mm"][1] else "degrees"
-    return str(dimension) if factor == 1.0 else f"{factor:.6g} {base}"
+        base = "mm" if dimension == UNITS["mm"][1] else "degrees"
+        yield Draft(unit, "unit", tier, detail=(str(dimension) if factor == 1.0 else f"{factor:.6g} {base}"))
 
 
 def attributes(is_called: bool) -> Iterator[Draft]:

@@ -91,7 +91,9 @@ _Named = Iterator[tuple[float, str, Symbol | None]]
 def _names(context: Context, fact: Fact) -> _Named:
     match fact.type:
         case StructureType() if fact.of is not None:
-            yield from _declared(context.view.resolution.scope_of(fact.of), fact.of)
+            for name, symbol in context.view.resolution.scope_of(fact.of).values.items():
+                if symbol.kind in _SEEN:
+                    yield _OWN + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)), name, symbol
             yield from _plain((*builtins.BOX, "bb"), _BOX)
             yield from _plain(builtins.STRUCTURE, _BOX + 0.5)
         case GeometryType(kind):
@@ -115,12 +117,6 @@ def _names(context: Context, fact: Fact) -> _Named:
 def _plain(found: Iterable[str], tier: float) -> _Named:
     for name in found:
         yield tier, name, None
-
-
-def _declared(scope: SymbolScope, node: ast.Node) -> _Named:
-    for name, symbol in scope.values.items():
-        if symbol.kind in _SEEN:
-            yield _OWN + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)), name, symbol
 
 
 def _of_shape(context: Context, definition: ast.Node) -> _Named:
@@ -161,7 +157,10 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     if isinstance(fact.type, AnyType | RecordType):
         return
     words = vocabulary()
-    is_demand = _is_demand(context)
+    above = context.site.parent(2)
+    is_demand = context.use is Use.CONSTRAINT and isinstance(
+        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
+    )
     known: list[str] = []
     if is_demand:
         known += [*words.relations, *words.constraints]
@@ -180,14 +179,6 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
             continue
         tier = _DEMANDS if is_demand and found[1][0].kind is ast.ConstraintDefinition else _METHODS
         yield _method(context, name, found[1], tier + 0.1 * distance + (name not in own) * 0.05)
-
-
-def _is_demand(context: Context) -> bool:
-    """True if the value with the dot stands in the place of a constraint."""
-    above = context.site.parent(2)
-    return context.use is Use.CONSTRAINT and isinstance(
-        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
-    )
 
 
 def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
@@ -263,7 +254,8 @@ def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
 
 
 def _argument(context: Context, signature: Signature, name: str, kind: Type, tier: float) -> Draft:
-    default = _default(signature, name)
+    node = parameter_node(signature, name)
+    default = node.default.span.one_line if node is not None and node.default is not None else ""
     is_named = _NAMED.match(context.site.following) is not None
     text = name if is_named else f"{name}: {_proposed(signature, name, kind, default)}"
     return Draft(
@@ -275,11 +267,6 @@ def _argument(context: Context, signature: Signature, name: str, kind: Type, tie
         not is_named,
         describe=partial(of_parameter, signature, name),
     )
-
-
-def _default(signature: Signature, name: str) -> str:
-    node = parameter_node(signature, name)
-    return node.default.span.one_line if node is not None and node.default is not None else ""
 
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:

@@ -86,7 +86,8 @@ def about(symbol: Symbol) -> str:
 
 def calls(context: Context) -> Iterator[Draft]:
     """Yields the callables that give a value."""
-    is_whole = _is_whole_value(context)
+    above = context.site.parent()
+    is_whole = isinstance(above, ast.Assign) and not context.in_items
     for name, alias in context.callables():
         found = context.scope.called(name)
         if found is None or all(s.kind is ast.ConstraintDefinition for s in found[1]):
@@ -109,11 +110,6 @@ def calls(context: Context) -> Iterator[Draft]:
             if makes and not is_whole and not _takes_things(context):
                 continue
             yield call(context, name, found[1], _call_tier(context, found[1], is_whole and makes))
-
-
-def _is_whole_value(context: Context) -> bool:
-    above = context.site.parent()
-    return isinstance(above, ast.Assign) and not context.in_items
 
 
 def _takes_things(context: Context) -> bool:
@@ -293,9 +289,4 @@ def _import(context: Context, file: str, name: str) -> Edit:
     if imports:
         end = imports[-1].span.end
         return insert(view.source, end, f"\n{statement}")
-    return insert(view.source, int(_has_mark(view.source.text)), f"{statement}\n")
-
-
-def _has_mark(text: str) -> bool:
-    """True for a text that begins with a byte order mark, which stays first."""
-    return text.startswith("\ufeff")
+    return insert(view.source, int(view.source.text.startswith("\ufeff")), f"{statement}\n")

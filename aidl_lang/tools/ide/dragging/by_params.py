@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -16,7 +16,7 @@ from aidl_lang.common.prose import shortest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents.workspace import RefusalError, edit_at
-from aidl_lang.tools.ide.dragging.mobility import Grip, grips, is_somewhere
+from aidl_lang.tools.ide.dragging.mobility import grips, is_somewhere
 from aidl_lang.tools.ide.references import Refusal
 from aidl_lang.tools.ide.workspace import View, hasty, run
 
@@ -38,34 +38,25 @@ _KEPT = 16
 Values: TypeAlias = frozenset[tuple[str, float]]
 """Values of params by their paths."""
 
-Slopes = Mapping[str, Vec]
-"""Per param path, the velocity of a point per unit of the param."""
 
-
-def moved_by_params(view: View, known: Sequence[Grip]) -> dict[str, tuple[str, ...]]:
-    """Returns the params, by name, that each point follows."""
-    ids = {grip.id for grip in known}
-    return {i: tuple(p.rpartition(".")[2] for p in s) for i, s in _slopes(view).items() if i in ids}
-
-
-def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
+def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
     """Returns the program with one or two params changed, the point, and the edits of their defaults."""
-    slopes, tries = dict(_slopes(view).get(grip.id, {})), _tries(view)
+    ways, tries = dict(slopes(view).get(grip, {})), _tries(view)
     values: dict[str, float] = {}
-    at = _place_in(view, grip.id)
+    at = _places(view).get(grip)
     for _ in range(2):
-        if at is None or not slopes or math.dist(at, to) <= step:
+        if at is None or not ways or math.dist(at, to) <= step:
             break
         wanted = to[0] - at[0], to[1] - at[1]
-        best = max(slopes, key=lambda path: _promise(view, path, wanted, slopes[path]))
-        way = slopes.pop(best)
-        value = _value(tries, grip.id, best, values, to, way, step)
+        best = max(ways, key=lambda path: _promise(tries.knobs[path], wanted, ways[path]))
+        way = ways.pop(best)
+        value = tries.value(grip, best, values, to, way, step)
         if value is not None:
             values[best] = value
-            at = tries.place(grip.id, values)
-            slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
+            at = tries.place(grip, values)
+            ways = {path: other for path, other in ways.items() if _is_beside(other, way)}
     shown = tries.run(values)
-    at = _place_in(shown, grip.id)
+    at = _places(shown).get(grip)
     if at is None:
         return Refusal("the program does not solve with the param turned that far")
     try:
@@ -76,18 +67,15 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
 
 
 @lru_cache(maxsize=4)
-def _slopes(view: View) -> Mapping[str, Slopes]:
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
-        return {}
-    before = {grip.id: grip.at(outcome.evaluate) for grip in grips(outcome.built)}
-    found: dict[str, dict[str, Vec]] = {}
+def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
+    """Returns for each point the params that it follows, with its velocity per unit of each."""
+    before, found = _places(view), dict[str, dict[str, Vec]]()
     until = time.monotonic() + _SECONDS
-    for knob in list(_numeric(view))[:MOST_KNOBS]:
+    for knob in list(_numeric(view))[:MOST_KNOBS] if before else ():
         if time.monotonic() > until:
             break
         nudge = _nudge(knob)
-        for name, at in _places(view, {knob.path: float(knob.value) + nudge}).items():
+        for name, at in _turned(view, {knob.path: float(knob.value) + nudge}).items():
             if name in before:
                 x, y = ((b - a) / nudge for a, b in zip(before[name], at, strict=True))
                 if is_somewhere((x, y)) and math.hypot(x, y) > _FOLLOWS:
@@ -130,27 +118,27 @@ def _nudge(knob: Knob) -> float:
     return nudge if value + nudge <= knob.high else -nudge
 
 
-def _places(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
-    """Returns all points with other values of params; empty if that does not solve."""
-    found = pipeline.placed(view.program, {**(view.params or {}), **values})
-    if found is None:
-        return {}
-    model, evaluate = found
-    return {grip.id: grip.at(evaluate) for grip in grips(model)}
-
-
-def _place_in(view: View, grip: str) -> Vec | None:
+def _places(view: View) -> dict[str, Vec]:
+    """Returns all points; none of a program that does not solve."""
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
-        return None
-    return next((g.at(outcome.evaluate) for g in grips(outcome.built) if g.id == grip), None)
+        return {}
+    return {grip.id: grip.at(outcome.evaluate) for grip in grips(outcome.built)}
+
+
+def _turned(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
+    """Returns all points with other values of params; none if that does not solve."""
+    found = pipeline.placed(view.program, {**(view.params or {}), **values})
+    return {} if found is None else {grip.id: grip.at(found[1]) for grip in grips(found[0])}
 
 
 class _Tries:
     """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
 
     def __init__(self, view: View) -> None:
+        assert view.outcome is not None
         self.view = view
+        self.knobs = {knob.path: knob for knob in reversed(view.outcome.knobs)}
         self._shown: dict[Values, View] = {}
         self._places: dict[Values, Mapping[str, Vec]] = {}
 
@@ -166,14 +154,8 @@ class _Tries:
         """Returns a point's place with these values, None if unsolved. `likely` ones will be shown."""
         key = frozenset(values.items())
         if key not in self._places:
-            if not (likely or key in self._shown):
-                found = _places(self.view, values)
-            elif (outcome := self.run(values).outcome) is not None and outcome.status == "solved":
-                assert outcome.built is not None
-                assert outcome.evaluate is not None
-                found = {each.id: each.at(outcome.evaluate) for each in grips(outcome.built)}
-            else:
-                found = {}
+            is_shown = likely or key in self._shown
+            found = _places(self.run(values)) if is_shown else _turned(self.view, values)
             self._places = {**dict(list(self._places.items())[1 - _KEPT :]), key: found}
         return self._places[key].get(grip)
 
@@ -189,48 +171,42 @@ class _Tries:
         ]
         return min(known, key=lambda each: math.dist(each[1], to), default=None)
 
+    def value(
+        self, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
+    ) -> float | None:
+        """Returns the value that brings a point nearest to a place along its way; None if no other solves."""
+        knob, slope = self.knobs[path], math.hypot(*way)
+        value, best = float(knob.value), None
+        at = self.place(grip, values) if values else _places(self.view).get(grip)
+        if (known := self.nearest(grip, path, values, to)) is not None:
+            value, at = known
+            best = value
+        for _ in range(_ROUNDS):
+            if at is None:
+                break
+            off = _along((to[0] - at[0], to[1] - at[1]), way)
+            if best is not None and abs(off) <= step:
+                break
+            aimed = _rounded(knob, _clamped(knob, value + off / slope), step / slope)
+            if aimed == value:
+                break
+            before, value = (value, at), aimed
+            at = self.place(grip, {**values, path: value}, likely=best is not None)
+            if at is not None:
+                best = value
+                gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
+                slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
+        return None if best == float(knob.value) else best
+
 
 @lru_cache(maxsize=4)
 def _tries(view: View) -> _Tries:
     return _Tries(view)
 
 
-def _value(
-    tries: _Tries, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
-) -> float | None:
-    """Returns the value that brings a point nearest to a place along its way; None if no other solves."""
-    assert tries.view.outcome is not None
-    knob = next(k for k in tries.view.outcome.knobs if k.path == path)
-    slope = math.hypot(*way)
-    value, best = float(knob.value), None
-    at = tries.place(grip, values) if values else _place_in(tries.view, grip)
-    if (known := tries.nearest(grip, path, values, to)) is not None:
-        value, at = known
-        best = value
-    for _ in range(_ROUNDS):
-        if at is None:
-            break
-        off = _along((to[0] - at[0], to[1] - at[1]), way)
-        if best is not None and abs(off) <= step:
-            break
-        aimed = _rounded(knob, _clamped(knob, value + off / slope), step / slope)
-        if aimed == value:
-            break
-        before, value = (value, at), aimed
-        at = tries.place(grip, {**values, path: value}, likely=best is not None)
-        if at is not None:
-            best = value
-            gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
-            slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
-    return None if best == float(knob.value) else best
-
-
-def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:
+def _promise(knob: Knob, wanted: Vec, way: Vec) -> float:
     """Returns how far a param could move a point along a way in its range, weighted by effect per unit."""
-    assert view.outcome is not None
-    knob = next(k for k in view.outcome.knobs if k.path == path)
-    slope, along = math.hypot(*way), _along(wanted, way)
-    value = float(knob.value)
+    slope, along, value = math.hypot(*way), _along(wanted, way), float(knob.value)
     room = abs(_clamped(knob, value + along / slope) - value) * slope
     return min(abs(along), room) * slope / (slope + _LAZY)
 

@@ -72,7 +72,11 @@ def grips(model: Model) -> Iterator[Grip]:
     """All points of a model by which it might be moved, in order of writing; none of copies."""
     for depth, structure in _structures(model.root, 0):
         if structure.parent is not None:
-            yield from _of_structure(model, structure, depth)
+            box = box_of(structure, model.root)
+            middle = box.field("center") if box is not None else None
+            if isinstance(middle, PointVal):
+                x, y = spelled_out(*xy(middle))
+                yield Grip(f"{structure.path} at", structure.path, "", x, y, structure, depth)
         for geometry in structure.own():
             if geometry.source is None and not geometry.construction:
                 yield from _of_geometry(model, geometry, depth)
@@ -83,14 +87,6 @@ def _structures(structure: Structure, depth: int) -> Iterator[tuple[int, Structu
         yield depth, structure
         for child in structure.children:
             yield from _structures(child, depth + 1)
-
-
-def _of_structure(model: Model, structure: Structure, depth: int) -> Iterator[Grip]:
-    box = box_of(structure, model.root)
-    middle = box.field("center") if box is not None else None
-    if isinstance(middle, PointVal):
-        x, y = spelled_out(*xy(middle))
-        yield Grip(f"{structure.path} at", structure.path, "", x, y, structure, depth)
 
 
 def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]:

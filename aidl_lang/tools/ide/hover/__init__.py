@@ -199,18 +199,14 @@ def _of_name_at(view: View, offset: int) -> Description | None:
     elif isinstance(node, ast.Call):
         text = _of_call(view, node, path, mention.symbol)
     else:
-        text = _of_name(view, mention, path)
+        symbol = mention.symbol
+        blocks = [_headed(view, mention), _doc(symbol)]
+        if symbol.kind in _VALUES:
+            blocks.append(_values(view, mention, path))
+        elif mention.symbol.node is None:
+            blocks.append(of_public(symbol.name))
+        text = joined(blocks)
     return (text, mention.span) if text else None
-
-
-def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    symbol = mention.symbol
-    blocks = [_headed(view, mention), _doc(symbol)]
-    if symbol.kind in _VALUES:
-        blocks.append(_values(view, mention, path))
-    elif mention.symbol.node is None:
-        blocks.append(of_public(symbol.name))
-    return joined(blocks)
 
 
 def _headed(view: View, mention: Mention) -> str:

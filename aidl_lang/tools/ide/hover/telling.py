@@ -102,7 +102,11 @@ def standing(solved: Solved, value: Num) -> str:
     unknowns = list(ex.unknowns([value.expression]))
     changing = [u for u in unknowns if not u.exact and u in solved.evaluate.values]
     if not changing:
-        return _exact(value, unknowns)
+        if value.status is Exactness.PARAM:
+            return "exact (param)"
+        if value.status >= Exactness.FIXED:
+            return "exact"
+        return "as written" if unknowns else ""
     if isinstance(value.expression.payload, Unknown):
         return _of_one(solved, changing[0])
     if all(u.kept for u in changing):
@@ -111,14 +115,6 @@ def standing(solved: Solved, value: Num) -> str:
         return "solved"
     moves = solved.moves(value)
     return "" if moves is None else "free" if moves else "solved"
-
-
-def _exact(value: Num, unknowns: list[Unknown]) -> str:
-    if value.status is Exactness.PARAM:
-        return "exact (param)"
-    if value.status >= Exactness.FIXED:
-        return "exact"
-    return "as written" if unknowns else ""
 
 
 def _of_one(solved: Solved, unknown: Unknown) -> str:

@@ -379,8 +379,10 @@ def preview(
     drawn = view.drawn
     has_picture = drawn is not None and _is_anything_drawn(drawn)
     svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
+    # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
+    is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
     return Preview(
-        status=_status(view.outcome),
+        status=("wrong" if is_wrong else view.outcome.status),
         stale=has_picture and view.is_stale,
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
@@ -394,12 +396,6 @@ def preview(
         ways=tuple(_ways(view, found)) if FREEDOM in show else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
-
-
-def _status(outcome: Compiled) -> str:
-    """Returns how a program stands: one that solved may still be `wrong`, as when an `assert` fails."""
-    is_wrong = outcome.status == "solved" and bool(outcome.errors)
-    return "wrong" if is_wrong else outcome.status
 
 
 def _painted(

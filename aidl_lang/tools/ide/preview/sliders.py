@@ -203,13 +203,10 @@ class _Finder:
         it names what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
-        here = [k for span in spans for k in self._at(span)]
+        here = [k for span in spans for k in self.elements.written_at(span) or self.related(span)]
         quoted = set(_QUOTED.findall(found.message.partition(";")[0]))
         named = [k for k in here if self.elements.values[k].path in quoted]
         return list(dict.fromkeys(named or here))
-
-    def _at(self, span: Span) -> list[int]:
-        return self.elements.written_at(span) or self.related(span)
 
     def related(self, span: Span, holder: str | None = None) -> list[int]:
         """Returns the elements that the constraints in a place relate; only those of `holder`, if given."""

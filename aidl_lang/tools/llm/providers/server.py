@@ -57,11 +57,6 @@ def options(connection: Connection) -> dict[str, Any]:
     return {"timeout": timeout, "max_retries": connection.retries, "http_client": client}
 
 
-def is_silence(response: httpx2.Response) -> bool:
-    """True for a response that stands for none."""
-    return "x-aidl-silent" in response.headers
-
-
 def _is_soon(retry_after: str) -> bool:
     """True for a number of seconds worth waiting for; it may be a date too."""
     try:
@@ -167,7 +162,8 @@ class Server(ABC):
         try:
             yield
         except sdk.APIStatusError as error:
-            raise (self._silence() if is_silence(error.response) else self._refusal(error)) from None
+            is_silent = "x-aidl-silent" in error.response.headers
+            raise (self._silence() if is_silent else self._refusal(error)) from None
         except sdk.APITimeoutError:
             raise self._silence() from None
         except sdk.APIConnectionError as error:
