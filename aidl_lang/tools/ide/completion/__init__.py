@@ -71,15 +71,8 @@ def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
     is_named = site.following.lstrip(" \t")[:1].isidentifier()
     for number, kind in enumerate(KINDS):
         text = kind if is_named else f"{kind} ${{1:name}}" + _BLOCK
-        yield Draft(
-            kind,
-            "kind",
-            tier + number / 10,
-            text,
-            "structure",
-            not is_named,
-            describe=partial(of_public, kind),
-        )
+        described = partial(of_public, kind)
+        yield Draft(kind, "kind", tier + number / 10, text, "structure", not is_named, describe=described)
 
 
 def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
@@ -94,23 +87,20 @@ def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
 def _statement(site: EditSite, word: str, tier: float) -> Draft:
     """Returns a statement with placeholders; the word alone if the statement goes on already."""
     rest = site.following.partition("\n")[0].strip()
-    is_alone = not rest or rest.startswith("}")
-    text = _beginning(word) if is_alone else word
+    if rest and not rest.startswith("}"):
+        return _keyword(word, tier, word)
+    return _keyword(word, tier, _OWN.get(word) or (written_out(OF_WORD[word]) if word in OF_WORD else word))
+
+
+def _keyword(word: str, tier: float, text: str = "") -> Draft:
     return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(of_public, word))
-
-
-def _beginning(word: str) -> str:
-    if word in _OWN:
-        return _OWN[word]
-    return written_out(OF_WORD[word]) if word in OF_WORD else word
 
 
 def _calls(context: Context, found: tuple[str, ...], tier: float) -> Iterator[Draft]:
     for name in found:
-        called = context.scope.called(name)
         entry = reference().entries.get(name)
-        if called is not None and (entry is None or entry.topic != "path"):
-            yield names.call(context, name, called[1], tier)
+        if (called := context.called(name)) and (entry is None or entry.topic != "path"):
+            yield names.call(context, name, called, tier)
 
 
 def _shapes(context: Context) -> Iterator[Draft]:
@@ -120,21 +110,12 @@ def _shapes(context: Context) -> Iterator[Draft]:
     if context.site.following.startswith("("):
         return
     for name in (*own, *words.primitives, *words.shapes, *words.templates):
-        called = context.scope.called(name)
-        if called is None or all(
-            s.kind in (ast.ConstraintDefinition, ast.FunctionDefinition) and not s.standard for s in called[1]
+        called = context.called(name)
+        if any(
+            s.standard or s.kind not in (ast.ConstraintDefinition, ast.FunctionDefinition) for s in called
         ):
-            continue
-        draft = names.call(context, name, called[1], _SHAPES - 0.5 * (name in own))
-        yield Draft(
-            name,
-            draft.kind,
-            draft.tier,
-            f"${{1:name}} = {name}($2)",
-            draft.detail,
-            is_snippet=True,
-            describe=draft.describe,
-        )
+            draft = names.call(context, name, called, _SHAPES - 0.5 * (name in own))
+            yield replace(draft, text=f"${{1:name}} = {name}($2)", is_snippet=True)
 
 
 def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
@@ -146,14 +127,7 @@ def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
     ):
         if _goes_on(site, word, operand=operand, is_condition=is_condition):
             text = _CLAUSES.get(word, _OWN["else"] if word == "else" and _ends_block(site) else word)
-            yield Draft(
-                word,
-                "keyword",
-                number / 100 + _NAMES_FIRST * operand,
-                text,
-                is_snippet="$" in text,
-                describe=partial(of_public, word),
-            )
+            yield _keyword(word, number / 100 + _NAMES_FIRST * operand, text)
 
 
 def _ends_block(site: EditSite) -> bool:
@@ -161,27 +135,26 @@ def _ends_block(site: EditSite) -> bool:
 
 
 def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) -> bool:
-    if word in ("as", "from", "then"):
-        match word:
-            case "as":
-                return site.takes("as", "NAME", ";") and not site.automaton.between_statements
-            case "from":
-                return site.takes("from", "STRING") and not site.takes("NAME")
-            case _:
-                return site.takes(word) and not site.takes("NAME")
-    if word == "not":
-        return operand and is_condition and site.takes(word)
-    if word == "if":  # behind a value, not as a statement of its own
-        return (
-            not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
-        )
-    return site.takes(word)
+    match word:
+        case "as":
+            return site.takes("as", "NAME", ";") and not site.automaton.between_statements
+        case "from":
+            return site.takes("from", "STRING") and not site.takes("NAME")
+        case "then":
+            return site.takes(word) and not site.takes("NAME")
+        case "not":
+            return operand and is_condition and site.takes(word)
+        case "if":  # behind a value, not as a statement of its own
+            may_begin = operand or site.automaton.between_statements
+            return not may_begin and site.takes("if", "NAME", "else", "NAME")
+        case _:
+            return site.takes(word)
 
 
 def truths(site: EditSite) -> Iterator[Draft]:
     for word in ("true", "false"):
         if site.takes(word) and not site.following.startswith("("):
-            yield Draft(word, "keyword", 5.0, describe=partial(of_public, word))
+            yield _keyword(word, 5.0)
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:
@@ -297,20 +270,13 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
         case ast.Identifier(), ast.Alias() if node is above.target:
             yield from names.calls(context)
             yield from constraints(context)
-        case ast.Name(), ast.Argument() if _attribute(context) is not None:
-            attribute = _attribute(context)
-            assert attribute is not None
+        case ast.Name(), ast.Argument() if isinstance(attribute := site.parent(2), ast.Attribute):
             yield from drafts.of_attribute(attribute.name.text, is_quoted=False)
         case ast.Name(), _:
             yield from _value(context)
             yield from importing(context, files)
         case _:
             pass
-
-
-def _attribute(context: Context) -> ast.Attribute | None:
-    above = context.site.parent(2)
-    return above if isinstance(above, ast.Attribute) else None
 
 
 def _value(context: Context) -> Iterator[Draft]:

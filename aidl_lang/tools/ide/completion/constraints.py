@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, partial
+from functools import cache
 
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.resolving.symbols import SymbolKind
@@ -122,15 +122,14 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
     """Yields all constraints possible here; `behind` is added to each tier."""
     things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
     for name, alias in context.callables():
-        found = context.scope.called(name)
-        if found is not None and any(s.kind is ast.ConstraintDefinition for s in found[1]):
-            yield _own(context, name, found[1], things, behind + _BARE * (alias is not None))
+        signatures = context.called(name)
+        if any(s.kind is ast.ConstraintDefinition for s in signatures):
+            yield _own(context, name, signatures, things, behind + _BARE * (alias is not None))
     words = vocabulary()
     table = forms()
     for name in (*words.constraints, *words.relations, *(n for n in table if n in words.functions)):
-        found = context.scope.called(name)
-        if found is not None:
-            yield _standard(context, name, found[1], table.get(name, ()), things, behind)
+        if signatures := context.called(name):
+            yield _standard(context, name, signatures, table.get(name, ()), things, behind)
 
 
 def _latest(things: Sequence[KnownName]) -> list[KnownName]:
@@ -159,17 +158,8 @@ def _standard(
     best = min(((_tier(form, things), n, form) for n, form in enumerate(listed)), default=None)
     tier = _FITS_NOT if best is None else best[0]
     text = f"{name}($1)" if best is None else _filled(best[2], things)
-    if context.site.following.startswith("("):
-        text = name
-    return Draft(
-        name,
-        str(SymbolKind.CONSTRAINT),
-        tier + behind,
-        text,
-        names.brief(signatures),
-        is_snippet=text != name,
-        describe=partial(names.about_call, name, tuple(signatures)),
-    )
+    text = name if context.site.following.startswith("(") else text
+    return names.of_call(name, SymbolKind.CONSTRAINT, tier + behind, text, signatures)
 
 
 def _tier(form: Form, things: Sequence[KnownName]) -> float:
@@ -217,17 +207,9 @@ def _own(
 ) -> Draft:
     made = [_stated(name, signature, things) for signature in signatures]
     text, fits = max(made, key=lambda m: m[1])
-    if context.site.following.startswith("("):
-        text = name
-    return Draft(
-        name,
-        str(SymbolKind.CONSTRAINT),
-        (_FITS if fits else _FITS_NOT) + behind,
-        text,
-        names.brief(signatures),
-        is_snippet=text != name,
-        describe=partial(names.about_call, name, tuple(signatures)),
-    )
+    text = name if context.site.following.startswith("(") else text
+    tier = (_FITS if fits else _FITS_NOT) + behind
+    return names.of_call(name, SymbolKind.CONSTRAINT, tier, text, signatures)
 
 
 def _stated(name: str, signature: Signature, things: Sequence[KnownName]) -> tuple[str, bool]:

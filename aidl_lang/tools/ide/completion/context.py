@@ -18,6 +18,7 @@ from aidl_lang.checking.types import (
     NumberType,
     PointType,
     RangeType,
+    Signature,
     StructureType,
     TextType,
     TruthType,
@@ -197,6 +198,11 @@ class Context:
                 return own and known.name != "self" and known.symbol is not self.scope.own_name
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)
+
+    def called(self, name: str) -> list[Signature]:
+        """Returns the definitions that a call of a name may mean here; none for another name."""
+        found = self.scope.called(name)
+        return found[1] if found is not None else []
 
     def callables(self) -> Iterator[tuple[str, Symbol | None]]:
         """Yields the callable names of this program and its imports, nearest first, with an alias."""

@@ -34,33 +34,36 @@ MOST = 200
 """Most entries of a list. After that many the editor asks again as the word grows."""
 
 
-def nothing() -> str:
-    return ""
-
-
 @record()
-class Completion:
-    """A completion entry.
+class Draft:
+    """A completion entry before it is ranked.
 
     label    the text shown, and compared with the typed text
     kind     `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`, `argument`,
              `field`, `method`, or a `SymbolKind` in its words
+    tier     0 for the likeliest; equal ones keep the order of drafting
+    text     what is written; a snippet has placeholders: `${1:name}`, `${1|a,b|}`, `$0`
     detail   its type, or its call, in a few words
-    text     the replacement of `span`; a snippet has placeholders: `${1:name}`, `${1|a,b|}`, `$0`
-    rank     its place in the list, 0 for the best
     extra    edits elsewhere that it needs, as an import
     describe makes its documentation in Markdown; too slow for a whole list
     """
 
     label: str
     kind: str
-    text: str
-    span: Span
+    tier: float
+    text: str = ""
     detail: str = ""
     is_snippet: bool = False
-    rank: int = 0
     extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=nothing, repr=False, compare=False)
+    describe: Callable[[], str] = field(default=str, repr=False, compare=False)
+
+
+@record()
+class Completion(Draft):
+    """An entry whose text replaces `span`; `rank` is its place in the list, 0 for the best."""
+
+    span: Span = field(kw_only=True)
+    rank: int = field(kw_only=True)
 
     @property
     def documentation(self) -> str:
@@ -72,20 +75,6 @@ class Completion:
         return expanded(self.text) if self.is_snippet else self.text
 
 
-@record()
-class Draft:
-    """`tier` ranks it, 0 the likeliest; equal ones keep the order of drafting."""
-
-    label: str
-    kind: str
-    tier: float
-    text: str = ""
-    detail: str = ""
-    is_snippet: bool = False
-    extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=nothing, repr=False)
-
-
 def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]:
     """Returns entries by tier, each label once, of those that the prefix may abbreviate."""
     chosen: dict[tuple[str, str], Draft] = {}
@@ -93,9 +82,7 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
         chosen.setdefault((draft.label, draft.text), draft)
     fitting = [d for d in chosen.values() if is_spelled_in(prefix, d.label)]
     return [
-        Completion(
-            d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe
-        )
+        Completion(**{**vars(d), "text": d.text or d.label}, span=span, rank=rank)
         for rank, d in enumerate(fitting[:MOST])
     ]
 
@@ -173,18 +160,17 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
         yield Draft(word, kind, 0.0, word if is_quoted or (bare and kind == "word") else f'"{word}"')
 
 
-def types(context: Context | None) -> Iterator[Draft]:
+def types(context: Context) -> Iterator[Draft]:
     """Yields types after `:` in a parameter, and shapes by their names."""
     for number, word in enumerate(dict.fromkeys((*_PLAIN_TYPES, *PARAMETER_TYPES))):
         yield Draft(word, "type", number / 100, detail=str(PARAMETER_TYPES[word]))
     words = vocabulary()
-    own = [name for name, _ in context.callables()] if context is not None else []
+    own = [name for name, _ in context.callables()]
     for name in (*own, *words.shapes):
-        found = context.scope.called(name) if context is not None else None
-        if found is not None and found[1][0].kind is ast.ShapeDefinition:
-            yield Draft(
-                name, "shape", 2.0 - (name in own), describe=partial(of_callable, name, tuple(found[1]))
-            )
+        signatures = context.called(name)
+        if signatures and signatures[0].kind is ast.ShapeDefinition:
+            described = partial(of_callable, name, tuple(signatures))
+            yield Draft(name, "shape", 2.0 - (name in own), describe=described)
 
 
 def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:

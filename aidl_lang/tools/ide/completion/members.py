@@ -72,13 +72,7 @@ def _of_file(context: Context, scope: SymbolScope | None) -> Iterator[Draft]:
     for name, symbol in scope.values.items():
         if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
             known = KnownName(name, symbol, of_symbol(check, symbol))
-            yield Draft(
-                name,
-                str(symbol.kind),
-                _OWN,
-                detail=names.detail(known),
-                describe=partial(names.about, symbol),
-            )
+            yield names.of_name(known, _OWN)
     for name in (*scope.callables, *scope.aliases):
         found = scope.called(name)
         if found is not None:
@@ -169,16 +163,16 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     own = [name for name, _ in context.callables()]
     kind = kind_of(fact)
     for name in (*own, *known):
-        found = context.scope.called(name)
-        if found is None:
+        signatures = context.called(name)
+        distance = _first_fits(fact, signatures, name, kind) if signatures else None
+        demands = [s.kind is ast.ConstraintDefinition for s in signatures]
+        if distance is None or (not is_demand and all(demands)):
             continue
-        distance = _first_fits(fact, found[1], name, kind)
-        if distance is None:
-            continue
-        if not is_demand and all(s.kind is ast.ConstraintDefinition for s in found[1]):
-            continue
-        tier = _DEMANDS if is_demand and found[1][0].kind is ast.ConstraintDefinition else _METHODS
-        yield _method(context, name, found[1], tier + 0.1 * distance + (name not in own) * 0.05)
+        tier = (
+            (_DEMANDS if is_demand and demands[0] else _METHODS) + 0.1 * distance + 0.05 * (name not in own)
+        )
+        text = names.called(context, name, signatures, skipped=1)
+        yield names.of_call(name, "method", tier + 0.05 * (name not in own), text, signatures)
 
 
 def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
@@ -193,19 +187,6 @@ def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -
         if s.parameters and (d := accepts(s.parameters[0][1], fact.type)) is not None and d < 3
     ]
     return min(distances) if distances else None
-
-
-def _method(context: Context, name: str, signatures: list[Signature], tier: float) -> Draft:
-    text, is_snippet = names.called(context, name, signatures, skipped=1)
-    return Draft(
-        name,
-        "method",
-        tier,
-        text,
-        names.brief(signatures),
-        is_snippet,
-        describe=partial(names.about_call, name, tuple(signatures)),
-    )
 
 
 def indices(context: Context, index: ast.Index) -> Iterator[Draft]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 
 from aidl_lang.checking import builtins
@@ -45,13 +46,7 @@ _HAVING_PARTS = (StructureType, GeometryType, PointType)
 def values(context: Context) -> Iterator[Draft]:
     """Yields the names that may be read here, those of a wanted type first."""
     for known in context.values:
-        yield Draft(
-            known.name,
-            str(known.symbol.kind),
-            _tier(context, known),
-            detail=detail(known),
-            describe=partial(about, known.symbol),
-        )
+        yield of_name(known, _tier(context, known))
 
 
 def _tier(context: Context, known: KnownName) -> float:
@@ -65,6 +60,11 @@ def _tier(context: Context, known: KnownName) -> float:
     if isinstance(kind, AnyType):
         return MAYBE + general
     return (PARTS if isinstance(kind, _HAVING_PARTS) else OTHERS) + general
+
+
+def of_name(known: KnownName, tier: float) -> Draft:
+    kind, described = str(known.symbol.kind), partial(about, known.symbol)
+    return Draft(known.name, kind, tier, detail=detail(known), describe=described)
 
 
 def detail(known: KnownName) -> str:
@@ -86,30 +86,19 @@ def about(symbol: Symbol) -> str:
 
 def calls(context: Context) -> Iterator[Draft]:
     """Yields the callables that give a value."""
-    above = context.site.parent()
-    is_whole = isinstance(above, ast.Assign) and not context.in_items
+    is_whole = isinstance(context.site.parent(), ast.Assign) and not context.in_items  # as in `rim = …`
     for name, alias in context.callables():
-        found = context.scope.called(name)
-        if found is None or all(s.kind is ast.ConstraintDefinition for s in found[1]):
-            continue
-        yield call(context, name, found[1], _call_tier(context, found[1], is_whole), alias)
+        signatures = context.called(name)
+        if any(s.kind is not ast.ConstraintDefinition for s in signatures):
+            yield call(context, name, signatures, _call_tier(context, signatures, is_whole), alias)
     words = vocabulary()
-    shapes = (*words.primitives, *words.shapes, *words.operations)
-    groups: list[tuple[Sequence[str], bool]] = [
-        (shapes, True),
-        (words.templates, True),
-        (words.exactness, False),
-        (words.functions, False),
-        (words.built_in, False),
-    ]
-    for names, makes in groups:
-        for name in names:
-            found = context.scope.called(name)
-            if found is None or not _belongs(context, name):
-                continue
-            if makes and not is_whole and not _takes_things(context):
-                continue
-            yield call(context, name, found[1], _call_tier(context, found[1], is_whole and makes))
+    makers = (*words.primitives, *words.shapes, *words.operations, *words.templates)
+    for name in (*makers, *words.exactness, *words.functions, *words.built_in):
+        signatures, makes = context.called(name), name in makers
+        if not signatures or not _belongs(context, name):
+            continue
+        if not makes or is_whole or _takes_things(context):
+            yield call(context, name, signatures, _call_tier(context, signatures, is_whole and makes))
 
 
 def _takes_things(context: Context) -> bool:
@@ -171,27 +160,21 @@ def result_type(context: Context, signature: Signature) -> Type:
 def call(
     context: Context, name: str, signatures: Sequence[Signature], tier: float, alias: Symbol | None = None
 ) -> Draft:
-    text, is_snippet = called(context, name, signatures)
-    return Draft(
-        name,
-        str(kind_of(signatures[0])) if alias is None else str(SymbolKind.ALIAS),
-        tier,
-        text,
-        brief(signatures),
-        is_snippet,
-        describe=partial(about_call, name, tuple(signatures)),
-    )
+    kind = SymbolKind.ALIAS if alias is not None else kind_of(signatures[0])
+    return of_call(name, kind, tier, called(context, name, signatures), signatures)
 
 
-def called(
-    context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0
-) -> tuple[str, bool]:
-    """Returns the text of a call, and True for a snippet; the name alone before an existing `(`."""
+def of_call(name: str, kind: str, tier: float, text: str, signatures: Sequence[Signature]) -> Draft:
+    described = partial(of_callable, name, tuple(signatures))
+    return Draft(name, str(kind), tier, text, brief(signatures), "$" in text, describe=described)
+
+
+def called(context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0) -> str:
+    """Returns the text of a call, a snippet if it takes something; the name alone before an existing `(`."""
     if context.site.following.startswith("("):
-        return name, False
-    if all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures):
-        return f"{name}()", False
-    return f"{name}($1)", True
+        return name
+    is_bare = all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures)
+    return f"{name}()" if is_bare else f"{name}($1)"
 
 
 def brief(signatures: Sequence[Signature]) -> str:
@@ -215,10 +198,6 @@ def kind_of(signature: Signature) -> SymbolKind:
             return SymbolKind.FUNCTION
 
 
-def about_call(name: str, signatures: tuple[Signature, ...]) -> str:
-    return of_callable(name, signatures)
-
-
 # --- Completion of definitions in other files of the workspace, each with its import.
 
 MOST_FILES = 40
@@ -237,7 +216,7 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
         except FileError:
             continue  # gone since, or unreadable: an import of it would report that
         for node in definitions(name, text):
-            if context.scope.called(node.name.text) is None and _may_stand(context, node):
+            if not context.called(node.name.text) and _may_stand(context, node):
                 yield _draft(context, name, node)
 
 
@@ -264,16 +243,11 @@ def _may_stand(context: Context, node: ast.Callable) -> bool:
 def _draft(context: Context, file: str, node: ast.Callable) -> Draft:
     name = node.name.text
     made = signature(node)
-    text, is_snippet = called(context, name, [made])
-    return Draft(
-        name,
-        str(kind_of(made)),
-        _TIER,
-        text,
-        f'{brief([made])} from "{file}"',
-        is_snippet,
-        (_import(context, file, name),),
-        partial(of_definition, node),
+    return replace(
+        of_call(name, kind_of(made), _TIER, called(context, name, [made]), [made]),
+        detail=f'{brief([made])} from "{file}"',
+        extra=(_import(context, file, name),),
+        describe=partial(of_definition, node),
     )
 
 
