@@ -82,53 +82,38 @@ def _entries(view: View, statements: Iterable[ast.Statement]) -> Iterator[Entry]
                 yield from _entries(view, then.statements)
                 yield from _entries(view, otherwise.statements if otherwise else ())
             case ast.Import(alias=alias) if alias is not None:
-                yield _entry(view, statement, alias, statement.path.span.text, SymbolKind.NAMESPACE)
+                detail = statement.path.span.text
+                yield Entry(alias.text, detail, SymbolKind.NAMESPACE, statement.span, alias.span)
             case _:
                 yield from _declared(view, statement)
 
 
-def _declared(view: View, statement: ast.Statement) -> Iterator[Entry]:
-    match statement:
-        case ast.Structure(parameters=parameters):
+def _declared(view: View, node: ast.Statement) -> Iterator[Entry]:
+    body: ast.Block | None = None
+    indices: Sequence[ast.Expression] = ()
+    match node:
+        case ast.Structure(parameters=parameters, body=body, indices=indices):
             kind = SymbolKind.STRUCTURE if parameters is None else SymbolKind.TEMPLATE
-            detail = statement.kind_word.text
-            indices = "".join(f"[{i.span.one_line}]" for i in statement.indices)
-            yield _entry(view, statement, statement.name, detail, kind, statement.body, indices)
-        case ast.ShapeDefinition():
-            yield _entry(view, statement, statement.name, "shape", SymbolKind.SHAPE, statement.body)
+            detail = node.kind_word.text
+        case ast.ShapeDefinition(body=body):
+            kind, detail = SymbolKind.SHAPE, "shape"
         case ast.ConstraintDefinition():
-            yield _entry(view, statement, statement.name, "constraint", SymbolKind.CONSTRAINT)
-        case ast.FunctionDefinition():
-            yield _entry(view, statement, statement.name, statement.value.span.one_line, SymbolKind.FUNCTION)
-        case ast.Param(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.PARAM)
-        case ast.Let(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.LET)
-        case ast.Var(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.VAR)
+            kind, detail = SymbolKind.CONSTRAINT, "constraint"
+        case ast.FunctionDefinition(value=value):
+            kind, detail = SymbolKind.FUNCTION, value.span.one_line
+        case ast.Param(value=value) | ast.Let(value=value) | ast.Var(value=value):
+            kind, detail = SymbolKind[type(node).__name__.upper()], value.span.one_line
         case ast.Alias(target=target):
-            yield _entry(view, statement, statement.name, target.text, SymbolKind.ALIAS)
-        case ast.Assign(value=value):
-            made = value.callee.text if isinstance(value, ast.Call) else value.span.one_line
-            indices = "".join(f"[{i.span.one_line}]" for i in statement.indices)
-            symbol = view.resolution.uses.get(statement.name)
+            kind, detail = SymbolKind.ALIAS, target.text
+        case ast.Assign(value=value, indices=indices):
+            detail = value.callee.text if isinstance(value, ast.Call) else value.span.one_line
+            symbol = view.resolution.uses.get(node.name)
             kind = SymbolKind.GEOMETRY if symbol is None else symbol.kind
-            yield _entry(view, statement, statement.name, made, kind, None, indices)
         case _:
-            pass
-
-
-def _entry(
-    view: View,
-    node: ast.Node,
-    name: ast.Identifier,
-    detail: str,
-    kind: SymbolKind,
-    body: ast.Block | None = None,
-    indices: str = "",
-) -> Entry:
+            return
+    name = node.name.text + "".join(f"[{index.span.one_line}]" for index in indices)
     children = tuple(_entries(view, body.statements)) if body is not None else ()
-    return Entry(name.text + indices, detail, kind, node.span, name.span, children)
+    yield Entry(name, detail, kind, node.span, node.name.span, children)
 
 
 # --- Folding ranges: blocks, calls and lists over several lines, comments, imports.

@@ -79,22 +79,15 @@ def head(node: ast.Node) -> str:
         case ast.ConstraintDefinition():
             return f"constraint {written(node)}"
         case ast.Structure(parameters=None):
-            return f"{node.kind_word.text} {_target(node)}"
+            indices = "".join(f"[{index.span.one_line}]" for index in node.indices)
+            return f"{node.kind_word.text} {node.name.text}{indices}"
         case ast.Structure():
             return f"{node.kind_word.text} {written(node)}"
-        case (
-            ast.Parameter() | ast.Param() | ast.Let() | ast.Var() | ast.Assign() | ast.Alias() | ast.Import()
-        ):
-            return _short(node.span.one_line)
         case ast.For() | ast.ForArguments():
             names = ", ".join(v.text for v in node.variables)
             return f"for {names} in {_short(node.iterable.span.one_line)}"
         case _:
             return _short(node.span.one_line)
-
-
-def _target(node: ast.Structure) -> str:
-    return node.name.text + "".join(f"[{index.span.one_line}]" for index in node.indices)
 
 
 def _short(text: str, most: int = 100) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
 
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
-from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
@@ -121,7 +120,43 @@ class Context:
 
     @cached_property
     def wanted(self) -> Wanted:
-        return Around(self.view.program.inference, self._of_argument).wanted(self.path)
+        return self._wanted(self.path)
+
+    def _wanted(self, path: Sequence[ast.Node]) -> Wanted:
+        """Returns the types wanted of the last node of a path."""
+        if len(path) < 2:
+            return Wanted()
+        node, above = path[-1], path[-2]
+        match above:
+            case ast.Argument() | ast.Unary(operator="-" | "+"):
+                return self._of_argument() if isinstance(above, ast.Argument) else self._wanted(path[:-1])
+            case ast.Binary(operator="+" | "-", left=left, right=right):
+                other = self.view.program.inference.fact(right if node is left else left).type
+                return _alike(other) if not isinstance(other, AnyType) else self._wanted(path[:-1])
+            case ast.Binary(operator="and" | "or") | ast.Unary():
+                return CONDITION
+            case ast.Binary():
+                return Wanted((_NUMBER, NumberType(None)))
+            case ast.Comparison(operands=operands):
+                return self._compared(node, operands)
+            case ast.Equation(left=left, right=right):
+                return self._compared(node, (left, right))
+            case ast.Conditional(test=test):
+                return CONDITION if node is test else self._wanted(path[:-1])
+            case ast.ArgumentBlock() | ast.ForArguments() if not _is_run_through(node, above):
+                return self._wanted(path[:-1])
+            case ast.IfArguments(test=test):
+                return CONDITION if node is test else self._wanted(path[:-1])
+            case ast.List():
+                return _member_of(self._wanted(path[:-1]))
+            case _:
+                return _of_place(node, above, path)
+
+    def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
+        """Returns the types comparable with the other sides."""
+        facts = [self.view.program.inference.fact(o) for o in operands if o is not node]
+        known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
+        return _alike(known) if known is not None else Wanted()
 
     def _of_argument(self) -> Wanted:
         if self.call is None:
@@ -247,26 +282,7 @@ def _names_file(view: View, node: ast.Expression) -> bool:
 
 
 _DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation
-_STATEMENTS = (
-    ast.Structure,
-    ast.Param,
-    ast.Var,
-    ast.Let,
-    ast.Assign,
-    ast.ExpressionStatement,
-    ast.Constrain,
-    ast.Equation,
-    ast.Prefer,
-    ast.Assert,
-    ast.For,
-    ast.If,
-    ast.Import,
-    ast.FunctionDefinition,
-    ast.ShapeDefinition,
-    ast.ConstraintDefinition,
-    ast.Alias,
-    ast.Parameter,
-)
+_STATEMENTS = ast.Allowing | ast.Structure | ast.Assign | ast.Parameter
 
 
 _WHOLE = NumberType(None, whole=True)
@@ -292,50 +308,6 @@ class Wanted:
 
 CONDITION = Wanted((TruthType(),))
 """The type of a condition, which often begins with a value: `a.radius >= 3`."""
-
-
-@record()
-class Around:
-    """The nodes around a place; `argument` returns the types wanted of an argument."""
-
-    check: Inference
-    argument: Callable[[], Wanted]
-
-    def wanted(self, path: Sequence[ast.Node]) -> Wanted:
-        """Returns the types wanted of the last node of a path."""
-        if len(path) < 2:
-            return Wanted()
-        node, above = path[-1], path[-2]
-        match above:
-            case ast.Argument() | ast.Unary(operator="-" | "+"):
-                return self.argument() if isinstance(above, ast.Argument) else self.wanted(path[:-1])
-            case ast.Binary(operator="+" | "-", left=left, right=right):
-                other = self.check.fact(right if node is left else left).type
-                return _alike(other) if not isinstance(other, AnyType) else self.wanted(path[:-1])
-            case ast.Binary(operator="and" | "or") | ast.Unary():
-                return CONDITION
-            case ast.Binary():
-                return Wanted((_NUMBER, NumberType(None)))
-            case ast.Comparison(operands=operands):
-                return self._compared(node, operands)
-            case ast.Equation(left=left, right=right):
-                return self._compared(node, (left, right))
-            case ast.Conditional(test=test):
-                return CONDITION if node is test else self.wanted(path[:-1])
-            case ast.ArgumentBlock() | ast.ForArguments() if not _is_run_through(node, above):
-                return self.wanted(path[:-1])
-            case ast.IfArguments(test=test):
-                return CONDITION if node is test else self.wanted(path[:-1])
-            case ast.List():
-                return _member_of(self.wanted(path[:-1]))
-            case _:
-                return _of_place(node, above, path)
-
-    def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        """Returns the types comparable with the other sides."""
-        facts = [self.check.fact(o) for o in operands if o is not node]
-        known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
-        return _alike(known) if known is not None else Wanted()
 
 
 def _is_run_through(node: ast.Node, above: ast.Node) -> bool:

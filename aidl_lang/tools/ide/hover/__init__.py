@@ -150,19 +150,11 @@ def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
     return ""
 
 
-_VALUES = frozenset(
-    (
-        SymbolKind.PARAM,
-        SymbolKind.LET,
-        SymbolKind.VAR,
-        SymbolKind.LOOP,
-        SymbolKind.ARGUMENT,
-        SymbolKind.GEOMETRY,
-        SymbolKind.STRUCTURE,
-        SymbolKind.FIELD,
-        SymbolKind.BUILTIN,
-    )
-)
+_VALUES = frozenset(SymbolKind) - {
+    *(SymbolKind.FUNCTION, SymbolKind.SHAPE, SymbolKind.CONSTRAINT, SymbolKind.TEMPLATE),
+    *(SymbolKind.ALIAS, SymbolKind.NAMESPACE, SymbolKind.WORD),
+}
+"""Kinds of names that have solved values."""
 
 
 @record()
