@@ -61,7 +61,7 @@ _SLOW = 1e-3
 
 
 def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
-    """Yields the motions of a solved model."""
+    """Yields the remaining motions of a solved model."""
     model = outcome.model
     if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
         return
@@ -393,7 +393,7 @@ def preview(
         handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found, unpainted, tried=tried)),
         conflicts=tuple(conflicts(view, found)),
-        ways=tuple(_ways(view, found)) if FREEDOM in show else (),
+        motions=tuple(ways(view.outcome, found)) if FREEDOM in show and not view.is_stale else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
 
@@ -426,11 +426,6 @@ def _is_anything_drawn(outcome: Compiled) -> bool:
     if outcome.model is None or outcome.drawing is None:
         return False
     return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
-
-
-def _ways(view: View, found: Elements) -> Iterator[Way]:
-    if view.outcome is not None and not view.is_stale:
-        yield from ways(view.outcome, found)
 
 
 def tried(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -86,7 +86,7 @@ class Party:
 @record()
 class Conflict:
     headline: str
-    parties: tuple[Party, ...]
+    constraints: tuple[Party, ...]
 
 
 @record()
@@ -101,7 +101,7 @@ class Turn:
 
     center: Vec
     radius: float
-    first: float
+    start: float
     sweep: float
 
 
@@ -138,7 +138,7 @@ class Preview:
     handles: tuple[Handle, ...]
     problems: tuple[Problem, ...]
     conflicts: tuple[Conflict, ...]
-    ways: tuple[Way, ...]
+    motions: tuple[Way, ...]
     degrees: int | None
 
 
@@ -155,25 +155,8 @@ class Writer:
 
     def preview(self, preview: Preview, version: int) -> Json:
         """Returns the preview; numbers without a value are null."""
-        made: Json = rounded(
-            {
-                "uri": self._uri_of(self._view.path),
-                "version": version,
-                "status": preview.status,
-                "stale": preview.stale,
-                "tried": preview.tried,
-                "seconds": preview.seconds,
-                "svg": preview.svg,
-                "box": preview.box,
-                "elements": list(map(self._fields, preview.elements)),
-                "knobs": list(map(self._fields, preview.knobs)),
-                "handles": list(map(self._fields, preview.handles)),
-                "problems": list(map(self._problem, preview.problems)),
-                "conflicts": list(map(self._conflict, preview.conflicts)),
-                "motions": [_motion(way) for way in preview.ways],
-                "degrees": preview.degrees,
-            }
-        )
+        said = {"uri": self._uri_of(self._view.path), "version": version, **self._fields(preview)}
+        made: Json = rounded(said)
         return made
 
     def place(self, span: Span | None) -> Json:
@@ -207,23 +190,20 @@ class Writer:
         said: Json = {}
         for each in fields(made):
             value = getattr(made, each.name)
-            said |= self.place(value) if each.name == "span" else {each.name: value}
+            said |= self.place(value) if each.name == "span" else {each.name: self._json(value)}
         return said
 
-    def _problem(self, problem: Problem) -> Json:
-        titles = [fix.title for fix in problem.fixes]
-        return {**self._fields(problem), "fixes": len(titles), "titles": titles}
-
-    def _conflict(self, conflict: Conflict) -> Json:
-        return {"headline": conflict.headline, "constraints": list(map(self._fields, conflict.parties))}
-
-
-def _motion(way: Way) -> Json:
-    return {
-        "words": way.words,
-        "elements": way.elements,
-        "arrows": [{"from": arrow.start, "to": arrow.end} for arrow in way.arrows],
-        "turns": [
-            {"center": t.center, "radius": t.radius, "start": t.first, "sweep": t.sweep} for t in way.turns
-        ],
-    }
+    def _json(self, value: Any) -> Any:
+        match value:
+            case tuple():
+                return [self._json(each) for each in value]
+            case Arrow(start, end):
+                return {"from": start, "to": end}
+            case Problem(fixes=fixes):
+                return {
+                    **self._fields(replace(value, fixes=())),
+                    "fixes": len(fixes),
+                    "titles": [fix.title for fix in fixes],
+                }
+            case _:
+                return self._fields(value) if is_dataclass(value) else value
