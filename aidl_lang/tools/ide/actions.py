@@ -96,10 +96,6 @@ def first_error(view: View) -> str:
     return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
 
 
-def is_here(source: SourceFile, edits: Sequence[Edit]) -> bool:
-    return all(edit.span.source is source for edit in edits)
-
-
 # --- The edits that come with diagnostics, one by one and all together.
 
 _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
@@ -107,7 +103,7 @@ _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
 
 def fixes(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields fixes for diagnostics at a selection; for a conflict, those of each constraint in it."""
-    near = [d for d in view.diagnostics if any(_is_at(view, p, start, end) for p in _places(d))]
+    near = [d for d in view.diagnostics if _is_at(view, d, start, end)]
     offered: list[Fix] = []
     for d in near:
         if d.fix is not None:
@@ -122,14 +118,9 @@ def fixes(view: View, start: int, end: int) -> Iterator[Action]:
         yield Action("Apply all fixes", "source.fixAll", partial(_everything, view))
 
 
-def _places(d: Diagnostic) -> list[tuple[object, int, int]]:
-    spans = [d.span, *(label.span for label in d.secondary)]
-    return [(span.source, span.start, span.end) for span in spans if span is not None]
-
-
-def _is_at(view: View, place: tuple[object, int, int], start: int, end: int) -> bool:
-    source, first, last = place
-    return source is view.source and first <= end and start <= last
+def _is_at(view: View, d: Diagnostic, start: int, end: int) -> bool:
+    spans = [span for span in (d.span, *(label.span for label in d.secondary)) if span is not None]
+    return any(s.source is view.source and s.start <= end and start <= s.end for s in spans)
 
 
 def _remedies(view: View, d: Diagnostic) -> Iterator[Fix]:
@@ -202,27 +193,16 @@ def writings(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields actions for the selection, or the innermost structure at the cursor; and for the whole file."""
     if view.outcome is None:
         return
-    part, where = _part(view, start, end)
-    for sizes, title in _TITLES.items():
-        if part is not None and can_write_back(view, part, sizes=sizes):
-            yield _writing(view, part, f"{title}: {where}", sizes=sizes)
-        if can_write_back(view, sizes=sizes):
-            yield _writing(view, None, title, sizes=sizes)
-
-
-def _part(view: View, start: int, end: int) -> tuple[Span | None, str]:
+    places: list[tuple[Span | None, str]] = [(None, "")]
     if start < end:
-        return view.span(start, end), "selection"
-    node = next(structures_around(view, start), None)
-    return (None, "") if node is None else (node.span, f"`{node.name.text}`")
-
-
-def _writing(view: View, part: Span | None, title: str, *, sizes: bool) -> Action:
-    return Action(title, "refactor.rewrite", partial(_written, view, part, sizes=sizes))
-
-
-def _written(view: View, part: Span | None, *, sizes: bool) -> Sequence[Edit]:
-    return write_back(view, part, sizes=sizes).edits
+        places.insert(0, (view.span(start, end), ": selection"))
+    elif (node := next(structures_around(view, start), None)) is not None:
+        places.insert(0, (node.span, f": `{node.name.text}`"))
+    for sizes, title in _TITLES.items():
+        for part, where in places:
+            if can_write_back(view, part, sizes=sizes):
+                made = partial(write_back, view, part, sizes=sizes)
+                yield Action(f"{title}{where}", "refactor.rewrite", made)
 
 
 # --- Names a number: makes it a `param` with a range, which can be set from outside.

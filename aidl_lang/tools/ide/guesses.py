@@ -238,20 +238,12 @@ _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
 _MOST_TRIES = 8
 
 
-@record()
-class Rewriting:
-    """Tried edits that write solved values into the text; `view` is the result."""
-
-    edits: tuple[Edit, ...]
-    view: View
-
-
 def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> bool:
     """Tells, without trying, whether there is anything to write."""
     return bool(_targets(view, span, sizes))
 
 
-def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting:
+def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> tuple[Edit, ...]:
     """Returns the edits that write solved values as guesses, with `sizes` as sizes. Raises CannotError."""
     targets = _targets(view, span, sizes)
     if not targets:
@@ -259,7 +251,7 @@ def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> 
         raise CannotError(f"no {what} here")
     for some in (targets, {g: v for g, v in targets.items() if not g.is_shared}):
         if some and (found := _tried(view, some)) is not None:
-            return Rewriting(*found)
+            return found
     raise CannotError("with the solved values written there, the program would not draw the same")
 
 
@@ -288,8 +280,8 @@ def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
     return found
 
 
-def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:
-    """Returns the shortest numbers that draw the same, with the resulting view.
+def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[Edit, ...] | None:
+    """Returns the shortest numbers that draw the same.
 
     If the drawing is free to slide as a whole, it may: a position that the text does not say still begins
     where it
@@ -308,7 +300,10 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
         is_slid = is_same(view.outcome, again.outcome, slid=True)
         moved = _moved(again, wanted, order)
         if is_slid and (not moved or is_same(view.outcome, again.outcome)):
-            return (edits, again) if _is_no_worse(view.outcome, again.outcome) else None
+            is_worse = {d.code for d in again.outcome.diagnostics} - {
+                d.code for d in view.outcome.diagnostics
+            }
+            return None if is_worse else edits
         finest = 1 if is_slid else len(_PRECISIONS) - 1
         coarse = [guess for guess in moved or wanted if level[guess] < finest]
         if coarse:
@@ -330,8 +325,3 @@ def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]
         if solved is not None and abs(solved - value) * guess.factor > SAME:
             found[guess] = solved
     return found
-
-
-def _is_no_worse(before: Compiled, after: Compiled) -> bool:
-    """True if the program has no diagnostics that it did not have before."""
-    return {d.code for d in after.diagnostics} <= {d.code for d in before.diagnostics}

@@ -283,20 +283,13 @@ def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]
 # --- Renames a thing everywhere, so that the programs keep their meaning.
 
 
-@record()
-class Renaming:
-    """Edits by file, each to its present text."""
-
-    edits: Mapping[Path, tuple[Edit, ...]]
-
-
 def renameable(view: View, offset: int) -> Span:
     """Returns the name at an offset if it can be changed. Raises CannotError."""
     return _own(view, offset).span
 
 
-def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
-    """Returns the edits that rename a thing. Raises CannotError where any name would change its meaning."""
+def rename(project: Project, view: View, offset: int, name: str) -> dict[Path, tuple[Edit, ...]]:
+    """Returns the edits by file that rename a thing. Raises CannotError if a meaning would change."""
     mention = _own(view, offset)
     _require_name(name)
     found = references(project, view, offset)
@@ -305,7 +298,7 @@ def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
         by_file[occurrence.path].append(Edit(occurrence.span, name))
     edits = {path: tuple(each) for path, each in by_file.items()}
     _require_same_meaning(project, view, mention.symbol, found, edits, name)
-    return Renaming(edits)
+    return edits
 
 
 def _own(view: View, offset: int) -> Mention:

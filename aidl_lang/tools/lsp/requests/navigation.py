@@ -114,7 +114,7 @@ def _rename(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | N
         made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
     except CannotError as reason:
         _fail(reason)
-    return asked.convert.changes(made.edits, asked.can("workspace.workspace_edit.document_changes"))
+    return asked.convert.changes(made, asked.can("workspace.workspace_edit.document_changes"))
 
 
 def _fail(reason: Exception) -> NoReturn:
