@@ -151,10 +151,7 @@ SNIPPETS = (
     Snippet("centered", "one part in the middle of another", "${1:a}.centered_in(${2:b})$0", "constraints"),
     Snippet("same", "two sizes alike", "${1:a}.width == ${2:b}.width$0", "constraints"),
     Snippet(
-        "row",
-        "parts side by side",
-        'row(${1:a}, ${2:b}, gap: ${3:5}, align: "${4:center}")$0',
-        "constraints",
+        "row", "parts side by side", 'row(${1:a}, ${2:b}, gap: ${3:5}, align: "${4:center}")$0', "constraints"
     ),
 )
 

@@ -11,7 +11,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.preview import preview, set_knob, tried
-from aidl_lang.tools.ide.preview.protocol import Slider, Way
+from aidl_lang.tools.ide.preview.elements import Slider, Way
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.preview.views import EXAMPLES, view_of
 

@@ -59,8 +59,7 @@ if TYPE_CHECKING:
 else:
     Format = Literal[tuple(dict.fromkeys(("png", "model", *OFFERED)))]
 Formats: TypeAlias = Annotated[
-    Sequence[Format],
-    "What to make: png is a picture, model the solved model as JSON, the others are files.",
+    Sequence[Format], "What to make: png is a picture, model the solved model as JSON, the others are files."
 ]
 _UNSOLVED = "no mistakes found; nothing was solved: `compile` tells whether the constraints hold"
 _WITHOUT_CONFLICT = {

@@ -288,12 +288,7 @@ class Runner:
                 self.renew(document)
 
     async def work(
-        self,
-        key: Hashable,
-        function: Callable[[], T],
-        is_unwanted: Callable[[], bool],
-        *,
-        first: bool = True,
+        self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool], *, first: bool = True
     ) -> T:
         """Returns a result from the solving thread, before waiting work or behind it; cancels older ones."""
         found: asyncio.Future[T] = self._loop.create_future()

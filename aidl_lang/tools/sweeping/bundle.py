@@ -163,12 +163,7 @@ def fault(diagnostic: Diagnostic) -> Fault:
     if span is None:
         return Fault(diagnostic.code, diagnostic.message, diagnostic.label)
     return Fault(
-        diagnostic.code,
-        diagnostic.message,
-        diagnostic.label,
-        span.one_line,
-        span.source.name,
-        span.line,
+        diagnostic.code, diagnostic.message, diagnostic.label, span.one_line, span.source.name, span.line
     )
 
 

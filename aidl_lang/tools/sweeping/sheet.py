@@ -284,16 +284,7 @@ class _Pixels:
 
     def box(self, x: float, y: float, width: float, height: float, fill: str, line: str) -> None:
         k = self._per_mm
-        self._draw.rectangle(
-            (
-                x * k,
-                y * k,
-                (x + width) * k,
-                (y + height) * k,
-            ),
-            fill=fill,
-            outline=line,
-        )
+        self._draw.rectangle((x * k, y * k, (x + width) * k, (y + height) * k), fill=fill, outline=line)
 
     def text(self, x: float, y: float, size: float, colour: str, text: str) -> None:
         k = self._per_mm

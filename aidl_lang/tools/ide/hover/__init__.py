@@ -14,8 +14,14 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token
 from aidl_lang.syntax.words import kind_of
 from aidl_lang.tools.ide.guesses import guesses
-from aidl_lang.tools.ide.hover.solved_values import Solved, solved_of
-from aidl_lang.tools.ide.hover.telling import compared, constraint_lines, lines, number_text
+from aidl_lang.tools.ide.hover.solved_values import (
+    Solved,
+    compared,
+    constraint_lines,
+    lines,
+    number_text,
+    solved_of,
+)
 from aidl_lang.tools.ide.references import Mention, chosen, mention_at, parameter_node
 from aidl_lang.tools.ide.signatures import (
     fenced,

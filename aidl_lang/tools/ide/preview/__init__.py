@@ -27,15 +27,21 @@ from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.memory import Memory
 from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
+    FREEDOM,
+    LAYERS,
+    Arrow,
     DrawnElement,
     Elements,
+    Preview,
+    Turn,
+    Way,
+    Writer,
     box_of,
     curves_of,
     elements,
     elements_at,
     point_of,
 )
-from aidl_lang.tools.ide.preview.protocol import FREEDOM, LAYERS, Arrow, Preview, Turn, Way, Writer
 from aidl_lang.tools.ide.preview.sliders import conflicts, problems, set_knob, sliders, worked_out
 from aidl_lang.tools.ide.workspace import SETTINGS, View, hasty, run
 

@@ -14,8 +14,7 @@ from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents import workspace
 from aidl_lang.tools.agents.workspace import refusal
-from aidl_lang.tools.ide.preview.elements import Elements, Places
-from aidl_lang.tools.ide.preview.protocol import Conflict, Party, Problem, Slider
+from aidl_lang.tools.ide.preview.elements import Conflict, Elements, Party, Places, Problem, Slider
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 
 # --- The `param`s of a program as sliders, and edits that set their values in the text.
