@@ -251,13 +251,9 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
         message = "this Path holds a program, not the name of a file"
         raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
     from aidl_lang.tools.cli import files
-    from aidl_lang.tools.cli.files import UseError
 
     disk = DiskWorld(text_or_path.parent)
-    try:
-        text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
-    except UseError as reason:
-        raise AidlError(reason.diagnostic) from None
+    text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
     return SourceFile(name, text), KeptWorld(disk)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_eval.study import command as study
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say, show
@@ -146,7 +147,7 @@ def run(arguments: argparse.Namespace) -> int:
         left = _run(arguments, store)
         print(report(store, arguments.clip_weights, arguments.clip_model), end="")
     except (StoreError, RecordingError) as reason:
-        raise UseError.of(reason.diagnostic) from None
+        raise AidlError(reason.diagnostic) from None
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
 

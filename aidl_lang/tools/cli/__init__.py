@@ -18,7 +18,7 @@ from importlib import import_module
 from io import BufferedWriter, FileIO, TextIOWrapper
 from typing import Any
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.tools.cli import files
 from aidl_lang.version import __version__
@@ -101,12 +101,9 @@ def _ended(argv: Sequence[str] | None) -> int:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
         sys.stdout.flush()
-    except files.UseError as reason:
+    except AidlError as reason:
         files.show([reason.diagnostic])
-        return 2
-    except TooLongError as reason:
-        files.show([reason.diagnostic])
-        return files.exit_code([reason.diagnostic])
+        return files.exit_code([reason.diagnostic]) if isinstance(reason, TooLongError) else 2
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:

@@ -10,6 +10,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
@@ -77,10 +79,12 @@ class BuildResult:
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     """Returns the outputs asked for; refuses those whose format or directory does not exist."""
+    from aidl_lang.export.cut_list import is_pattern
+
     names = arguments.output or [_default_output(arguments.file)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
     for target in found:
-        if not _is_pattern(target.name):
+        if not is_pattern(target.name):
             files.require_directory(target.name)
     files.require_unread(target.name for target in found)
     return found
@@ -114,8 +118,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
 def _profile(name: str | None) -> Profile | None:
     if name is None:
         return None
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.profiles import PROFILES
+    from aidl_lang.export.profiles import PROFILES, parsed
 
     if name in PROFILES:
         return PROFILES[name]
@@ -125,12 +128,7 @@ def _profile(name: str | None) -> Profile | None:
         near = did_you_mean(nearest(name, PROFILES))
         known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
         raise UseError("E0956", f"there is no profile `{name}`", *near, known)
-    from aidl_lang.export.profiles import parsed
-
-    try:
-        return parsed(files.read(name).text, Path(name).name)
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return parsed(files.read(name).text, Path(name).name)
 
 
 def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
@@ -148,25 +146,21 @@ def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Writes all outputs once all could be made, over nothing that was read. Returns names and remarks."""
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.cut_list import contents
+    from aidl_lang.export.cut_list import contents, is_pattern
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
-    try:
-        writing = compiled.exporting(options, _Progress())
-        for target in outputs:
-            found, said = contents(writing, target.name, target.suffix)
-            require_one(target.name, len(found))
-            if target.suffix != ".json" and any(note.code == "W0721" for note in said):
-                _keep_drawn(found)
-            made += found
-            notes += said
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    writing = compiled.exporting(options, _Progress())
+    for target in outputs:
+        found, said = contents(writing, target.name, target.suffix)
+        require_one(target.name, len(found))
+        if target.suffix != ".json" and any(note.code == "W0721" for note in said):
+            _keep_drawn(found)
+        made += found
+        notes += said
     _require_apart([name for name, _ in made])
     files.require_unread(name for name, _ in made)
-    if any(_is_pattern(target.name) for target in outputs):
+    if any(is_pattern(target.name) for target in outputs):
         files.make_directories(name for name, _ in made)
     for name, data in made:
         files.write(name, data)
@@ -184,16 +178,6 @@ def _keep_drawn(made: Iterable[tuple[str, bytes]]) -> None:
                 "if it shall be empty, delete it first",
                 "`aidl check` tells why nothing is drawn",
             )
-
-
-def _is_pattern(name: str) -> bool:
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.cut_list import is_pattern
-
-    try:
-        return is_pattern(name)
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
 
 
 def _require_apart(names: Sequence[str]) -> None:
@@ -235,12 +219,9 @@ def _default_output(program: str) -> str:
 
 
 def _suffix(name: str, fallback: str | None) -> str:
-    from aidl_lang.export import ExportError, suffix_of
+    from aidl_lang.export import suffix_of
 
-    try:
-        return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
 
 
 _MOST_MOTIONS = 6
@@ -290,9 +271,6 @@ def _show_timings(timings: Mapping[str, float]) -> None:
         say(f"{stage:<12}{1000 * seconds:>9.1f} ms")
 
 
-# --- `aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved.
-
-
 def register_watch(parser: argparse.ArgumentParser) -> None:
     """`aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved."""
     parser.epilog = (
@@ -334,7 +312,9 @@ def _once(arguments: argparse.Namespace, memory: Memory) -> frozenset[Path]:
     clock = time.strftime("%H:%M:%S")
     try:
         outcome = build(arguments, memory)
-    except UseError as reason:
+    except AidlError as reason:
+        if isinstance(reason, TooLongError):
+            raise
         say(f"{clock} {one_line(reason.diagnostic)}")
         return frozenset()
     errors = outcome.compiled.errors

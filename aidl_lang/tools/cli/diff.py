@@ -121,15 +121,12 @@ def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -
     if not outputs:
         return
     from aidl_lang.common.drawing_time import within
-    from aidl_lang.export import ExportError, Options, render
+    from aidl_lang.export import Options, render
     from aidl_lang.export.comparison.picture import overlay
 
-    try:
-        with within(LONGEST, "drawing the differences in"):
-            picture = overlay(comparison)
-            made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    with within(LONGEST, "drawing the differences in"):
+        picture = overlay(comparison)
+        made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
     files.require_unread(name for name, _ in made)
     for name, data in made:
         files.write(name, data)

@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
     from aidl_lang.tools.llm.messages import Language, Provider
 
-
-# --- `aidl generate`: from a sentence to a program that is right, by a language model.
 
 _PROGRAM = ".aidl"
 _CODES = 4
@@ -105,12 +104,9 @@ def _places(arguments: argparse.Namespace) -> _Places:
 
 def _task(arguments: argparse.Namespace) -> Task:
     from aidl_lang.tools.llm.generation import Task
-    from aidl_lang.tools.llm.messages import ImageError, read_image
+    from aidl_lang.tools.llm.messages import read_image
 
-    try:
-        image = read_image(arguments.image, files.reads) if arguments.image else None
-    except ImageError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    image = read_image(arguments.image, files.reads) if arguments.image else None
     return Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
 
 
@@ -141,7 +137,7 @@ class _Run:
         self.is_watched = sys.stderr.isatty()
 
     def generation(self) -> Generation:
-        """Returns the conversation. Raises UseError if not one reply could be had."""
+        """Returns the conversation. Raises AidlError if not one reply could be had."""
         from aidl_lang.tools.llm.generation import Settings, generate
 
         asked = sampling(self.arguments)
@@ -152,7 +148,7 @@ class _Run:
         done = generate(self.task, self.provider, self.language, settings, self._hear, self._listen)
         self._erase()
         if done.failure is not None and done.verdict is None:
-            raise UseError.of(done.failure)
+            raise AidlError(done.failure)
         if done.failure is not None:
             show([done.failure])
         self._save(done)
@@ -276,18 +272,13 @@ def _write_program(
 def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
     from aidl_lang import pipeline
     from aidl_lang.common.source import SourceFile
-    from aidl_lang.export import ExportError
 
     if not places.drawings:
         return
     assert places.program is not None
     world = files.world(arguments.edit) if arguments.edit else None
     compiled = pipeline.compile(SourceFile(os.path.basename(places.program), program), world)
-    try:
-        made = [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
-    for name, data in made:
+    for name, data in [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]:
         files.write(name, data)
 
 
@@ -295,8 +286,6 @@ def _beginning(text: str) -> str:
     line = re.sub(r"\s+", " ", text.strip())
     return repr(line if len(line) <= 80 else line[:79] + "…")
 
-
-# --- `aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs.
 
 _PACKAGE = "aidl_eval"
 """A distribution of its own, which stands on this one; so it is known by its name alone."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, show
+from aidl_lang.tools.cli.files import exit_code, show
 from aidl_lang.tools.cli.options import add_params, add_program, flag, value
 
 if TYPE_CHECKING:
@@ -44,17 +44,13 @@ def register_measure(parser: argparse.ArgumentParser) -> None:
 
 def run_measure(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.geometry.survey import NothingThereError
 
     source, world = files.read(arguments.file), files.world(arguments.file)
     compiled = pipeline.compile(source, world, params=dict(arguments.params))
     if not compiled.ok:
         show(compiled.diagnostics)
         return exit_code(compiled.diagnostics) or 1
-    try:
-        found = compiled.surveyed(arguments.paths, dict(arguments.densities))
-    except NothingThereError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    found = compiled.surveyed(arguments.paths, dict(arguments.densities))
     show([*compiled.diagnostics, *found.notes])
     if arguments.json:
         _print_json(compiled, found)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, ticked
-from aidl_lang.tools.cli.files import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.checking.subset import Variant
@@ -254,8 +253,7 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
 
 
 def provider(arguments: argparse.Namespace) -> Closable:
-    """Returns the model that the options of `add_provider` name. Raises UseError."""
-    from aidl_lang.tools.llm.messages import ProviderError
+    """Returns the model that the options of `add_provider` name. Raises AidlError."""
     from aidl_lang.tools.llm.providers import Connection, connect
 
     said = Connection(
@@ -265,15 +263,12 @@ def provider(arguments: argparse.Namespace) -> Closable:
         timeout=arguments.timeout,
         price=arguments.price,
     )
-    try:
-        connected = connect(said)
-        if not arguments.constrain:
-            return connected
-        from aidl_lang.tools.llm.decoding import Constrained
+    connected = connect(said)
+    if not arguments.constrain:
+        return connected
+    from aidl_lang.tools.llm.decoding import Constrained
 
-        return Constrained(connected, arguments.constrain)
-    except ProviderError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return Constrained(connected, arguments.constrain)
 
 
 def sampling(arguments: argparse.Namespace) -> Sampling:
@@ -418,10 +413,7 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
     except argparse.ArgumentError as reason:
         name = (reason.argument_name or "").lstrip("-").replace("-", "_")
         raise _refused(f"`{name}`: {reason.message}") from None
-    try:
-        return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
-    except UseError as reason:
-        raise AidlError(reason.diagnostic) from None
+    return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
 
 
 def said(arguments: argparse.Namespace) -> list[str]:

@@ -37,7 +37,7 @@ def register_sheet(parser: argparse.ArgumentParser) -> None:
 
 def run_sheet(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import ExportError, Options, file_names
+    from aidl_lang.export import Options, file_names
     from aidl_lang.export.drafting import Draft
     from aidl_lang.tools.cli.build import Target, require_one
 
@@ -53,10 +53,7 @@ def run_sheet(arguments: argparse.Namespace) -> int:
     draft = Draft(
         arguments.paper, arguments.landscape, arguments.scale, arguments.standard, arguments.date.strip()
     )
-    try:
-        made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
     written = []
     for target, result in zip(targets, made, strict=True):
         datas = (result.data, *result.further)

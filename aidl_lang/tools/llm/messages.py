@@ -15,7 +15,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.files import Reads
 from aidl_lang.common.records import record
 
@@ -40,12 +40,11 @@ _BROKEN = (OSError, ValueError, SyntaxError, EOFError, IndexError, OverflowError
 """Errors of pillow for broken files."""
 
 
-class ImageError(Exception):
+class ImageError(AidlError):
     """Raised if the picture cannot be used."""
 
     def __init__(self, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic("E0939", message, hints=hints)
+        super().__init__(Diagnostic("E0939", message, hints=hints))
 
 
 def read_image(name: str, reads: Reads | None = None) -> Image:
@@ -190,12 +189,11 @@ class Reply:
     """The day of the reply, as in 2026-01-31."""
 
 
-class ProviderError(Exception):
+class ProviderError(AidlError):
     """Raised if no reply could be had after all retries; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
+        super().__init__(Diagnostic(code, message, hints=hints))
 
 
 class ConversationOver(Exception):  # noqa: N818 (what came of it, no error of ours)

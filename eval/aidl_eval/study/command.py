@@ -6,9 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files, serving
-from aidl_lang.tools.cli.files import UseError, say, show
+from aidl_lang.tools.cli.files import say, show
 
 if TYPE_CHECKING:
     from aidl_eval.store import Store, StoreError
@@ -42,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         return _export(store, arguments.export) if arguments.export else _serve(store, arguments)
     except StoreError as reason:
-        raise UseError.of(reason.diagnostic) from None
+        raise AidlError(reason.diagnostic) from None
 
 
 def _export(store: Store, name: str) -> int:
