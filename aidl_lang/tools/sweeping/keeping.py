@@ -131,16 +131,7 @@ class Store:
 
 _UNUSABLE = (OSError, sqlite3.Error, diskcache.Timeout, ValueError, TypeError, AttributeError, KeyError)
 """Errors of a folder that cannot be written, or that is no cache."""
-_BROKEN = (
-    OSError,
-    sqlite3.Error,
-    ValueError,
-    TypeError,
-    KeyError,
-    AttributeError,
-    zlib.error,
-    RecursionError,
-)
+_BROKEN = (*_UNUSABLE, zlib.error, RecursionError)
 """Errors of an entry that is none."""
 
 

@@ -10,7 +10,6 @@ from aidl_lang.building.model import Knob
 from aidl_lang.common.processes import Engine
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
-from aidl_lang.export import Options
 from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
 from aidl_lang.tools.sweeping.plan import Axis, Variant, axis, from_values, knob_named, planned, read_table
@@ -21,6 +20,8 @@ from aidl_lang.tools.sweeping.working import Making
 
 if TYPE_CHECKING:
     import pyarrow
+
+    from aidl_lang.tools.cli.options import Asked
 
 
 class Sweep:
@@ -42,22 +43,16 @@ class Sweep:
         source: SourceFile,
         world: World | None,
         params: Mapping[str, object],
-        options: Options,
+        asked: Asked,
         settings: Settings | None,
         *,
         outputs: Sequence[str],
         table: str | Path | None,
         drawn: tuple[int, int] | None,
         engine: tuple[str, int | None],
-        cache: str,
-        resumes: bool,
-        stops_on_error: bool,
-        timings: bool,
-        seconds: float | None,
-        best_effort: bool,
-        fallback: str | None,
+        **how: Any,
     ) -> Sweep:
-        """Returns a sweep that is about to run. Raises AidlError."""
+        """Returns a sweep that is about to run; `how` has fields of the `Job`. Raises AidlError."""
         bundle, gathering, knobs = opened(source, world, settings or Settings())
         axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
         rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
@@ -66,20 +61,9 @@ class Sweep:
         def command(variant: Variant, name: str) -> str:
             return reproducing(source.name, plan, variant, name)
 
-        job = Job(
-            plan,
-            bundle,
-            gathering,
-            Making(options=options, best_effort=best_effort),
-            sorted_outputs(outputs, plan, gathering.reads, fallback),
-            command,
-            cache,
-            resumes=resumes,
-            stops_on_error=stops_on_error,
-            timings=timings,
-            seconds=seconds,
-        )
-        return cls(job, engine)
+        making = Making(options=asked.options, best_effort=asked.best_effort)
+        wanted = sorted_outputs(outputs, plan, gathering.reads, asked.format)
+        return cls(Job(plan, bundle, gathering, making, wanted, command, **how), engine)
 
     def __len__(self) -> int:
         """The number of variants."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shlex
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
 from dataclasses import field, replace
 from pathlib import Path, PurePath
 
@@ -132,108 +131,8 @@ _PAUSE = 0.2
 """Seconds after which the run looks whether it is still wanted."""
 _ROUNDS = 100
 """How often a variant may ask for further files."""
-
-
-@record()
-class Done:
-    """A variant with its outcome; `was_kept` if nothing was computed for it."""
-
-    variant: Variant
-    outcome: Outcome
-    was_kept: bool
-
-
-class Run:
-    """Yields the variants of a plan with their outcomes, as they come. One run at a time."""
-
-    def __init__(
-        self,
-        plan: Plan,
-        bundle: Bundle,
-        world: Gathering,
-        making: Making,
-        engine: Engine,
-        store: Store | None = None,
-        seconds: float | None = None,
-    ) -> None:
-        """Begins a run; `seconds` are for one variant, where it is not to be what a compile may take."""
-        self.plan, self.making, self.engine, self.store = plan, making, engine, store
-        self._bundle, self._world = bundle, world
-        self._seconds = seconds or patience(bundle.settings, 2 + len(making.suffixes))
-        self._crew: Crew[int, Outcome] = Crew(engine)
-        self._open: dict[int, Variant] = {}
-        self._rounds: dict[int, int] = {}
-
-    @property
-    def running(self) -> list[Variant]:
-        """The variants that are likely compiled now."""
-        return [self._open[number] for number in self._crew.running]
-
-    @property
-    def given_again(self) -> int:
-        """How many variants were begun once more, because what compiled them was gone."""
-        return self._crew.given_again
-
-    def __iter__(self) -> Iterator[Done | None]:
-        """Yields what is done; None now and then while there is nothing new."""
-        waiting = iter(self.plan)
-        is_over = False
-        try:
-            while not is_over or self._crew:
-                checkpoint()
-                while not is_over and self._crew.has_room:
-                    if (each := next(waiting, None)) is None:
-                        is_over = True
-                    elif (kept := self._kept(each)) is not None:
-                        yield Done(each, kept, was_kept=True)
-                    else:
-                        self._give(each)
-                if not self._crew:
-                    continue
-                came = self._crew.came(_PAUSE)
-                if not came:
-                    yield None
-                for number, found in came:
-                    if (done := self._came(number, found)) is not None:
-                        yield done
-        finally:
-            self._crew.cancel()
-
-    def _kept(self, each: Variant) -> Outcome | None:
-        if self.store is None:
-            return None
-        return self.store.get(self._key(each), self._digest)
-
-    def _key(self, each: Variant) -> str:
-        return keeping.key(self._bundle, each.params(self.plan.knobs), self.making)
-
-    def _digest(self, path: str) -> str:
-        self._world.gather([path])
-        return digest_of(self._world.files[path]) if path in self._world.files else "no such path"
-
-    def _give(self, each: Variant) -> None:
-        if len(self._world.files) > len(self._bundle.files):
-            self._bundle = replace(self._bundle, files=dict(self._world.files))
-        self._open[each.number] = each
-        self._crew.give(
-            each.number, self._seconds, variant, self._bundle, each.params(self.plan.knobs), self.making
-        )
-
-    def _came(self, number: int, found: Outcome | Broke) -> Done | None:
-        """Returns a variant that is done; None if it goes round once more, with the files it asked for."""
-        each = self._open.pop(number)
-        outcome = found if isinstance(found, Outcome) else _broken(found)
-        if outcome.missing:
-            self._rounds[number] = self._rounds.get(number, 0) + 1
-            self._world.gather(outcome.missing)
-            if self._rounds[number] < _ROUNDS:
-                self._give(each)
-                return None
-            outcome = Outcome("broken", False, (Fault("E0603", "the program asks for ever new files"),))
-        if self.store is not None and outcome.status != "broken":
-            reads = {path: digest_of(content) for path, content in self._bundle.files.items()}
-            self.store.put(self._key(each), outcome, reads)
-        return Done(each, outcome, was_kept=False)
+_Done = tuple[Variant, Outcome, bool]
+"""A variant with its outcome, and True if nothing was computed for it."""
 
 
 def _broken(broke: Broke) -> Outcome:
@@ -299,7 +198,6 @@ class Session:
     failed: int = 0
     kept: int = 0
     renamed: int = 0
-    given_again: int = 0
     seconds: float = 0.0
     was_stopped: bool = False
     stale: list[str] = field(default_factory=list)
@@ -307,47 +205,115 @@ class Session:
     unfinished: Path | None = None
     """The folder of what is done, if the sweep is not over."""
 
+    def __post_init__(self) -> None:
+        job = self.job
+        pixels = PICTURE if job.outputs.sheets else 0
+        self._making = replace(job.making, suffixes=job.outputs.suffixes, picture=pixels)
+        self._seconds = job.seconds or patience(job.bundle.settings, 2 + len(self._making.suffixes))
+        self._bundle = job.bundle
+        self._store: Store | None = None
+        self._crew: Crew[int, Outcome] = Crew(self.engine)
+        self._open: dict[int, Variant] = {}
+        self._rounds: dict[int, int] = {}
+
     @property
     def is_complete(self) -> bool:
         return len(self.rows) == len(self.job.plan)
 
+    @property
+    def given_again(self) -> int:
+        """How many variants were begun once more, because what compiled them was gone."""
+        return self._crew.given_again
+
     def __iter__(self) -> Iterator[Row]:
         """Runs the sweep. Whatever ends it, what is done is kept where there are outputs; tables last."""
-        start = time.monotonic()
-        job = self.job
-        with ExitStack() as stack:
-            drawings = Drawings(job.outputs, job.plan, job.world.reads)
-            store, own = self._store()
-            if store is not None:
-                stack.callback(store.close)
-            self.renamed, self.unfinished = drawings.renamed, own
-            run = Run(job.plan, job.bundle, job.world, self._making, self.engine, store, job.seconds)
-            try:
-                for done in run:
-                    if done is not None:
-                        row = self._row(done, drawings)
-                        self.rows.append(row)
-                        self._tell(run)
-                        yield row
-                        if job.stops_on_error and not row.ok:
-                            self.was_stopped = not self.is_complete
-                            break
-                    else:
-                        self._tell(run)
-            finally:
-                self.given_again, self.seconds = run.given_again, time.monotonic() - start
+        start, job = time.monotonic(), self.job
+        drawings = Drawings(job.outputs, job.plan, job.world.reads)
+        self._store, own = self._opened()
+        self.renamed, self.unfinished = drawings.renamed, own
+        try:
+            for done in self._run():
+                if done is None:
+                    self._tell()
+                    continue
+                row = self._row(*done, drawings)
+                self.rows.append(row)
+                self._tell()
+                yield row
+                if job.stops_on_error and not row.ok:
+                    self.was_stopped = not self.is_complete
+                    break
+        finally:
+            self.seconds = time.monotonic() - start
+            if self._store is not None:
+                self._store.close()
         self._write_tables()
         if self.is_complete:
             self.unfinished = None
             if own is not None:
                 keeping.remove(own)
 
-    @property
-    def _making(self) -> Making:
-        pixels = PICTURE if self.job.outputs.sheets else 0
-        return replace(self.job.making, suffixes=self.job.outputs.suffixes, picture=pixels)
+    def _run(self) -> Iterator[_Done | None]:
+        """Yields what is done; None now and then while there is nothing new."""
+        waiting = iter(self.job.plan)
+        is_over = False
+        try:
+            while not is_over or self._crew:
+                checkpoint()
+                while not is_over and self._crew.has_room:
+                    if (each := next(waiting, None)) is None:
+                        is_over = True
+                    elif (kept := self._kept(each)) is not None:
+                        yield each, kept, True
+                    else:
+                        self._give(each)
+                if not self._crew:
+                    continue
+                came = self._crew.came(_PAUSE)
+                if not came:
+                    yield None
+                for number, found in came:
+                    if (done := self._came(number, found)) is not None:
+                        yield done
+        finally:
+            self._crew.cancel()
 
-    def _store(self) -> tuple[Store | None, Path | None]:
+    def _kept(self, each: Variant) -> Outcome | None:
+        return None if self._store is None else self._store.get(self._key(each), self._digest)
+
+    def _key(self, each: Variant) -> str:
+        return keeping.key(self._bundle, each.params(self.job.plan.knobs), self._making)
+
+    def _digest(self, path: str) -> str:
+        files = self.job.world.files
+        self.job.world.gather([path])
+        return digest_of(files[path]) if path in files else "no such path"
+
+    def _give(self, each: Variant) -> None:
+        files = self.job.world.files
+        if len(files) > len(self._bundle.files):
+            self._bundle = replace(self._bundle, files=dict(files))
+        self._open[each.number] = each
+        params = each.params(self.job.plan.knobs)
+        self._crew.give(each.number, self._seconds, variant, self._bundle, params, self._making)
+
+    def _came(self, number: int, found: Outcome | Broke) -> _Done | None:
+        """Returns a variant that is done; None if it goes round once more, with the files it asked for."""
+        each = self._open.pop(number)
+        outcome = found if isinstance(found, Outcome) else _broken(found)
+        if outcome.missing:
+            self._rounds[number] = self._rounds.get(number, 0) + 1
+            self.job.world.gather(outcome.missing)
+            if self._rounds[number] < _ROUNDS:
+                self._give(each)
+                return None
+            outcome = Outcome("broken", False, (Fault("E0603", "the program asks for ever new files"),))
+        if self._store is not None and outcome.status != "broken":
+            reads = {path: digest_of(content) for path, content in self._bundle.files.items()}
+            self._store.put(self._key(each), outcome, reads)
+        return each, outcome, False
+
+    def _opened(self) -> tuple[Store | None, Path | None]:
         """Returns the cache, and its folder if it is of this sweep alone."""
         if self.job.cache:
             return Store(Path(self.job.cache), self.job.cache_size), None
@@ -357,38 +323,25 @@ class Session:
             keeping.remove(own)
         return Store(own, None), own
 
-    def _row(self, done: Done, drawings: Drawings) -> Row:
-        outcome, written = done.outcome, []
+    def _row(self, each: Variant, outcome: Outcome, was_kept: bool, drawings: Drawings) -> Row:
+        written: list[str] = []
         try:
-            written = drawings.write(done.variant, outcome)
+            written = drawings.write(each, outcome)
         except AidlError as reason:
             told = tuple(map(fault, reason.diagnostics))
             outcome = replace(outcome, ok=False, faults=(*told, *outcome.faults))
         if not written:
-            self.stale += drawings.stale(done.variant)
+            self.stale += drawings.stale(each)
         self.failed += not outcome.ok
-        self.kept += done.was_kept
-        light = replace(outcome, files={})
-        names = written or drawings.names(done.variant)
-        return Row(
-            done.variant,
-            light,
-            tuple(written),
-            self.job.command(done.variant, names[0] if names else ""),
-            done.was_kept,
-        )
+        self.kept += was_kept
+        names = written or drawings.names(each)
+        command = self.job.command(each, names[0] if names else "")
+        return Row(each, replace(outcome, files={}), tuple(written), command, was_kept)
 
-    def _tell(self, run: Run) -> None:
-        progress = Progress(
-            len(self.job.plan),
-            len(self.rows),
-            self.failed,
-            self.kept,
-            tuple(run.running),
-            self.engine.places,
-            run.given_again,
-        )
-        self.listen(progress)
+    def _tell(self) -> None:
+        counts = len(self.job.plan), len(self.rows), self.failed, self.kept
+        running = tuple(self._open[number] for number in self._crew.running)
+        self.listen(Progress(*counts, running, self.engine.places, self.given_again))
 
     def _write_tables(self) -> None:
         rows, columns = in_order(self.rows), Columns(self.job.plan, self.job.timings)
