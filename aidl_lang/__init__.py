@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
     from aidl_lang.geometry.survey import Part
     from aidl_lang.pipeline import Compiled, Settings
-    from aidl_lang.tools.sweeping.python import Sweep
+    from aidl_lang.tools.sweeping.session import Sweep
 
 __all__ = [
     "AidlError",
@@ -309,7 +309,7 @@ def sweep(
     that cannot be, and for a program that is wrong as written.
     """
     from aidl_lang.tools.cli.options import read
-    from aidl_lang.tools.sweeping.python import Sweep
+    from aidl_lang.tools.sweeping.session import Sweep
 
     asked = read(options)
     source, world = _read(text_or_path)

@@ -172,7 +172,7 @@ def test_the_command_says_so_of_the_picture_of_two(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plates.aidl").write_text(PLATES)
-    monkeypatch.setattr("aidl_lang.tools.cli.diff.LONGEST", 0.0)
+    monkeypatch.setattr("aidl_lang.tools.cli.measure.LONGEST", 0.0)
     assert main(["diff", "plates.aidl", "--to", "wide=30", "-o", "both.svg"]) == 1
     assert not Path("both.svg").exists()
     lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"

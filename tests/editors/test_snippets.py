@@ -11,8 +11,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.tools.snippets import SNIPPETS, Snippet
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, vocabulary
 from tests.documents import ROOT
 
 PARTS = "solid washer(outer = 20) { rim = circle(radius: outer / 2) }\n"

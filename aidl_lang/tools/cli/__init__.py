@@ -55,10 +55,11 @@ VERBS = {
 }
 """The verbs in the order of the help."""
 _TOGETHER = {
-    "build": ("compile", "watch"),
+    "build": ("compile", "watch", "sheet"),
     "check": ("fmt", "params"),
     "doc": ("guide", "grammar", "explain", "new", "tool-schema"),
     "generate": ("eval",),
+    "measure": ("diff",),
     "serving": ("preview", "lsp", "mcp"),
 }
 """Modules with the verbs in them; any other verb is in the module of its name."""

@@ -17,7 +17,7 @@ from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_program, flag, value
 
 if TYPE_CHECKING:
-    from aidl_lang.tools.preview.serving import Served
+    from aidl_lang.tools.preview.site import Served
 
 
 LOCALHOST = "127.0.0.1"
@@ -123,7 +123,7 @@ def run_preview(arguments: argparse.Namespace) -> int:
     hint = "without `--port` a free one is taken"
     listener = listen(arguments.host, arguments.port, "E0953", hint)
 
-    from aidl_lang.tools.preview.serving import Served
+    from aidl_lang.tools.preview.site import Served
 
     served = Served(Path(arguments.file).resolve(), _write, listener)
     say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")

@@ -29,9 +29,8 @@ from aidl_lang.tools.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from aidl_lang.tools.sweeping.outputs import Outputs
+    from aidl_lang.tools.sweeping.outputs import Outputs, Row
     from aidl_lang.tools.sweeping.plan import Plan, Rows
-    from aidl_lang.tools.sweeping.rows import Row
     from aidl_lang.tools.sweeping.session import Job, Progress, Session
 
 
@@ -271,7 +270,7 @@ def _axis(text: str) -> tuple[str, str]:
 
 def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
     """Raises UseError for outputs and options that drawing sheets do not have."""
-    from aidl_lang.tools.cli.sheet import sheet_suffix
+    from aidl_lang.tools.cli.build import sheet_suffix
 
     if not wanted.patterns:
         raise UseError("E0973", "`--drawing-sheet` has no sheets to make", "name them: `-o '{n}.pdf'`")
@@ -374,7 +373,7 @@ def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")
         for fault in row.outcome.errors[:3]:
-            from aidl_lang.tools.sweeping.rows import said
+            from aidl_lang.tools.sweeping.outputs import said
 
             say(f"  {escape(said(fault))}")
         if not row.outcome.errors:

@@ -1,4 +1,4 @@
-"""The pages of the preview and their WebSocket."""
+"""`aidl preview` as a server: the pages of one program and their WebSocket, on a socket of this machine."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 from functools import cache
 from pathlib import Path
+from socket import socket
 
 from starlette.applications import Starlette
 from starlette.requests import Request
@@ -17,10 +18,12 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
-from aidl_lang.tools.preview.files import watch
-from aidl_lang.tools.preview.host import LONGEST, Host
-from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
-from aidl_lang.tools.preview.page import Page
+from aidl_lang.tools.lsp.serve import make_room
+from aidl_lang.tools.preview.files import Write, watch
+from aidl_lang.tools.preview.host import LONGEST, Host, Page
+from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Door, Guard, file_named
+
+# --- The pages of the preview and their WebSocket.
 
 MOST_PAGES = 16
 """Most pages that are served at once."""
@@ -114,3 +117,34 @@ async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
             await socket.close(_TOO_BIG, "This page sent a message that is too long.")
             return
         host.hear(page, text)
+
+
+_CONNECTIONS = 8 * MOST_PAGES
+"""Most connections. A browser opens some more for the files of a page; others are refused."""
+
+
+class Served:
+    """A program shown at `url` while `run` runs."""
+
+    def __init__(self, path: Path, write: Write, listener: socket) -> None:
+        self._door = Door(listener)
+        self._host = Host(path, write)
+
+    @property
+    def url(self) -> str:
+        return self._door.url
+
+    def rescue(self) -> Path | None:
+        """Returns where what was typed and not saved is kept, if there is any. Raises CannotError."""
+        return self._host.text.rescue()
+
+    def run(self) -> None:
+        """Serves until it is interrupted."""
+        make_room()
+        self._door.serve(
+            site(self._host, self._door.token, self._door.addresses),
+            _CONNECTIONS,
+            ws_max_size=LONGEST,
+            ws_max_queue=8,
+            ws_per_message_deflate=False,
+        )

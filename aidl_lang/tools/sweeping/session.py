@@ -1,12 +1,13 @@
-"""A sweep from its beginning to its outputs: what is kept is taken, the rest is computed and written."""
+"""A sweep from its plan to its outputs, and the same as Python has it: an iterator of results."""
 
 from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
@@ -17,6 +18,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
+from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import (
     Bundle,
@@ -29,10 +31,27 @@ from aidl_lang.tools.sweeping.bundle import (
     patience,
 )
 from aidl_lang.tools.sweeping.keeping import Store
-from aidl_lang.tools.sweeping.outputs import Drawings, Outputs, write
-from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, spelled
-from aidl_lang.tools.sweeping.rows import TABLES, Columns, Row, in_order
+from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, write
+from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
+from aidl_lang.tools.sweeping.plan import (
+    Axis,
+    Plan,
+    Value,
+    Variant,
+    axis,
+    from_values,
+    knob_named,
+    planned,
+    read_table,
+    spelled,
+)
 from aidl_lang.tools.sweeping.working import Making, variant
+
+if TYPE_CHECKING:
+    import pyarrow
+
+    from aidl_lang.tools.cli.options import Asked
+
 
 # --- The beginnings of a sweep that the command line and Python have in common: the program, and the engine
 # by name.
@@ -351,3 +370,127 @@ class Session:
             from aidl_lang.tools.sweeping.sheet import contact_sheet
 
             write(name, contact_sheet(Path(name).suffix.lower(), self.job.bundle.name, columns, rows))
+
+
+# --- A sweep as Python has it: an iterator of results, which is a table as well.
+
+
+class Sweep:
+    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes;
+    a second time it yields what is known, and goes on where the first was left.
+
+    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its
+    `outcome` has the rest.
+    """
+
+    def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:
+        self._job, self._engine = job, engine
+        self._session: Session | None = None
+        self._running: Iterator[Row] | None = None
+
+    @classmethod
+    def begun(
+        cls,
+        source: SourceFile,
+        world: World | None,
+        params: Mapping[str, object],
+        asked: Asked,
+        settings: Settings | None,
+        *,
+        outputs: Sequence[str],
+        table: str | Path | None,
+        drawn: tuple[int, int] | None,
+        engine: tuple[str, int | None],
+        **how: Any,
+    ) -> Sweep:
+        """Returns a sweep that is about to run; `how` has fields of the `Job`. Raises AidlError."""
+        bundle, gathering, knobs = opened(source, world, settings or Settings())
+        axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
+        rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
+        plan = planned(knobs, axes, rows, drawn)
+
+        def command(variant: Variant, name: str) -> str:
+            return reproducing(source.name, plan, variant, name)
+
+        making = Making(options=asked.options, best_effort=asked.best_effort)
+        wanted = sorted_outputs(outputs, plan, gathering.reads, asked.format)
+        return cls(Job(plan, bundle, gathering, making, wanted, command, **how), engine)
+
+    def __len__(self) -> int:
+        """The number of variants."""
+        return len(self._job.plan)
+
+    def __iter__(self) -> Iterator[Row]:
+        place = 0
+        while True:
+            known = self._session.rows if self._session is not None else []
+            if place < len(known):
+                yield known[place]
+                place += 1
+            elif not self._step():
+                return
+
+    def _step(self) -> bool:
+        """Has one more result come in; False if there is none."""
+        if self._running is None:
+            if self._session is not None:
+                return False
+            self._running = self._rows()
+        if next(self._running, None) is None:
+            self._running = None
+            return False
+        return True
+
+    def _rows(self) -> Iterator[Row]:
+        workers: Engine = engine(*self._engine, len(self._job.plan), self._job.outputs.names)
+        self._session = Session(self._job, workers)
+        try:
+            yield from self._session
+        finally:
+            workers.close()
+
+    def close(self) -> None:
+        """Gives up what is not done. With outputs or a cache, what is done is kept."""
+        if self._running is not None:
+            self._running.close()  # type: ignore[attr-defined]
+            self._running = None
+
+    def __enter__(self) -> Sweep:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def results(self) -> list[Row]:
+        """All results in the order of the variants; runs the sweep to its end."""
+        return in_order(list(self))
+
+    @property
+    def failures(self) -> list[Row]:
+        """The results that are not `ok`."""
+        return [row for row in self.results if not row.ok]
+
+    def to_arrow(self) -> pyarrow.Table:
+        """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
+        from aidl_lang.tools.sweeping.outputs import to_arrow
+
+        return to_arrow(Columns(self._job.plan, self._job.timings), self.results)
+
+    def to_pandas(self) -> Any:
+        """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
+        from aidl_lang.export import require
+
+        require("pandas", "a data frame", "parquet")
+        return self.to_arrow().to_pandas()
+
+    def __repr__(self) -> str:
+        done = len(self._session.rows) if self._session is not None else 0
+        return f"<aidl_lang.Sweep {done} of {len(self)} variants>"
+
+
+def _axis(name: str, values: object, knobs: Sequence[Knob], *, is_drawn: bool) -> Axis:
+    """Reads the values of a param: as the command line has them, if they are a text and the param is none."""
+    if isinstance(values, str) and not isinstance(knob_named(name, knobs).value, str):
+        return axis(name, values, knobs, is_drawn=is_drawn)
+    return from_values(name, values, knobs)

@@ -51,8 +51,7 @@ from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spo
 from aidl_lang.tools.ide.workspace import View, look
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.signatures import parts, things
-from aidl_lang.tools.snippets import OF_WORD
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import OF_WORD, vocabulary
 
 # --- Completion after a dot, between the brackets of an index, and of named arguments.
 

@@ -25,8 +25,7 @@ from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.signatures import Reading, of_callable, of_public
 from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.snippets import SNIPPETS, Snippet, expanded
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, expanded, vocabulary
 
 # --- One completion entry.
 

@@ -29,10 +29,10 @@ def connect(said: Connection, environment: Mapping[str, str] = os.environ) -> Cl
         return Command(connection)
     try:
         if connection.provider == ANTHROPIC:
-            from aidl_lang.tools.llm.providers.anthropic import Anthropic
+            from aidl_lang.tools.llm.providers.server import Anthropic
 
             return Anthropic(connection)
-        from aidl_lang.tools.llm.providers.openai import OpenAI
+        from aidl_lang.tools.llm.providers.server import OpenAI
 
         return OpenAI(connection)
     except ImportError as error:
