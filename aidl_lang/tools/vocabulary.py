@@ -170,6 +170,7 @@ def vocabulary() -> Vocabulary:
     synonyms = {word: target for word, target in reference().aliases.items() if word not in known}
     loaded = library.load()
     defined = (*builtins.SIGNATURES, *loaded.callables, *loaded.constants, *loaded.aliases)
+    alternatives = load_tables().patterns["NUMBER"].rpartition("(")[2].rstrip("?").rstrip(")").split("|")
     return Vocabulary(
         **keywords,
         **{name: _present(listed, signs) for name, listed in _SIGNS.items()},
@@ -179,7 +180,7 @@ def vocabulary() -> Vocabulary:
         kinds=KINDS,
         kind_words=tuple(KIND_OF_WORD),
         attributes=builtins.ATTRIBUTES,
-        units=(*UNITS, *_unit_signs()),
+        units=(*UNITS, *(unit for unit in alternatives if not unit.isidentifier())),
         types=tuple(PARAMETER_TYPES),
         everywhere=builtins.EVERYWHERE,
         modules=builtins.MATH,
@@ -201,12 +202,6 @@ def _present(listed: str, words: Iterable[str]) -> tuple[str, ...]:
     """Returns the words of a list that the grammar has; it may have lost one."""
     there = frozenset(words)
     return tuple(word for word in listed.split() if word in there)
-
-
-def _unit_signs() -> tuple[str, ...]:
-    """Returns the units that are no words, as the number of the grammar has them."""
-    alternatives = load_tables().patterns["NUMBER"].rpartition("(")[2].rstrip("?").rstrip(")").split("|")
-    return tuple(unit for unit in alternatives if not unit.isidentifier())
 
 
 def _named() -> dict[str, tuple[str, ...]]:

@@ -230,21 +230,17 @@ def _format(name: str, check: bool, diff: bool) -> int:
         if text is None:
             show(diagnostics)
             return exit_code(diagnostics)
-        return _deliver(name, source, text, check, diff)
+        changed = text != source.text
+        if diff:
+            print(_diff(source, text), end="")
+        if check and changed:
+            say(f"{name}: would be reformatted")
+        if not (check or diff) and (changed or name == files.STANDARD):
+            files.rewrite(name, text.encode())
+        return int(check and changed)
     except UseError as reason:
         show([reason.diagnostic])
         return 2
-
-
-def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) -> int:
-    changed = text != source.text
-    if diff:
-        print(_diff(source, text), end="")
-    if check and changed:
-        say(f"{name}: would be reformatted")
-    if not (check or diff) and (changed or name == files.STANDARD):
-        files.rewrite(name, text.encode())
-    return int(check and changed)
 
 
 def _diff(source: SourceFile, text: str) -> str:

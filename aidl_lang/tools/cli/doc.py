@@ -114,7 +114,13 @@ def run_doc(arguments: argparse.Namespace) -> int:
         else:
             _list_all(known, style)
     elif arguments.picture:
-        return _draw(found, arguments.picture)
+        from aidl_lang.tools.reference.pages import picture
+
+        files.require_directory(arguments.picture)
+        files.write(arguments.picture, picture(found))
+        if arguments.picture != files.STANDARD:
+            say(f"{arguments.picture}: the example of `{found.name}`")
+        return 0
     elif arguments.json:
         _print_json(to_dict(found))
     else:
@@ -175,16 +181,6 @@ def _print_json(found: object) -> None:
     import json
 
     print(json.dumps(found, indent=2, ensure_ascii=False))
-
-
-def _draw(entry: Entry, output: str) -> int:
-    from aidl_lang.tools.reference.pages import picture
-
-    files.require_directory(output)
-    files.write(output, picture(entry))
-    if output != files.STANDARD:
-        say(f"{output}: the example of `{entry.name}`")
-    return 0
 
 
 def register_guide(parser: argparse.ArgumentParser) -> None:

@@ -50,7 +50,11 @@ def register_generate(parser: argparse.ArgumentParser) -> None:
 
 def run_generate(arguments: argparse.Namespace) -> int:
     places = _places(arguments)
-    task = _task(arguments)
+    from aidl_lang.tools.llm.generation import Task
+    from aidl_lang.tools.llm.messages import read_image
+
+    image = read_image(arguments.image, files.reads) if arguments.image else None
+    task = Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
     asked = provider(arguments)
     language = _language(arguments)
     runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
@@ -100,14 +104,6 @@ def _places(arguments: argparse.Namespace) -> _Places:
         if place:
             files.require_directory(place)
     return places
-
-
-def _task(arguments: argparse.Namespace) -> Task:
-    from aidl_lang.tools.llm.generation import Task
-    from aidl_lang.tools.llm.messages import read_image
-
-    image = read_image(arguments.image, files.reads) if arguments.image else None
-    return Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
 
 
 def _language(arguments: argparse.Namespace) -> Language:

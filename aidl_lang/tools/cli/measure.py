@@ -95,7 +95,14 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
         yield from _table(found.parts)
     if found.pairs:
         yield ""
-        yield from _pairs(found)
+        rows = found.pairs[:_MOST_PAIRS]
+        one, other = (max(len(getattr(p, side)) for p in rows) for side in ("a", "b"))
+        for pair in rows:
+            yield f"{pair.a:<{one}}  {pair.b:<{other}}  {_relation(pair)}"
+        if more := len(found.pairs) - len(rows):
+            yield f"and {counted(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
+        if found.is_partial:
+            yield "pairs that are far from each other are not listed"
     if found.alone:
         yield f"touches no other: {some_of(found.alone)}"
 
@@ -182,17 +189,6 @@ def _table(parts: Sequence[Part]) -> Iterator[str]:
     for row in rows:
         cells = [f"{row[k]:{'<' if k == 0 else '>'}{width}}" for k, width in zip(shown, widths, strict=True)]
         yield "  ".join(cells).rstrip()
-
-
-def _pairs(found: Survey) -> Iterator[str]:
-    rows = found.pairs[:_MOST_PAIRS]
-    one, other = (max(len(getattr(p, side)) for p in rows) for side in ("a", "b"))
-    for pair in rows:
-        yield f"{pair.a:<{one}}  {pair.b:<{other}}  {_relation(pair)}"
-    if more := len(found.pairs) - len(rows):
-        yield f"and {counted(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
-    if found.is_partial:
-        yield "pairs that are far from each other are not listed"
 
 
 def _relation(pair: Contact) -> str:

@@ -153,10 +153,6 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "thickness of parts without `@thickness`, for STEP, STL and 3MF",
         _thickness,
     )
-    _add_cutting(parser)
-
-
-def _add_cutting(parser: argparse.ArgumentParser) -> None:
     value(
         parser,
         "--profile",

@@ -211,8 +211,11 @@ def register_mcp(parser: argparse.ArgumentParser) -> None:
 
 
 def run_mcp(arguments: argparse.Namespace) -> int:
-    _require_packages()
-    root = _root(arguments.root)
+    if find_spec("mcp") is None:
+        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
+    if arguments.root is not None and not Path(arguments.root).is_dir():
+        raise UseError("E0942", f"there is no folder `{arguments.root}` to import from")
+    root = None if arguments.root is None else Path(arguments.root).resolve()
     listener, path = None, f"/{_token()}/mcp"
     if arguments.http is not None:
         hint = "`--http 0` takes a port that is free"
@@ -234,14 +237,3 @@ def _token() -> str:
     if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", given):
         raise UseError("E0942", f"{_TOKEN} is no token", "it has 16 letters, digits, `-` and `_`, or more")
     return given
-
-
-def _require_packages() -> None:
-    if find_spec("mcp") is None:
-        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
-
-
-def _root(name: str | None) -> Path | None:
-    if name is not None and not Path(name).is_dir():
-        raise UseError("E0942", f"there is no folder `{name}` to import from")
-    return None if name is None else Path(name).resolve()

@@ -92,7 +92,13 @@ class Protocol(LanguageServerProtocol):
         try:
             method: Any = data.get("method")
             if asked is not None:
-                self._require_time(method)
+                if method == types.INITIALIZE:
+                    if self._is_initialized:
+                        raise exceptions.JsonRpcInvalidRequest("the server is initialized already")
+                elif not self._is_initialized:
+                    raise exceptions.JsonRpcServerNotInitialized()
+                elif self._shutdown:
+                    raise exceptions.JsonRpcInvalidRequest("the server is shutting down")
             elif method not in (None, types.EXIT) and not self._is_initialized:
                 return  # the protocol has notifications dropped until then
             message = self.structure_message(data)
@@ -107,15 +113,6 @@ class Protocol(LanguageServerProtocol):
     def _has_asked(self, number: object) -> bool:
         """Tells whether the server asked by this number; pygls has the client's in the same table."""
         return isinstance(number, str) and number in self._result_types
-
-    def _require_time(self, method: str) -> None:
-        if method == types.INITIALIZE:
-            if self._is_initialized:
-                raise exceptions.JsonRpcInvalidRequest("the server is initialized already")
-        elif not self._is_initialized:
-            raise exceptions.JsonRpcServerNotInitialized()
-        elif self._shutdown:
-            raise exceptions.JsonRpcInvalidRequest("the server is shutting down")
 
     def _refuse(self, asked: int | str | None, trouble: exceptions.JsonRpcException) -> None:
         error = {"code": trouble.code, "message": trouble.message}

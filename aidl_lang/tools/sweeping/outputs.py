@@ -264,11 +264,6 @@ class Pattern:
         return safe(shown(variant.values.get(field, self.written.get(field, ""))))
 
 
-def has_fields(text: str) -> bool:
-    """Tells whether a name is a pattern: one file for each variant."""
-    return _FIELD.search(text) is not None
-
-
 def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
     """Reads a pattern, which names params and columns of a plan. Raises AidlError."""
     fields = [*plan.labels, *plan.paths]
@@ -357,7 +352,7 @@ def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None
     sheets: list[str] = []
     for name in dict.fromkeys(names):
         suffix = PurePath(name).suffix.lower()
-        if has_fields(name):
+        if _FIELD.search(name) is not None:
             patterns.append(pattern(name, suffix_of(name, fallback), plan))
             continue
         if not Path(name).parent.is_dir():

@@ -29,11 +29,6 @@ _ALIKE = 0.5
 """Share of content that a renamed structure has to keep."""
 
 
-def match_things(before: Inventory, after: Inventory) -> dict[Path, Path]:
-    """Returns the new path of each thing that is found again."""
-    return _Matching(before, after).run()
-
-
 class _Matching:
     def __init__(self, before: Inventory, after: Inventory) -> None:
         self.before, self.after = before, after
@@ -91,7 +86,9 @@ class _Matching:
         siblings = self._free(item, self.by_home.get(home, ()) if home is not None else ())
         new = [o for o in siblings if o.word == item.word and not self._has_counterpart(o, item.home)]
         if item.kind is Kind.STRUCTURE:
-            return _best(new, lambda other: self._likeness(item, other))
+            likely = ((self._likeness(item, other), other) for other in new[:_MOST])
+            share, best = max(likely, key=lambda each: each[0], default=(0.0, None))
+            return best if share >= _ALIKE else None
         key = translated(item.key, self.found)
         gone = [o for o in self._unfound(item.home) if o.word == item.word]
         equal = next((o for o in new if o.key == key), None)
@@ -115,11 +112,6 @@ class _Matching:
         """Returns the common share of two structures' contents, from 0 to 1."""
         a, b = self.contents[0][item.thing], self.contents[1][other.thing]
         return (a & b).total() / max(1, (a | b).total())
-
-
-def _best(items: list[Item], likeness: Callable[[Item], float]) -> Item | None:
-    best = max(items[:_MOST], key=likeness, default=None)
-    return best if best is not None and likeness(best) >= _ALIKE else None
 
 
 def _root(inventory: Inventory) -> Item | None:
@@ -176,7 +168,7 @@ class Changes:
 
 def compare(before: Inventory, after: Inventory) -> Changes:
     """Pairs the items of one program with those of the next."""
-    paths = match_things(before, after)
+    paths = _Matching(before, after).run()
     statements = _Statements(before, after, paths)
     statements.pair()
     fates: dict[Item, tuple[Fate, Item | None]] = {}

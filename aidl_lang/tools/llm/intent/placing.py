@@ -45,18 +45,14 @@ def put_back(item: Item, changes: Changes) -> PutBack | None:
     words = _words(item, changes, home)
     fate, now = changes.fates[item]
     if fate is Fate.WEAKENED and now is not None and now.wish:
-        return _instead(now, words)
+        is_bare = any(step.key == CONSTRAIN for step in now.steps)
+        words = words if is_bare else f"constrain {words}"
+        text = now.span.source.text
+        return _inserted(text[: now.span.start], words, text[now.span.end :], words)
     body, rest = _found(body, item.steps, changes)
     if item.kind in (Kind.STRUCTURE, Kind.GEOMETRY, Kind.PARAM):
         return _after_sibling(item, changes, body, _wrapped(words, rest))
     return _at_end(body, _wrapped(words, rest))
-
-
-def _instead(wish: Item, words: str) -> PutBack:
-    is_bare = any(step.key == CONSTRAIN for step in wish.steps)
-    words = words if is_bare else f"constrain {words}"
-    text = wish.span.source.text
-    return _inserted(text[: wish.span.start], words, text[wish.span.end :], words)
 
 
 def _words(item: Item, changes: Changes, home: Path) -> str:
