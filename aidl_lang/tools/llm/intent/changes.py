@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from enum import StrEnum
 
 from aidl_lang.common.records import record
@@ -236,30 +237,9 @@ def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple
     return Fate.GONE, None
 
 
-@record()
-class _Read:
-    """An item as it would read in the later program."""
-
-    item: Item
-    key: Key
-    home: Path
-    things: frozenset[Path]
-
-    @property
-    def text(self) -> str:
-        return self.item.text
-
-    @property
-    def context(self) -> Key:
-        return self.item.context
-
-    @property
-    def shape(self) -> Key:
-        return shape(self.key)
-
-
-_Test = Callable[[_Read, Item], bool]
-_Marks = Callable[[Item | _Read], Iterable[object]]
+_Marks = Callable[[Item], Iterable[object]]
+_STRENGTHS = (((0,), None), ((-1,), Fate.WEAKENED), ((1,), None))
+"""Pairs that are as strong, become weaker, and become stronger."""
 
 
 class _Statements:
@@ -267,41 +247,48 @@ class _Statements:
 
     def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
         self.fates: dict[Item, tuple[Fate, Item | None]] = {}
-        self.open = [self._read(i, paths) for i in before.items if i.kind in STATED]
+        self.open = [(i, _as_read(i, paths)) for i in before.items if i.kind in STATED]
         self.free = [i for i in after.items if i.kind in STATED]
 
-    def _read(self, item: Item, paths: Mapping[Path, Path]) -> _Read:
-        things = frozenset(paths.get(thing, thing) for thing in item.things)
-        return _Read(item, translated(item.key, paths), paths.get(item.home, item.home), things)
-
     def pair(self) -> None:
-        for strength, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.key, one.context)])
-            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.home, one.text)])
-        for strength, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.key])
-            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.shape])
-        self._phase(Fate.REWRITTEN, _not_weaker, _about, _says_instead)
-        self._phase(Fate.WEAKENED, _weaker, _about, _says_instead)
+        for signs, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.key, one.context)])
+            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.home, one.text)])
+        for signs, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.key])
+            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.shape])
+        self._phase(Fate.REWRITTEN, (0, 1), lambda one: one.things, _about)
+        self._phase(Fate.WEAKENED, (-1,), lambda one: one.things, _about)
 
-    def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
+    def _phase(self, fate: Fate, signs: tuple[int, ...], marks: _Marks, about: _Marks | None = None) -> None:
+        """Pairs items that share a mark, and differ so in strength; with `about` if one says the other."""
         marked: dict[object, list[Item]] = {}
         for other in self.free:
-            for mark in marks(other):
+            for mark in (about or marks)(other):
                 marked.setdefault(mark, []).append(other)
-        left: list[_Read] = []
+        left: list[tuple[Item, Item]] = []
         spent: set[Item] = set()
-        for read in self.open:
+
+        def fits(read: Item, other: Item) -> bool:
+            a, b = strength(other), strength(read)
+            return (a > b) - (a < b) in signs and (about is None or _says_instead(read, other))
+
+        for item, read in self.open:
             near = (other for mark in marks(read) for other in marked.get(mark, ()))
-            found = next((o for o in near if o not in spent and strength(read, o) and fits(read, o)), None)
+            found = next((other for other in near if other not in spent and fits(read, other)), None)
             if found is None:
-                left.append(read)
+                left.append((item, read))
                 continue
-            self.fates[read.item] = fate, found
+            self.fates[item] = fate, found
             if not (fate is Fate.REWRITTEN and found.key[:1] == ("call",)):
                 spent.add(found)
         self.open = left
         self.free = [o for o in self.free if o not in spent]
+
+
+def _as_read(item: Item, paths: Mapping[Path, Path]) -> Item:
+    """Returns an item as it would read in the later program."""
+    return replace(item, key=translated(item.key, paths), home=paths.get(item.home, item.home))
 
 
 def strength(item: Item) -> int:
@@ -309,44 +296,25 @@ def strength(item: Item) -> int:
     return 0 if item.kind is Kind.ASSERT else 1 if item.wish else 2
 
 
-def _as_strong(read: _Read, other: Item) -> bool:
-    return strength(other) == strength(read.item)
-
-
-def _weaker(read: _Read, other: Item) -> bool:
-    return strength(other) < strength(read.item)
-
-
-def _stronger(read: _Read, other: Item) -> bool:
-    return strength(other) > strength(read.item)
-
-
-def _not_weaker(read: _Read, other: Item) -> bool:
-    return not _weaker(read, other)
-
-
-_STRENGTHS = ((_as_strong, None), (_weaker, Fate.WEAKENED), (_stronger, None))
-
-
-def _about(one: Item | _Read) -> Iterable[Path]:
+def _about(one: Item) -> Iterable[Path]:
     """Yields the things that an item speaks of; a turn may be meant for all that holds the thing turned."""
     yield from one.things
-    if isinstance(one, Item) and one.kind is Kind.ROTATION:
+    if one.kind is Kind.ROTATION:
         yield from {thing[:n] for thing in one.things for n in range(1, len(thing))}
 
 
-def _says_instead(read: _Read, other: Item) -> bool:
+def _says_instead(read: Item, other: Item) -> bool:
     """True if a new statement refers to the same things, from the same structure or one around it. A
     statement that was wrong may be replaced by one about any of them; a turn is replaced by a turn.
     """
-    if read.item.kind is Kind.ASSERT:
+    if read.kind is Kind.ASSERT:
         return other.kind is Kind.ASSERT and read.things == other.things and bool(read.things)
     if read.home[: len(other.home)] != other.home and not other.thing:
         return False
-    if read.item.wrong:
+    if read.wrong:
         if other.kind is Kind.ROTATION and any(o[: len(t)] == t for t in read.things for o in other.things):
             return True  # what is in a structure was turned in its place
         return bool(read.things & other.things) and other.kind is not Kind.ASSERT
-    if read.item.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.item.kind:
+    if read.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.kind:
         return False
     return bool(read.things) and read.things <= other.things
