@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args, get_origin
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.processes import Guarded, Limit, limit_met
 from aidl_lang.common.records import record
@@ -16,7 +16,7 @@ from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.results import Result, data, findings
 from aidl_lang.tools.agents.schema import Parameter, Tool, tools
 from aidl_lang.tools.agents.tools import Tools
-from aidl_lang.tools.agents.workspace import RefusalError, refusal
+from aidl_lang.tools.agents.workspace import refusal
 
 _SHOWN = 60
 """Most characters of a value that a message quotes."""
@@ -34,10 +34,10 @@ class Answer:
 
 
 def answer(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Answer:
-    """Returns the answer of a tool, also for a refused call."""
+    """Returns the answer of a tool, also for a call that cannot be answered."""
     try:
         result = call(workshop, name, arguments)
-    except RefusalError as error:
+    except AidlError as error:
         listed = findings(error.diagnostics)
         return Answer(compact(error.diagnostics), {"findings": data(listed)}, is_error=True)
     return Answer(result.text, data(result), result.pictures)

@@ -173,15 +173,10 @@ class Tools:
         thinnest wall and the narrowest gap, volume and mass, of the whole and of each body or of the part at
         a path, and the gaps and overlaps between bodies.
         """
-        from aidl_lang.geometry.survey import NothingThereError
-
         _, compiled, reader = self._compiled(program, params, files)
         if not compiled.ok:
             raise RefusalError(*compiled.errors)
-        try:
-            found = compiled.surveyed([path] if path else [])
-        except (NothingThereError, TooLongError) as reason:
-            raise RefusalError(reason.diagnostic) from None
+        found = compiled.surveyed([path] if path else [])
         most = drawing.MOST_LISTED
         pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
         parts, whole = found.parts[:most], found.whole

@@ -14,11 +14,11 @@ from aidl_lang.building.model import Knob
 from aidl_lang.building.state import BuildingLimits
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common import names
-from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure, World
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, World, normalize
 from aidl_lang.parser import TextLimits
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.problem import Settings as SolverSettings
@@ -30,12 +30,8 @@ PROGRAM = "program.aidl"
 """The name of the program in diagnostics."""
 
 
-class RefusalError(Exception):
+class RefusalError(AidlError):
     """Raised for a call that cannot be answered; the diagnostics give the reason and a remedy."""
-
-    def __init__(self, *diagnostics: Diagnostic) -> None:
-        super().__init__("; ".join(d.message for d in diagnostics))
-        self.diagnostics = diagnostics
 
 
 def refusal(code: str, message: str, *hints: str) -> RefusalError:
@@ -84,20 +80,13 @@ class Surroundings:
     disk: World | None = None
 
     def read(self, path: str) -> str:
-        try:
-            return self.given.read(path)
-        except FileError as error:
-            if error.reason is not ReadFailure.MISSING or self.disk is None:
-                raise
-        return self.disk.read(path)
+        return self._holder(path).read(path)
 
     def read_bytes(self, path: str) -> bytes:
-        try:
-            return self.given.read_bytes(path)
-        except FileError as error:
-            if error.reason is not ReadFailure.MISSING or self.disk is None:
-                raise
-        return self.disk.read_bytes(path)
+        return self._holder(path).read_bytes(path)
+
+    def _holder(self, path: str) -> World:
+        return self.given if self.disk is None or normalize(path) in self.given.files else self.disk
 
     def reader(self, source: SourceFile) -> Reader:
         """Returns the author of the program and of the files given with it."""
