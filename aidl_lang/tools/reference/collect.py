@@ -141,7 +141,7 @@ def reference() -> Reference:
     """Returns all public names of this installation."""
     loaded = library.load()
     sections = list(_sections())
-    found = {entry.name: entry for section in sections for entry in section.entries}
+    found = {entry.name: entry for _, entries in sections for entry in entries}
     for entry in _library_entries(loaded):
         found[entry.name] = _joined(found[entry.name], entry) if entry.name in found else entry
     aliases = {alias: _target(alias, loaded.aliases) for alias in loaded.aliases}
@@ -149,7 +149,7 @@ def reference() -> Reference:
     synonyms: dict[str, list[str]] = {}
     for alias, target in aliases.items():
         synonyms.setdefault(target, []).append(alias)
-    topics = _topics(sections, loaded.sources)
+    topics = _topics((topic for topic, _ in sections), loaded.sources)
     ranked = sorted(found.values(), key=lambda entry: list(topics).index(entry.topic))
     used = {entry.topic for entry in ranked}
     return Reference(
@@ -159,8 +159,8 @@ def reference() -> Reference:
     )
 
 
-def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
-    topics = {section.topic.name: section.topic for section in sections}
+def _topics(described: Iterable[Topic], sources: Iterable[SourceFile]) -> dict[str, Topic]:
+    topics = {topic.name: topic for topic in described}
     for source in sources:
         name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
         topics.setdefault(name, _topic(name, source.text))
@@ -263,13 +263,7 @@ def _topic(name: str, source: str) -> Topic:
 # --- What is built in, and the words of the language ---------------------------------------------
 
 
-@record()
-class _Section:
-    topic: Topic
-    entries: tuple[Entry, ...]
-
-
-def _sections() -> Iterator[_Section]:
+def _sections() -> Iterator[tuple[Topic, list[Entry]]]:
     """Yields the sections of the pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or
     more headings `## name(parameters)`, its forms, with a comment as in the library below the last of them.
     Another name among them is a synonym.
@@ -288,7 +282,7 @@ def _sections() -> Iterator[_Section]:
             if body.strip():
                 entries.append(_described(path.stem, forms, doc(body)))
                 forms = []
-        yield _Section(topic, tuple(entries))
+        yield topic, entries
 
 
 def _described(topic: str, forms: Sequence[tuple[str, str]], about: Doc) -> Entry:
