@@ -262,7 +262,7 @@ def provider(arguments: argparse.Namespace) -> Closable:
     connected = connect(said)
     if not arguments.constrain:
         return connected
-    from aidl_lang.tools.llm.decoding import Constrained
+    from aidl_lang.tools.llm.providers import Constrained
 
     return Constrained(connected, arguments.constrain)
 
@@ -356,7 +356,7 @@ def _seconds(text: str) -> float:
 
 
 def _server(text: str) -> str:
-    from aidl_lang.tools.llm.decoding import SERVERS
+    from aidl_lang.tools.llm.providers import SERVERS
 
     if text not in SERVERS:
         raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(SERVERS)}")
