@@ -321,22 +321,10 @@ class _Reader:
 
 
 _CERTAIN_WORDS = frozenset(
-    [
-        "param",
-        "var",
-        "let",
-        "constrain",
-        "prefer",
-        "assert",
-        "import",
-        "fn",
-        "shape",
-        "constraint",
-        "alias",
-        "template",
-        "construction",
-        "todo",
-    ]
+    (
+        *("param", "var", "let", "constrain", "prefer", "assert", "import", "fn", "shape", "constraint"),
+        *("alias", "template", "construction", "todo"),
+    )
 )
 _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
 

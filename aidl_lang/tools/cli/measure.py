@@ -158,15 +158,8 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
     heads = (
-        "body",
-        "area mm²",
-        "perimeter mm",
-        "size mm",
-        "holes",
-        "wall mm",
-        "gap mm",
-        "mass g",
-        "quantity",
+        *("body", "area mm²", "perimeter mm", "size mm", "holes"),
+        *("wall mm", "gap mm", "mass g", "quantity"),
     )
     rows = [heads]
     for p in parts:
