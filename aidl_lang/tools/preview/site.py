@@ -9,7 +9,6 @@ from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 from functools import cache
 from pathlib import Path
-from socket import socket
 
 from starlette.applications import Starlette
 from starlette.requests import Request
@@ -19,7 +18,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from aidl_lang.tools.lsp.serve import make_room
-from aidl_lang.tools.preview.files import Write, watch
+from aidl_lang.tools.preview.files import watch
 from aidl_lang.tools.preview.host import LONGEST, Host, Page
 from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Door, Guard, file_named
 
@@ -123,28 +122,8 @@ _CONNECTIONS = 8 * MOST_PAGES
 """Most connections. A browser opens some more for the files of a page; others are refused."""
 
 
-class Served:
-    """A program shown at `url` while `run` runs."""
-
-    def __init__(self, path: Path, write: Write, listener: socket) -> None:
-        self._door = Door(listener)
-        self._host = Host(path, write)
-
-    @property
-    def url(self) -> str:
-        return self._door.url
-
-    def rescue(self) -> Path | None:
-        """Returns where what was typed and not saved is kept, if there is any. Raises CannotError."""
-        return self._host.text.rescue()
-
-    def run(self) -> None:
-        """Serves until it is interrupted."""
-        make_room()
-        self._door.serve(
-            site(self._host, self._door.token, self._door.addresses),
-            _CONNECTIONS,
-            ws_max_size=LONGEST,
-            ws_max_queue=8,
-            ws_per_message_deflate=False,
-        )
+def serve(host: Host, door: Door) -> None:
+    """Shows a program until it is interrupted."""
+    make_room()
+    app = site(host, door.token, door.addresses)
+    door.serve(app, _CONNECTIONS, ws_max_size=LONGEST, ws_max_queue=8, ws_per_message_deflate=False)
