@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -143,33 +144,25 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 def add_drawing_options(parser: argparse.ArgumentParser) -> None:
     """Adds the options for how a drawing is written."""
-    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
+    add = partial(value, parser)
+    add("--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)
     add_pixels(parser)
-    value(
-        parser,
-        "--thickness",
-        "MM",
-        "thickness of parts without `@thickness`, for STEP, STL and 3MF",
-        _thickness,
-    )
-    value(
-        parser,
+    add("--thickness", "MM", "thickness of parts without `@thickness`, for STEP, STL and 3MF", _thickness)
+    add(
         "--profile",
         "NAME",
         "colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
         "file such as shop.toml",
     )
-    value(
-        parser,
+    add(
         "--sheet",
         "SIZE",
         "lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
         size,
     )
-    value(parser, "--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
-    value(
-        parser,
+    add("--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
+    add(
         "--nest",
         "SECONDS",
         "pack parts on sheets by their outlines, not by their boxes, if that saves material "
@@ -178,8 +171,7 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=5,
     )
-    value(
-        parser,
+    add(
         "--kerf",
         "MM",
         "width of the cut: outlines grow by half of it, so that parts keep their size",
@@ -201,23 +193,22 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "programs, or exact with splines",
         "arcs",
     )
-    value(
-        parser,
+    add(
         "--tolerance",
         "MM",
         "how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
         _tolerance,
         0.01,
     )
-    value(parser, "--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
-    value(parser, "--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
+    add("--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
+    add("--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
     """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
-    value(
-        group,
+    add = partial(value, group)
+    add(
         "--provider",
         "NAME",
         "openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
@@ -225,22 +216,20 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
         str,
         "",
     )
-    value(group, "--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
-    value(group, "--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
-    value(group, "--seed", "N", "of the reply, for servers that have one", int)
-    value(group, "--temperature", "T", "0 is the least random", _temperature)
-    value(group, "--max-tokens", "N", "of one reply", count_to(1_000_000))
-    value(
-        group,
+    add("--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
+    add("--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
+    add("--seed", "N", "of the reply, for servers that have one", int)
+    add("--temperature", "T", "0 is the least random", _temperature)
+    add("--max-tokens", "N", "of one reply", count_to(1_000_000))
+    add(
         "--constrain",
         "SERVER",
         "keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
         "or as in vllm:llguidance where that engine decodes",
         _server,
     )
-    value(group, "--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
-    value(
-        group,
+    add("--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
+    add(
         "--price",
         "IN/OUT",
         "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -184,19 +185,10 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
     add_variant(parser)
     add_strict(parser)
     running = parser.add_argument_group("running")
-    value(
-        running,
-        "--on",
-        "ENGINE",
-        "local (the default), or a scheduler of Dask: tcp://host:8786",
-        str,
-        "local",
-    )
-    value(
-        running, "--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000)
-    )
-    value(
-        running,
+    add = partial(value, running)
+    add("--on", "ENGINE", "local (the default), or a scheduler of Dask: tcp://host:8786", str, "local")
+    add("--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000))
+    add(
         "--time-limit",
         "SECONDS",
         "for each variant (default: what a compile, its files and measures may take)",
@@ -204,8 +196,8 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
     )
     flag(running, "--stop-on-error", "stop at the first variant that fails")
     flag(running, "--resume", "go on with the same sweep that was broken off")
-    value(running, "--cache", "DIR", "keep what comes of variants there, and take what is kept")
-    value(running, "--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
+    add("--cache", "DIR", "keep what comes of variants there, and take what is kept")
+    add("--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
     running.add_argument(
         "--no-timings",
         dest="timings",
