@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.files import Reads, csv_text, replace
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export import FORMATS, file_names, require, suffix_of
 from aidl_lang.tools.sweeping.bundle import MEASURES, Fault, Measures, Outcome
-from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, shown
+from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, refused, shown
 
 if TYPE_CHECKING:
     import pyarrow
@@ -274,13 +274,8 @@ def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
         if known is None:
             near = did_you_mean(nearest(parts[k], fields)[:1])
             there = first_few(ticked([f"{{{name}}}" for name in [*fields, NUMBER]]), 12)
-            raise AidlError(
-                Diagnostic(
-                    "E0973",
-                    f"`{text}` names `{{{parts[k]}}}`, which is not varied",
-                    hints=(*near, f"there is {there}"),
-                )
-            )
+            message = f"`{text}` names `{{{parts[k]}}}`, which is not varied"
+            raise refused("E0973", message, *near, f"there is {there}")
         parts[k] = known
     return Pattern(text, suffix, tuple(parts), {path: knob.value for path, knob in plan.knobs.items()})
 
@@ -356,11 +351,8 @@ def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None
             patterns.append(pattern(name, suffix_of(name, fallback), plan))
             continue
         if not Path(name).parent.is_dir():
-            raise AidlError(
-                Diagnostic(
-                    "E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
-                )
-            )
+            message = f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
+            raise refused("E0904", message)
         if suffix in TABLES:
             if suffix == ".parquet":
                 require("pyarrow", name, ARROW_EXTRA)
@@ -372,7 +364,7 @@ def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None
     reads.require_unread((*tables, *sheets))
     if sheets and len(plan) > MOST_PICTURES:
         few = f"a contact sheet has up to {MOST_PICTURES}"
-        raise AidlError(Diagnostic("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}"))
+        raise refused("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}")
     return Outputs(tuple(patterns), tuple(tables), tuple(sheets))
 
 
@@ -382,12 +374,10 @@ def _shared(name: str, suffix: str, plan: Plan) -> AidlError:
         field = plan.paths[0] if len(plan.paths) == 1 else "n"
         one = path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")
         message = f"every variant would be written to `{name}`"
-        return AidlError(Diagnostic("E0973", message, hints=(f"say what differs in the name: `{one}`",)))
+        return refused("E0973", message, f"say what differs in the name: `{one}`")
     known = f"tables are {', '.join(TABLES)}, contact sheets {', '.join(SHEETS)}"
     drawings = "a drawing has a field in its name, as in `out/{n}.dxf`"
-    return AidlError(
-        Diagnostic("E0905", f"`{name}` is neither a table nor a contact sheet", hints=(known, drawings))
-    )
+    return refused("E0905", f"`{name}` is neither a table nor a contact sheet", known, drawings)
 
 
 class Drawings:
@@ -422,7 +412,7 @@ class Drawings:
                 if self._written.setdefault(path.casefold(), variant.number) != variant.number:
                     other = self._written[path.casefold()]
                     message = f"`{path}` would hold variant {other} and variant {variant.number}"
-                    raise AidlError(Diagnostic("E0973", message, hints=("begin the name with `{n}`",)))
+                    raise refused("E0973", message, "begin the name with `{n}`")
                 self._reads.require_unread([path])  # also those that were read since
                 write(path, data)
                 written.append(path)
@@ -441,6 +431,5 @@ def write(name: str, data: bytes) -> None:
         if path.is_symlink() or not path.is_file() or path.read_bytes() != data:
             replace(path, data)
     except OSError as error:
-        raise AidlError(
-            Diagnostic("E0904", f"`{name}` cannot be written: {(error.strerror or str(error)).lower()}")
-        ) from None
+        why = (error.strerror or str(error)).lower()
+        raise refused("E0904", f"`{name}` cannot be written: {why}") from None

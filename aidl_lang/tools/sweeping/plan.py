@@ -7,6 +7,7 @@ import math
 import random
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import product
 from math import prod
 from pathlib import Path
@@ -60,9 +61,13 @@ class Axis:
     span: Span | None = None
 
 
+def refused(code: str, message: str, *hints: str) -> AidlError:
+    return AidlError(Diagnostic(code, message, hints=hints))
+
+
 def wrong(message: str, *hints: str) -> AidlError:
     """Returns the error for values that cannot be swept."""
-    return AidlError(Diagnostic("E0971", message, hints=hints or (_EXAMPLES,)))
+    return refused("E0971", message, *(hints or (_EXAMPLES,)))
 
 
 def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
@@ -74,9 +79,7 @@ def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
     paths = [knob.path for knob in knobs]
     known = first_few(ticked(paths), 12, "") or "none"
     near = did_you_mean(nearest(name, paths)[:1])
-    raise AidlError(
-        Diagnostic("E0911", f"there is no param `{name}`", hints=(*near, f"params of this program: {known}"))
-    )
+    raise refused("E0911", f"there is no param `{name}`", *near, f"params of this program: {known}")
 
 
 def axis(name: str, written: str, knobs: Sequence[Knob], *, is_drawn: bool = False) -> Axis:
@@ -367,6 +370,7 @@ def _free(knobs: Sequence[Knob], set_already: set[str]) -> Iterator[Axis]:
 
 _MOST_BYTES = 500_000_000
 _LONGEST_CELL = 1_000_000
+_wrong = partial(refused, "E0972")
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 
 
@@ -450,7 +454,3 @@ def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Kno
             f"no column of `{path}` is a param: it has {named(head)}", f"params of this program: {known}"
         )
     return found
-
-
-def _wrong(message: str, *hints: str) -> AidlError:
-    return AidlError(Diagnostic("E0972", message, hints=hints))

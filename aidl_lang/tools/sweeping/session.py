@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.diagnostics import AidlError, Diagnostic, has_errors
+from aidl_lang.common.diagnostics import AidlError, has_errors
 from aidl_lang.common.processes import Engine, Guarded, count
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -43,6 +43,7 @@ from aidl_lang.tools.sweeping.plan import (
     knob_named,
     planned,
     read_table,
+    refused,
     spelled,
 )
 from aidl_lang.tools.sweeping.working import Making, variant
@@ -99,7 +100,7 @@ def engine(
 
     if jobs is not None:
         message = "the workers of a cluster are as many as it has"
-        raise AidlError(Diagnostic("E0976", message, hints=("leave out the number of jobs",)))
+        raise refused("E0976", message, "leave out the number of jobs")
     return Cluster(name, _WORKING)
 
 
