@@ -260,12 +260,12 @@ class AidlConversation:
         compiled = verdict.compiled or self._compiled(source)
         self.ledger.note(source, compiled)
         if compiled.ok and self.language.recovers:
-            restored = self.ledger.restore(source)
-            if restored.items:
-                source = self._source(restored.text)
+            text, restored = self.ledger.restore(source)
+            if restored:
+                source = self._source(text)
                 compiled = self._compiled(source)
                 self.ledger.note(source, compiled)
-                fixes += tuple(f"put back {item}" for item in restored.items)
+                fixes += tuple(f"put back {item}" for item in restored)
         return self._verdict(source, compiled, fixes)
 
     def _source(self, program: str) -> SourceFile:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
@@ -181,22 +181,6 @@ _ORDER = tuple(Kind)
 """The order in which losses are put back: things before their mentions."""
 
 
-@record()
-class Restored:
-    """A program with everything put back that fits, and the phrases of that."""
-
-    text: str
-    items: tuple[str, ...]
-
-
-@record(eq=False)
-class _Noted:
-    """A program, and the items that no later one has, each with its replacement in the next, if any."""
-
-    inventory: Inventory
-    last: dict[Item, Item | None] = field(default_factory=dict)
-
-
 class Ledger:
     """Remembers what the programs of one conversation meant. `note` each in turn; `missing` is then what any
     earlier one had and the last one lacks.
@@ -206,7 +190,8 @@ class Ledger:
 
     def __init__(self, world: World | None = None, settings: Settings | None = None) -> None:
         self._world, self._settings = world, settings or Settings()
-        self._noted: list[_Noted] = []
+        self._noted: list[tuple[Inventory, dict[Item, Item | None]]] = []
+        """Programs with the items that no later one has, each with its replacement in the next, if any."""
         self._clashed: set[Item] = set()
         self._text = ""
         self._known: tuple[Loss, ...] = ()
@@ -223,17 +208,19 @@ class Ledger:
         self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
         self._text = source.text
         accepted = {k.item for k in self._known if not _counts(k) and k.finding.state is not State.UNTRIED}
-        for noted in self._noted:
-            fates = compare(noted.inventory, here).fates
+        for before, last in self._noted:
+            fates = compare(before, here).fates
             self._clashed.update(now for i, (_, now) in fates.items() if now and i in self._clashed)
-            heirs = {item: heir or fates[item][1] for item, heir in noted.last.items()}
-            noted.last.clear()
-            noted.last.update((i, h) for i, h in heirs.items() if not _is_there(i, fates[i][0], accepted))
+            heirs = {item: heir or fates[item][1] for item, heir in last.items()}
+            last.clear()
+            last.update((i, h) for i, h in heirs.items() if not _is_there(i, fates[i][0], accepted))
         self._clashed.update(item for item in here.items if item.clashes)
-        self._noted.append(_Noted(here, dict.fromkeys(here.items)))
+        self._noted.append((here, dict.fromkeys(here.items)))
 
-    def restore(self, source: SourceFile) -> Restored:
-        """Puts back what an earlier program had, one by one, as long as no error or failed assert comes."""
+    def restore(self, source: SourceFile) -> tuple[str, tuple[str, ...]]:
+        """Puts back what an earlier program had, one by one, as long as no error or failed assert comes.
+        Returns the text, and the phrases of what was put back.
+        """
         settled = (State.IMPLIED, State.CONFLICTS, State.MENDED)
         known = self._known if source.text == self._text else ()
         prober = self._prober(source, _RESTORING)
@@ -252,11 +239,11 @@ class Ledger:
     def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[tuple[Loss, Changes]]:
         """Yields items of noted programs that another lacks, with the changes since."""
         reports: list[tuple[Loss, Changes]] = []
-        for noted in self._noted:
-            changes = compare(noted.inventory, here)
-            reports += ((loss, changes) for loss in _losses(noted, changes))
+        for before, last in self._noted:
+            changes = compare(before, here)
+            reports += ((loss, changes) for loss in _losses(last, changes))
         items = {loss.item for loss, _ in reports}
-        heirs = {item: heir for noted in self._noted for item, heir in noted.last.items()}
+        heirs = {item: heir for _, last in self._noted for item, heir in last.items()}
         unread = compiled is None or any(d.code.startswith(_UNREAD) for d in compiled.diagnostics)
         text = _squeezed(here.source.text) if unread else ""
         twice = {_lesser(item, heir) for item in items if (heir := heirs[item]) in items and heir is not None}
@@ -265,11 +252,11 @@ class Ledger:
                 yield loss, changes
 
 
-def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
+def _losses(last: Collection[Item], changes: Changes) -> Iterator[Loss]:
     """Yields the items that a program was the last to have. Losses that follow from that of a structure, or
     of a thing they mention, are reported with it.
     """
-    lost = [i for i in noted.last if _is_missing(i, *changes.fates[i])]
+    lost = [i for i in last if _is_missing(i, *changes.fates[i])]
     gone = {i.thing: i for i in lost if i.kind in _THINGS and changes.fates[i][0] is Fate.GONE}
     params = {i.thing[-1]: i for i in lost if i.kind is Kind.PARAM}
     dependents: dict[Item, list[Item]] = {}
@@ -294,7 +281,7 @@ def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
         fate, now = changes.fates[item]
         yield Loss(
             item,
-            noted.inventory,
+            changes.before,
             fate,
             now,
             dependents=tuple(dependents.get(item, ())),
@@ -366,7 +353,7 @@ class _Restoring:
         self.here = ledger.inventory(source, self.base)
         self.done: list[str] = []
 
-    def run(self, settled: set[Item]) -> Restored:
+    def run(self, settled: set[Item]) -> tuple[str, tuple[str, ...]]:
         found = self.ledger.losses(self.here, self.base) if stands(self.base) else ()
         lost = [(loss, changes) for loss, changes in found if loss.item not in settled]
         for loss, changes in sorted(lost, key=lambda pair: _ORDER.index(pair[0].kind)):
@@ -375,7 +362,7 @@ class _Restoring:
                     self._put_thing(loss)
             elif self._put(loss.item, loss.inventory):
                 self.done.append(named(loss.item, loss.inventory))
-        return Restored(self.source.text, tuple(self.done))
+        return self.source.text, tuple(self.done)
 
     def _put(self, item: Item, inventory: Inventory, is_first: bool = False) -> bool:
         """Puts back an item; returns False if that fails."""
@@ -411,4 +398,4 @@ def _has_room(loss: Loss, changes: Changes) -> bool:
     return not any(o.home == home and path not in known for path, o in changes.after.things.items())
 
 
-__all__ = ["Kind", "Ledger", "Loss", "Restored", "request"]
+__all__ = ["Kind", "Ledger", "Loss", "request"]
