@@ -247,10 +247,6 @@ class Snippet:
     body: str
     place: str = "block"
 
-    @property
-    def expanded(self) -> str:
-        return expanded(self.body)
-
 
 def expanded(body: str) -> str:
     """Returns the text with all placeholders filled with their proposals, equal numbers alike."""

@@ -207,11 +207,6 @@ class Reading:
     def type_of(self, parameter: str) -> Type | None:
         return next((kind for name, kind, _ in self.signature.parameters if name == parameter), None)
 
-    @property
-    def open(self) -> list[tuple[str, Type, bool]]:
-        """The parameters without an argument yet."""
-        return [p for p in self.signature.parameters if p[0] not in self.taken]
-
 
 def readings(program: Program, scope: SymbolScope, call: ast.Call) -> list[Reading]:
     """Returns the readings of a call: those that fit, the nearest first; else all as they are defined."""
