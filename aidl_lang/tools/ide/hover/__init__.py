@@ -43,10 +43,17 @@ from aidl_lang.tools.vocabulary import vocabulary
 # Each answer is Markdown with the place that it is about.
 
 _GUIDE = "`aidl guide` tells the language in a few pages."
-Description = tuple[str, Span]
 
 
-def of_word(view: View, offset: int) -> Description | None:
+@record()
+class Hover:
+    """`text` is Markdown, about what stands at `span`."""
+
+    text: str
+    span: Span
+
+
+def of_word(view: View, offset: int) -> Hover | None:
     """Describes a keyword, a kind, or the sign of a comparison."""
     token = token_at(view, offset)
     if token is None:
@@ -55,13 +62,13 @@ def of_word(view: View, offset: int) -> Description | None:
     words = vocabulary()
     if token.kind in words.comparisons:
         text = _compared(view, token)
-        return (text, span) if text else None
+        return Hover(text, span) if text else None
     word = token.text.strip("( \t")
     kind = kind_of(word)
     entry = reference().entries.get(kind or word)
     if entry is None or (token.kind == "NAME" and kind is None):
         return None
-    return (_keyword(entry), view.span(token.start, token.start + len(word)))
+    return Hover(_keyword(entry), view.span(token.start, token.start + len(word)))
 
 
 def _keyword(entry: Entry) -> str:
@@ -82,7 +89,7 @@ def _compared(view: View, token: Token) -> str:
     return joined([stated_at(view, node, path), listed(compared(solved, sides))])
 
 
-def of_attribute(view: View, offset: int) -> Description | None:
+def of_attribute(view: View, offset: int) -> Hover | None:
     """Describes the attribute after an `@`."""
     path = reversed(around(view.module, offset))
     stated = (ast.attributes(n) for n in path if isinstance(n, ast.Structure | ast.Assign | ast.Allowing))
@@ -92,10 +99,11 @@ def of_attribute(view: View, offset: int) -> Description | None:
         return None
     name = node.name.text
     entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")
-    return (_keyword(entry), view.span(node.span.start, node.name.span.end)) if entry is not None else None
+    span = view.span(node.span.start, node.name.span.end)
+    return Hover(_keyword(entry), span) if entry is not None else None
 
 
-def of_number(view: View, start: int) -> Description | None:
+def of_number(view: View, start: int) -> Hover | None:
     """Describes a number in mm or degrees, with its solved value."""
     path = around(view.module, start)
     node = path[-1]
@@ -109,7 +117,7 @@ def of_number(view: View, start: int) -> Description | None:
             many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
             change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
             blocks.append(f"`{guess.path}`{many}: {what}, {change}")
-    return (joined(blocks), node.span) if blocks else None
+    return Hover(joined(blocks), node.span) if blocks else None
 
 
 def _converted(node: ast.Number) -> Iterator[str]:
@@ -163,14 +171,6 @@ _VALUES = frozenset(SymbolKind) - {
 """Kinds of names that have solved values."""
 
 
-@record()
-class Hover:
-    """`text` is Markdown, about what stands at `span`."""
-
-    text: str
-    span: Span
-
-
 def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
     """Returns the hover for the word at an offset, or for the expression from there to `end`."""
     if end is not None and end > offset:
@@ -180,13 +180,11 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
-        told = of_number(view, token.start)
-    else:
-        told = of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
-    return Hover(*told) if told is not None else None
+        return of_number(view, token.start)
+    return of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
 
 
-def _of_name_at(view: View, offset: int) -> Description | None:
+def _of_name_at(view: View, offset: int) -> Hover | None:
     mention = mention_at(view, offset)
     if mention is None:
         return None
@@ -204,7 +202,7 @@ def _of_name_at(view: View, offset: int) -> Description | None:
         elif mention.symbol.node is None:
             blocks.append(of_public(symbol.name))
         text = joined(blocks)
-    return (text, mention.span) if text else None
+    return Hover(text, mention.span) if text else None
 
 
 def _headed(view: View, mention: Mention) -> str:
