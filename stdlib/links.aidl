@@ -215,7 +215,7 @@ fn strap_around(of, width: length) = cut(offset(hull(of), width, corners: round)
 
 /// Round heads of rivets, `diameter` across, `inset` within an outline: one in each of its corners, and evenly between.
 ///
-/// Lies with as many as `n` says in all, or a `pitch` apart as near as goes. Of an open curve both ends have one, `inset` from them.
+/// There are as many as `n` says in all, or they are a `pitch` apart as near as goes. Of an open curve both ends have one, `inset` from them.
 /// It follows the outline, a line, a path or whatever is made of lines, and arcs without a corner at them, of any structure above.
 ///
 /// ```aidl
@@ -231,7 +231,7 @@ fn rivets(along, pitch: length, inset: length, diameter: length) =
 
 /// Heads of screws seen from above, by their `size`, `inset` within an outline: one in each of its corners, and evenly between.
 ///
-/// Lies as `rivets` does. `drive` is the recess in the heads, cut out of them: slot, cross, hex or none.
+/// They are placed as `rivets` are. `drive` is the recess in the heads, cut out of them: slot, cross, hex or none.
 ///
 /// ```aidl
 /// solid cover {
