@@ -19,7 +19,7 @@ import jsonschema
 import pytest
 from PIL import Image
 
-from aidl_lang.tools.agents.calling import for_mcp
+from aidl_lang.tools.agents.schema import for_mcp
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, CONFLICT, IMPORTS, PLATE, TELEPHONE
 from tests.documents import ROOT

@@ -350,7 +350,7 @@ def register_tool_schema(parser: argparse.ArgumentParser) -> None:
 def run_tool_schema(arguments: argparse.Namespace) -> int:
     import json
 
-    from aidl_lang.tools.agents.calling import STYLES
+    from aidl_lang.tools.agents.schema import STYLES
 
     print(json.dumps(STYLES[arguments.style](), indent=2, ensure_ascii=False))
     return 0
