@@ -51,7 +51,7 @@ from aidl_lang.tools.sweeping.working import Making, variant
 if TYPE_CHECKING:
     import pyarrow
 
-    from aidl_lang.tools.cli.options import Asked
+    from aidl_lang.export import Options
 
 
 # --- The beginnings of a sweep that the command line and Python have in common: the program, and the engine
@@ -395,7 +395,7 @@ class Sweep:
         source: SourceFile,
         world: World | None,
         params: Mapping[str, object],
-        asked: Asked,
+        asked: tuple[Options, str | None, bool],
         settings: Settings | None,
         *,
         outputs: Sequence[str],
@@ -413,8 +413,9 @@ class Sweep:
         def command(variant: Variant, name: str) -> str:
             return reproducing(source.name, plan, variant, name)
 
-        making = Making(options=asked.options, best_effort=asked.best_effort)
-        wanted = sorted_outputs(outputs, plan, gathering.reads, asked.format)
+        options, fallback, best_effort = asked
+        making = Making(options=options, best_effort=best_effort)
+        wanted = sorted_outputs(outputs, plan, gathering.reads, fallback)
         return cls(Job(plan, bundle, gathering, making, wanted, command, **how), engine)
 
     def __len__(self) -> int:
