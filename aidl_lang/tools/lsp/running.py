@@ -14,6 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
+from pygls.exceptions import JsonRpcException
+
 from aidl_lang.common import resources
 from aidl_lang.common.files import is_data
 from aidl_lang.common.records import record
@@ -24,6 +26,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
 from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 
@@ -115,6 +118,10 @@ class Lane:
             self._finished()
 
 
+FAILED = -32803
+"""The protocol's code for a request that was understood and cannot be done."""
+
+
 class Answers:
     """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
 
@@ -123,7 +130,7 @@ class Answers:
         self._is_closing = False
 
     async def ask(self, answer: Callable[[], T]) -> T:
-        """Returns the answer. Raises what `answer` raises."""
+        """Returns the answer. Raises what `answer` raises; for a CannotError an error of the protocol."""
         unwanted = threading.Event()
 
         def work() -> T:
@@ -137,6 +144,8 @@ class Answers:
         except asyncio.CancelledError:
             unwanted.set()
             raise
+        except CannotError as reason:
+            raise JsonRpcException(str(reason), FAILED) from None
 
     def close(self) -> None:
         """Cancels the present answer, and begins nothing more."""

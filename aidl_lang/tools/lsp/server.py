@@ -142,9 +142,6 @@ class Protocol(LanguageServerProtocol):
 T = TypeVar("T")
 Answer = Callable[["Asked", Any], T]
 
-FAILED = -32803
-"""The protocol's code for a request that was understood and cannot be done."""
-
 
 @record()
 class Asked:

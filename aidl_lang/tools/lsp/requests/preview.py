@@ -44,7 +44,8 @@ from aidl_lang.tools.ide.references import Refusal
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
-from aidl_lang.tools.lsp.server import FAILED, Asked, Server
+from aidl_lang.tools.lsp.running import FAILED
+from aidl_lang.tools.lsp.server import Asked, Server
 
 # --- What a dialog for exports offers: the formats, and one table of options, each with what it does.
 #
