@@ -247,9 +247,7 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
         for motion in motions
         if all(thing == structure.path or thing.startswith(inside) for thing in motion.things)
     ]
-    if free:
-        return f"{held}{first_few(free, _NAMED, ' …')}"
-    return f"{held}{_HELD}"
+    return f"{held}{first_few(free, _NAMED, ' …')}" if free else f"{held}{_HELD}"
 
 
 def _names(motion: Motion, inside: str) -> str:

@@ -97,9 +97,7 @@ class Positions:
 
 
 def _units(character: str, unit: Unit) -> int:
-    if unit is Unit.UTF_16:
-        return 2
-    return len(character.encode("utf-8", "surrogatepass"))
+    return 2 if unit is Unit.UTF_16 else len(character.encode("utf-8", "surrogatepass"))
 
 
 # --- Edits of one text: applying them, and finding them between two versions.

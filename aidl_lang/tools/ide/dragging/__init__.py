@@ -316,9 +316,7 @@ class Dragged:
     @cached_property
     def edits(self) -> tuple[Edit, ...] | Refusal:
         """Returns the edits that keep the point there: only the numbers that changed."""
-        if self._settled is not None:
-            return self._settled
-        return _edits(self._origin, self)
+        return self._settled if self._settled is not None else _edits(self._origin, self)
 
 
 @record(eq=False)

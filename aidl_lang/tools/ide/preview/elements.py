@@ -265,9 +265,7 @@ class _Shift:
 
     def _from_end(self, offset: int) -> int | None:
         """Returns None for an offset in the changed text."""
-        if offset < self.rest:
-            return None
-        return offset + len(self.after.text) - len(self.before.text)
+        return None if offset < self.rest else offset + len(self.after.text) - len(self.before.text)
 
 
 def _alike(one: str, other: str) -> int:
