@@ -169,13 +169,6 @@ class CannotError(Exception):
     """Raised if a request cannot be carried out, with the reason for people."""
 
 
-@record()
-class Refusal:
-    """The same as a value, for requests at every move of a mouse: most places cannot be dragged to."""
-
-    reason: str
-
-
 # --- Go to definition.
 
 

@@ -40,7 +40,7 @@ from aidl_lang.tools.ide.dragging.mobility import (
     ways,
 )
 from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
-from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, edited, hasty, run
 
 # --- Points that follow a `param`: found by turning each param a little; the value wanted by a secant.
@@ -64,7 +64,7 @@ Values: TypeAlias = frozenset[tuple[str, float]]
 """Values of params by their paths."""
 
 
-def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
+def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]]:
     """Returns the program with one or two params changed, the point, and the edits of their defaults."""
     ways, tries = dict(slopes(view).get(grip, {})), _tries(view)
     values: dict[str, float] = {}
@@ -83,11 +83,11 @@ def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tupl
     shown = tries.run(values)
     at = _places(shown).get(grip)
     if at is None:
-        return Refusal("the program does not solve with the param turned that far")
+        raise CannotError("the program does not solve with the param turned that far")
     try:
         edits = tuple(edit for path, value in values.items() for edit in _set(view, path, value))
     except RefusalError as refused:
-        return Refusal(refused.diagnostics[0].message)
+        raise CannotError(refused.diagnostics[0].message) from None
     return shown, at, edits
 
 
@@ -314,8 +314,8 @@ class Dragged:
     _settled: tuple[Edit, ...] | None = field(default=None, repr=False)
 
     @cached_property
-    def edits(self) -> tuple[Edit, ...] | Refusal:
-        """Returns the edits that keep the point there: only the numbers that changed."""
+    def edits(self) -> tuple[Edit, ...]:
+        """Returns the edits that keep the point there: only the numbers that changed. Raises CannotError."""
         return self._settled if self._settled is not None else _edits(self._origin, self)
 
 
@@ -389,8 +389,10 @@ class _Hold:
             way = self.ways.whole.get(grip.id)
             if way is not None and way.directions == directions and self.is_slide(grip.id):
                 dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
-                dragged = _pulled(self, grip, (x + dx, y + dy), STEP)
-                return isinstance(dragged, Dragged) and not isinstance(dragged.edits, Refusal)
+                try:
+                    return bool(_pulled(self, grip, (x + dx, y + dy), STEP).edits)
+                except CannotError:
+                    return False
         return False
 
 
@@ -421,21 +423,21 @@ def handles(view: View) -> list[Handle]:
     return _outermost(hold, found)
 
 
-def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refusal:
-    """Returns the program with a point dragged as near to a place as it can come."""
+def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged:
+    """Returns the program with a point dragged as near to a place as it can come. Raises CannotError."""
     if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
-        return Refusal("that place is too far away")
+        raise CannotError("that place is too far away")
     if not (math.isfinite(step) and step > 0):
-        return Refusal("the step is a length")
+        raise CannotError("the step is a length")
     hold = _hold(view)
     found = next((h for h in handles(view) if h.id == handle), None)
     if hold is None or found is None:
-        return Refusal("there is nothing to drag by this name")
+        raise CannotError("there is nothing to drag by this name")
     grip = hold.grips[handle]
     if found.moves != "param":
         return _pulled(hold, grip, to, step)
-    turn = turned(view, handle, to, step)
-    return turn if isinstance(turn, Refusal) else Dragged(*turn[:2], view, grip, step, turn[2])
+    shown, at, edits = turned(view, handle, to, step)
+    return Dragged(shown, at, view, grip, step, edits)
 
 
 def _outermost(hold: _Hold, found: list[Handle]) -> list[Handle]:
@@ -468,14 +470,14 @@ def _by_param(grip: Grip, params: Iterable[str]) -> str:
 # --- Pulls a point towards a place with as little other motion as possible.
 
 
-def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
+def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
     """Returns the program with the point as near to a place as it can come. Unknowns without a number in the
     text move only if nothing else will do.
     """
     known, evaluate = hold.ways, hold.evaluate
     way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
     if way is None:
-        return Refusal("there is nothing to drag")
+        raise CannotError("there is nothing to drag")
     by_sizes = grip.id in known.sizes and grip.id not in known.own
     sizes = frozenset(u for u in hold.written if by_sizes and u.kept and belongs(u, grip.thing))
     more = [pull(hold.model, grip, way.directions, to, _WEIGHT)]
@@ -494,12 +496,12 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
             if off(each) <= _THERE:
                 break
     if not found:
-        return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
+        raise CannotError(f"`{_name(grip)}` cannot go there: the constraints would not hold")
     solution, at = min(found, key=lambda each: round(off(each), 6))
     try:
         shown = pipeline.redrawn(hold.outcome, lowered, solution)
     except TooLongError as reason:
-        return Refusal(str(reason))
+        raise CannotError(str(reason)) from None
     return Dragged(replace(hold.view, outcome=shown, drawn=shown), at, hold.view, grip, step)
 
 
@@ -543,7 +545,7 @@ def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
 # --- Writes it into the text.
 
 
-def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
+def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...]:
     """Returns the fewest and shortest numbers that place the point as shown."""
     hold, shown = _hold(view), dragged.view.outcome
     assert hold is not None
@@ -556,14 +558,14 @@ def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
         if (before := guess.valued(hold.evaluate)) is not None and abs(after - before) * guess.factor > _FINE
     ]
     if not changed:
-        return Refusal("no number of the text would change by it")
+        raise CannotError("no number of the text would change by it")
     for numbers in (changed, everything):
         for step in (dragged._step, _FINE):
             texts = ((g, shortest(value, step / 2 / g.factor) + g.unit) for g, value in numbers)
             edits = tuple(Edit(g.span, text) for g, text in texts if text != g.span.text)
             if edits and _comes_to(hold, edits, dragged, 2 * max(step, _FINE * 10)):
                 return edits
-    return Refusal("no numbers in the text would hold it there")
+    raise CannotError("no numbers in the text would hold it there")
 
 
 def _comes_to(hold: _Hold, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:

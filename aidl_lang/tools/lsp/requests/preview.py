@@ -22,13 +22,12 @@ from pygls.exceptions import (
 )
 
 from aidl_lang.checking import units
-from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled
 from aidl_lang.export import FORMATS, OFFERED, Exported, ExportError, Format, Options, file_names
 from aidl_lang.export.profiles import PROFILES
 from aidl_lang.export.themes import THEMES
-from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.dragging import Handle, drag
 from aidl_lang.tools.ide.preview import (
     LAYERS,
@@ -40,7 +39,7 @@ from aidl_lang.tools.ide.preview import (
     with_handles,
     worked_out,
 )
-from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
@@ -353,40 +352,29 @@ class _Requests:
         asked, document = await self._solved(given, given.version)
 
         def view() -> View:
-            if given.drag is None:
-                try:
-                    values = worked_out(asked.view, given.knobs)
-                except RefusalError as refusal:
-                    raise JsonRpcException(_worded(refusal.diagnostics[0]), FAILED) from None
-                limits = self.server.limits
-                return tried(asked.view, values, document.memory, limits, rests=given.rests)
-            made = drag(asked.view, given.drag.id, given.drag.to)
-            if isinstance(made, Refusal):
-                raise JsonRpcException(made.reason, FAILED)
-            return made.view
+            if given.drag is not None:
+                return drag(asked.view, given.drag.id, given.drag.to).view
+            values, limits = worked_out(asked.view, given.knobs), self.server.limits
+            return tried(asked.view, values, document.memory, limits, rests=given.rests)
 
         def picture() -> Json:
             return self.pictures.tried(asked, document, view(), given.viewer)
 
-        return await self._work(
-            ("try", *viewer), document, asked, picture, lambda: self._asked[viewer] != asked_before
-        )
+        def is_outdated() -> bool:
+            return self._asked[viewer] != asked_before
+
+        try:
+            return await self._work(("try", *viewer), document, asked, picture, is_outdated)
+        except (AidlError, CannotError) as reason:
+            raise JsonRpcException(_why(reason), FAILED) from None
 
     async def set_knob(self, given: SetKnob) -> Json:
-        def edits(view: View) -> Sequence[Edit] | Refusal:
-            try:
-                return set_knob(view, given.path, given.value)
-            except RefusalError as refusal:
-                return Refusal(_worded(refusal.diagnostics[0]))
-
-        return await self._edit(given, edits, f"Set {given.path}")
+        return await self._edit(
+            given, lambda view: set_knob(view, given.path, given.value), f"Set {given.path}"
+        )
 
     async def drag(self, given: Drag) -> Json:
-        def edits(view: View) -> Sequence[Edit] | Refusal:
-            dragged = drag(view, given.id, given.to)
-            return dragged if isinstance(dragged, Refusal) else dragged.edits
-
-        return await self._edit(given, edits, "Drag")
+        return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
 
     async def fix(self, given: ApplyFix) -> Json:
         asked, _ = await self._solved(given, given.version)
@@ -456,17 +444,16 @@ class _Requests:
         except Cancelled:
             raise JsonRpcRequestCancelled("there is something newer") from None
 
-    async def _edit(
-        self, given: OfVersion, edits: Callable[[View], Sequence[Edit] | Refusal], label: str
-    ) -> Json:
+    async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
         self._outdate_tries(given)
         async with self._document(given).editing:
             asked, document = await self._solved(given, given.version)
             key = ("edit", given.uri)
-            made = await self._work(key, document, asked, lambda: edits(asked.view))
-            if isinstance(made, Refusal):
-                return _not_applied(made.reason)
+            try:
+                made = await self._work(key, document, asked, lambda: edits(asked.view))
+            except (AidlError, CannotError) as reason:
+                return _not_applied(_why(reason))
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
@@ -482,6 +469,10 @@ class _Requests:
 
 def _worded(diagnostic: Diagnostic) -> str:
     return "; ".join([diagnostic.message, *diagnostic.hints[:1]])
+
+
+def _why(reason: AidlError | CannotError) -> str:
+    return _worded(reason.diagnostic) if isinstance(reason, AidlError) else str(reason)
 
 
 def _not_applied(reason: str) -> Json:
