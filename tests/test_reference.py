@@ -22,8 +22,7 @@ from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.words import KINDS
+from aidl_lang.syntax.tables import KINDS, load_tables
 from aidl_lang.tools.reference.collect import Entry, doc, reference
 from aidl_lang.tools.reference.pages import full_guide, guide
 from aidl_lang.tools.reference.signatures import exactness, held, parts, split_items

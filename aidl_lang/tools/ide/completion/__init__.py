@@ -31,7 +31,7 @@ from aidl_lang.checking.units import ANGLE
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.words import KINDS, kind_of
+from aidl_lang.syntax.tables import KINDS, kind_of
 from aidl_lang.tools.ide.completion import drafts, names
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use, context_of
 from aidl_lang.tools.ide.completion.drafts import (

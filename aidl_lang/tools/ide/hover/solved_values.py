@@ -15,8 +15,7 @@ from aidl_lang.building.conditions import holds
 from aidl_lang.building.evaluate import evaluate, iterate, turn_scope
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Condition, Geometry, Model, Structure, own_geometry
-from aidl_lang.building.scopes import LetBinding, Scope
-from aidl_lang.building.state import BuildingLimits, Env, Interpreter, Reach
+from aidl_lang.building.state import BuildingLimits, Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import (
     Array,
@@ -29,7 +28,7 @@ from aidl_lang.building.values import (
     Value,
     members,
 )
-from aidl_lang.checking.registry import PRIMITIVES
+from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.prose import fixed
