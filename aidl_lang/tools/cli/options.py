@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, ticked
+from aidl_lang.tools.cli.files import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.checking.subset import Variant
@@ -397,7 +397,7 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
         arguments = parser.parse_args(words)
     except argparse.ArgumentError as reason:
         name = (reason.argument_name or "").lstrip("-").replace("-", "_")
-        raise _refused(f"`{name}`: {reason.message}") from None
+        raise UseError("E0925", f"`{name}`: {reason.message}") from None
     return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
 
 
@@ -433,18 +433,14 @@ def _known(name: str, known: list[str]) -> str:
         return name
     near = nearest(name, known, 1)
     hints = did_you_mean(near) or [f"options are {', '.join(ticked(known))}"]
-    raise _refused(f"there is no option `{name}`", *hints)
-
-
-def _refused(message: str, *hints: str) -> AidlError:
-    return AidlError(Diagnostic("E0925", message, hints=hints))
+    raise UseError("E0925", f"there is no option `{name}`", *hints)
 
 
 def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
     option = f"--{name.replace('_', '-')}"
     if is_flag != isinstance(value, bool):
         has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"
-        raise _refused(f"`{name}` {has}")
+        raise UseError("E0925", f"`{name}` {has}")
     if is_flag:
         return [option] if value else []
     return [f"{option}={_text(name, value)}"]
@@ -463,4 +459,4 @@ def _text(name: str, value: object) -> str:
         return ("," if all(isinstance(each, str) for each in items) else "x").join(
             _text(name, each) for each in items
         )
-    raise _refused(f"`{name}` takes numbers and texts, not `{type(value).__name__}`")
+    raise UseError("E0925", f"`{name}` takes numbers and texts, not `{type(value).__name__}`")
