@@ -162,8 +162,7 @@ def _shown(value: object) -> str:
     return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"
 
 
-# --- Runs calls in processes of their own: a program that hangs, crashes or devours memory harms nothing
-# else.
+# --- Runs calls in processes of their own: a program that hangs or crashes harms nothing else.
 
 SECONDS = 45.0
 """Most seconds of a call; clients wait for a minute."""

@@ -37,8 +37,7 @@ from aidl_lang.tools.agents.results import (
 from aidl_lang.tools.agents.workspace import Limits, refusal
 from aidl_lang.tools.discretion import Reader
 
-# --- The solved model as JSON in a size that a language model can read: one structure of it, without long
-# parts.
+# --- The solved model as JSON in a size that a language model can read.
 #
 # Every form is one that `docs/model.schema.json` allows.
 
@@ -144,8 +143,7 @@ _WAYS: tuple[tuple[str, Callable[[Json], None]], ...] = (
 )
 
 
-# --- Conflicts of a program: the constraints in them, the change that each would need, and whether that
-# helps.
+# --- Conflicts of a program: the constraints, the change that each would need, and whether that helps.
 
 CODES = ("E0601", "E0602", "E0603", "E0605")
 """Codes of the diagnostics about conflicts."""

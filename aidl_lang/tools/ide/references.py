@@ -20,8 +20,6 @@ from aidl_lang.syntax.tables import load_tables, tokenize
 from aidl_lang.tools.ide.site import around, scope_at
 from aidl_lang.tools.ide.workspace import Project, View, Workspace, applied, look
 
-# --- The meaning of each name in a text: the one table for hover, definitions, references and renaming.
-
 Place: TypeAlias = tuple[Path, int]
 """The file and the offset of the first declaration of a symbol: the same in every view of a project."""
 

@@ -22,8 +22,6 @@ from aidl_lang.tools.reference.pages import facts, forms
 from aidl_lang.tools.reference.signatures import split_items, written
 from aidl_lang.typecheck import Program
 
-# --- Descriptions of names, in Markdown.
-
 MOST_FORMS = 6
 _FEWEST_WORDS = 2
 """Fewest blanks of a useful sentence: a list of names describes none of them."""

@@ -30,8 +30,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.typecheck import Program
 
-# --- Converts between offsets in a text and lines and characters of protocols: in UTF-16 units, or as
-# agreed.
+# --- Converts between offsets and lines and characters of protocols: in UTF-16 units, or as agreed.
 #
 # Lines end with `\n`, `\r\n` or `\r`. Lines and characters count from 0.
 

@@ -28,8 +28,7 @@ from aidl_lang.tools.llm.messages import Image, Verdict
 from aidl_lang.tools.mending import Mended, mend
 from aidl_lang.tools.reference.pages import guide
 
-# --- Writes a changed program as a minimal edit of the one before: unchanged meaning keeps its text and
-# comments.
+# --- Writes a changed program as a minimal edit of the one before: what is as it was keeps its text.
 
 
 def merge(before: str, after: str) -> str:
@@ -167,8 +166,7 @@ def _spaceless(text: str) -> str:
     return re.sub(r"\s+", "", text)
 
 
-# --- AIDL as the language of a conversation: mends and compiles programs, and compares them with earlier
-# ones.
+# --- AIDL as a language: mends and compiles programs, and compares them with earlier ones.
 
 _PIXELS = 512
 """Larger side of the picture of a plan."""

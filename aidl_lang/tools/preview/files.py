@@ -56,8 +56,6 @@ async def _watch(file: Path, changed: Changed, begun: Begun, polling: bool | Non
         has_begun = True
 
 
-# --- The files of a program that is previewed: read, and edited in one step each.
-
 Write = Callable[[Path, bytes], None]
 """Replaces a file in one step. Raises OSError."""
 
@@ -132,8 +130,7 @@ def _why(reason: OSError) -> str:
     return text[:1].lower() + text[1:]
 
 
-# --- The text of a program as its pages change it: what of it is in the file, and the steps that can be
-# undone.
+# --- The text as its pages change it: what of it is in the file, and the steps that can be undone.
 #
 # What is set at once, as by a slider, goes into the file if all before it did. What is typed waits until it
 # is saved; then what is set waits with it. What others do to the file meanwhile is never overwritten

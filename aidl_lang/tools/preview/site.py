@@ -22,8 +22,6 @@ from aidl_lang.tools.preview.files import watch
 from aidl_lang.tools.preview.host import LONGEST, Host, Page
 from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Door, Guard, file_named
 
-# --- The pages of the preview and their WebSocket.
-
 MOST_PAGES = 16
 """Most pages that are served at once."""
 POLICY = (

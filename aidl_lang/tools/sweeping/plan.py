@@ -231,8 +231,7 @@ def labels(values: Mapping[str, Value]) -> str:
     return " ".join(f"{path}={shown(given)}" for path, given in values.items())
 
 
-# --- The variants of a sweep in their order: a grid, the rows of a table, values drawn at random, or
-# products of these.
+# --- The variants in their order: a grid, the rows of a table, values drawn at random, or their products.
 
 
 @record()

@@ -54,8 +54,7 @@ if TYPE_CHECKING:
     from aidl_lang.export import Options
 
 
-# --- The beginnings of a sweep that the command line and Python have in common: the program, and the engine
-# by name.
+# --- How a sweep begins on the command line and in Python: the program, and the engine by name.
 
 LOCAL = "local"
 _WORKING = "aidl_lang.tools.sweeping.working"
@@ -144,8 +143,7 @@ def _escaped(word: str) -> str:
     return "$'" + "".join(map(one, word)) + "'"
 
 
-# --- The run of a sweep: what is kept is taken, the rest is computed by an engine, and each outcome is
-# handed over as it comes.
+# --- The run of a sweep: what is kept is taken, the rest is computed, and outputs are written.
 
 _PAUSE = 0.2
 """Seconds after which the run looks whether it is still wanted."""
@@ -162,9 +160,6 @@ def _broken(broke: Broke) -> Outcome:
     message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
     return Outcome("broken", False, (Fault("E0603", message),))
 
-
-# --- A sweep from its plan to its outputs: runs it, writes drawings as they come and tables at the end, and
-# keeps what is done so that it can go on.
 
 PICTURE = 320
 """Pixels of a picture on a contact sheet."""

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from PIL.ImageFont import FreeTypeFont
 
 
-# --- Lays the variants of a sweep out in rows of cells, on whatever can be painted on. Lengths are in mm, y
-# runs down.
+# --- Lays the variants out in rows of cells, on whatever can be painted on. Lengths in mm, y runs down.
 
 MARGIN = 12.0
 _HEAD = 10.0

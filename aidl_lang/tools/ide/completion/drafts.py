@@ -27,8 +27,6 @@ from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, expanded, vocabulary
 
-# --- One completion entry.
-
 MOST = 200
 """Most entries of a list. After that many the editor asks again as the word grows."""
 

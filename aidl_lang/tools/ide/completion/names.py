@@ -41,8 +41,6 @@ from aidl_lang.tools.ide.workspace import insert
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import vocabulary
 
-# --- Completion of values and callables by their names, in this program and in other files of the workspace.
-
 MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
 """Tiers: makers of geometry if that is wanted; values that fit, that may fit, that have parts which fit;
 callables that fit; other declared names; names that hardly fit.

@@ -27,8 +27,6 @@ from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.gradients import components, linearise
 from aidl_lang.solver.problem import violations
 
-# --- The points of a drawing that somebody may want to take hold of.
-
 MOST_PARTS = 16
 """Points of one shape; of a shape with more, only those that it is made by."""
 

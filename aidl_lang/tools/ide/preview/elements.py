@@ -213,8 +213,7 @@ class Writer:
                 return self._fields(value) if is_dataclass(value) else value
 
 
-# --- Converts places in the drawn program to places in the present text: the picture may be of an earlier
-# one.
+# --- Converts places in the drawn program to places in the present text, which may be a later one.
 
 
 class Places:

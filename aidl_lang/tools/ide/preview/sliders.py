@@ -17,8 +17,6 @@ from aidl_lang.tools.agents.workspace import refusal
 from aidl_lang.tools.ide.preview.elements import Conflict, Elements, Party, Places, Problem, Slider
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 
-# --- The `param`s of a program as sliders, and edits that set their values in the text.
-
 Value: TypeAlias = float | str | bool
 
 _LITERALS = (ast.Number, ast.String, ast.Boolean)

@@ -20,8 +20,6 @@ from aidl_lang.tools.discretion import Reader
 from aidl_lang.tools.llm.intent.changes import Changes, Fate
 from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Key, Kind, Path, Step
 
-# --- Puts something lost back into the text of a program, at its old place or as near as possible.
-
 _INDENT = "    "
 
 

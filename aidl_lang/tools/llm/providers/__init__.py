@@ -15,8 +15,6 @@ from aidl_lang.tools.grammars import export
 from aidl_lang.tools.llm.messages import Finish, Message, Provider, ProviderError, Reply, Sampling
 from aidl_lang.tools.llm.providers.connection import ANTHROPIC, EXEC, Connection, Price, decide
 
-# --- Providers: servers that speak OpenAI's protocol, Anthropic's, or a command.
-
 __all__ = ["SERVERS", "Closable", "Connection", "Constrained", "Price", "connect", "members"]
 
 
