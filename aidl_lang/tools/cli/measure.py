@@ -16,7 +16,7 @@ from aidl_lang.tools.cli.options import add_params, add_pixels, add_program, fla
 if TYPE_CHECKING:
     from aidl_lang.common.source import SourceFile
     from aidl_lang.export.comparison import Comparison
-    from aidl_lang.geometry.contacts import Contact
+    from aidl_lang.geometry.boolean import Contact
     from aidl_lang.geometry.curves import Vec
     from aidl_lang.geometry.survey import Part, Survey, Width
     from aidl_lang.pipeline import Compiled

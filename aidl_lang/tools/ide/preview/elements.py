@@ -13,9 +13,7 @@ from aidl_lang.common.diagnostics import Fix
 from aidl_lang.common.prose import rounded, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Ellipse, Line, Piece, Vec, bounds, union_bounds
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.workspace import Positions, View
