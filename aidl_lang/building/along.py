@@ -194,17 +194,9 @@ def of_ellipse(
     found = []
     for k in range(count):
         (c0, s0), (c1, s1) = ((math.cos(a), math.sin(a)) for a in (turn * k, turn * (k + 1)))
-        ends = place(c0, s0), place(c1, s1)
-        found.append(
-            Cubic(
-                (
-                    ends[0],
-                    place(c0 - handle * s0, s0 + handle * c0),
-                    place(c1 + handle * s1, s1 - handle * c1),
-                    ends[1],
-                )
-            )
-        )
+        start, end = place(c0, s0), place(c1, s1)
+        inner = place(c0 - handle * s0, s0 + handle * c0), place(c1 + handle * s1, s1 - handle * c1)
+        found.append(Cubic((start, *inner, end)))
     return found
 
 

@@ -234,13 +234,10 @@ def _report_cycle(
     rest = [*cycle[1:], cycle[0]]
     attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]
     chain = ", which is behind ".join(f"`{s.name}`" for s in rest)
-    it.report(
-        "E0521",
-        f"`{cycle[0].name}` would be behind itself: it is behind {chain}",
-        attributes[0],
-        hints=[f"leave one of {listed(f'`{a.span.one_line}`' for a in attributes)} out"],
-        secondary=[Label(a.span, "and this") for a in attributes[1:]],
-    )
+    message = f"`{cycle[0].name}` would be behind itself: it is behind {chain}"
+    hint = f"leave one of {listed(f'`{a.span.one_line}`' for a in attributes)} out"
+    others = [Label(a.span, "and this") for a in attributes[1:]]
+    it.report("E0521", message, attributes[0], hints=[hint], secondary=others)
 
 
 _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}

@@ -389,14 +389,13 @@ def _bind_inside(
             inner = (_bind_inside(it, v, f"{name}[{i}]", moved, geometry) for i, v in enumerate(items))
             return ListVal(tuple(inner))
         case RecordVal(fields):
-            return RecordVal(
-                {
-                    k: _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
-                    if isinstance(v, Num)
-                    else _bind_inside(it, v, f"{name}.{k}", moved, geometry)
-                    for k, v in fields.items()
-                }
-            )
+            bound: dict[str, Value] = {}
+            for k, v in fields.items():
+                if isinstance(v, Num):
+                    bound[k] = _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                else:
+                    bound[k] = _bind_inside(it, v, f"{name}.{k}", moved, geometry)
+            return RecordVal(bound)
         case _:
             return value
 

@@ -486,15 +486,9 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     # In a loop a copy that is given a motion may lie still in one turn only.
     never_moves = not env.scope.labels or a.keys() == {"x"}
     if motion.is_still and is_seen and not is_loose and never_moves:
-        it.report(
-            "W0510",
-            "this copy lies exactly on what it is a copy of",
-            node,
-            hints=[
-                "say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`",
-                "it stays so: a constraint on it is one on what it is a copy of",
-            ],
-        )
+        where = "say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`"
+        stays = "it stays so: a constraint on it is one on what it is a copy of"
+        it.report("W0510", "this copy lies exactly on what it is a copy of", node, hints=[where, stays])
     return copied(it, a["x"], motion, node, env)
 
 

@@ -234,16 +234,10 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     """Reports a condition on what is known once all is solved. Returns whether it did."""
     if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
         return False
-    it.report(
-        "E0512",
-        "areas, perimeters and clearances of outlines are known after solving only",
-        node,
-        hints=[
-            f"{FORMULAS}: name that",
-            "put it in an `assert`, or constrain boxes and distances instead",
-            "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
-        ],
-    )
+    message = "areas, perimeters and clearances of outlines are known after solving only"
+    instead = "put it in an `assert`, or constrain boxes and distances instead"
+    apart = "`clearance` constrains between points, lines, circles, slots and convex shapes; name these"
+    it.report("E0512", message, node, hints=[f"{FORMULAS}: name that", instead, apart])
     return True
 
 

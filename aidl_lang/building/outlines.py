@@ -273,16 +273,14 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
         return tuple(size(it, v, target.of[0], n) for v, n in zip(numbers, names, strict=False))
     # A bare point belongs to no geometry, so its structure keeps the size.
     index = len(target.owner.finishes)
-    return tuple(
-        length(
-            it.unknown(
-                v.value, target.owner, f"{kind}[{index}]", owner=target.owner, dimension=LENGTH, kept=True
-            )
-        )
-        if v.expression.is_constant and v.status is Exactness.NUMBER
-        else v
-        for v in numbers
-    )
+    owner, name = target.owner, f"{kind}[{index}]"
+
+    def held(v: Num) -> Num:
+        if v.expression.is_constant and v.status is Exactness.NUMBER:
+            return length(it.unknown(v.value, owner, name, owner=owner, dimension=LENGTH, kept=True))
+        return v
+
+    return tuple(map(held, numbers))
 
 
 def _targets(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Iterator[_Target | None]:

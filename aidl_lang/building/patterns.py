@@ -424,16 +424,9 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
     if way is None:
         what = with_article(given[0].type) if len(given) == 1 else "no one curve"
-        report_once(
-            it,
-            "E0358",
-            f"a text follows a circle, or an open way of lines and arcs, and this is {what}",
-            it.call_sites[-1],
-            [
-                "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
-                "`construction way = arc(…)`"
-            ],
-        )
+        message = f"a text follows a circle, or an open way of lines and arcs, and this is {what}"
+        hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
+        report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
         return NOTHING
     glyphs, align = typeset(it, a), a["align"]
     if not glyphs:

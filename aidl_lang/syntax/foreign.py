@@ -219,16 +219,10 @@ def inches(t: Trouble) -> SyntaxProblem | None:
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
     gap = Span(t.source, number.end, before.start)
-    return wrong(
-        "E0106",
-        f"a unit touches its number: `{number.text}in`",
-        t.span(number, before),
-        "the space ends the number",
-        fix=replaced("remove the space", gap, ""),
-        repair=TokenRepair(
-            t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)
-        ),
-    )
+    right, span = number.text + "in", t.span(number, before)
+    message, label = f"a unit touches its number: `{right}`", "the space ends the number"
+    repair = TokenRepair(t.position - 2, t.position, (Token("NUMBER", right, number.start, before.end),))
+    return wrong("E0106", message, span, label, fix=replaced("remove the space", gap, ""), repair=repair)
 
 
 def _has_no_unit(token: Token) -> bool:

@@ -117,7 +117,7 @@ class Declarer:
                 found.append(word.text)
                 continue
             like = nearest(word.text, [*PARAMETER_TYPES, *shapes], 2)
-            message = f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else "")
+            message = f"`{word.text}` is not a type" + complaints.did_you_mean(like)
             hint = "types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes"
             self.resolver.report("E0215", message, word, hints=(hint,), fix=complaints.respell(word, like))
         return found
@@ -158,16 +158,11 @@ class Declarer:
         assert isinstance(self.scope.owner, ast.For)
         name, loop = node.name, self.scope.owner
         index = loop.variables[0].text
-        self.resolver.report(
-            "E0208",
-            f"`{name.text}` is made in every turn of this `for` and needs an index",
-            name,
-            label="one name for several members",
-            hints=(f"`{name.text}[{index}]` gives each turn a member of its own",),
-            fix=Fix(
-                f"write `{name.text}[{index}]`", (Edit(name.span, f"{name.text}[{index}]"),), is_sure=True
-            ),
-        )
+        message = f"`{name.text}` is made in every turn of this `for` and needs an index"
+        label, member = "one name for several members", f"{name.text}[{index}]"
+        hints = (f"`{member}` gives each turn a member of its own",)
+        fix = Fix(f"write `{member}`", (Edit(name.span, member),), is_sure=True)
+        self.resolver.report("E0208", message, name, label=label, hints=hints, fix=fix)
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:
         """Enters what a loop declares for the structure around it; `local` are the names of its turns."""

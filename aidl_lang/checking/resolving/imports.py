@@ -359,21 +359,13 @@ class _Loader:
         try:
             path = relative_to(written, importer)
         except FileError:
-            self._report(
-                "E0212",
-                f"`{written}` lies outside the project",
-                statement.path,
-                "a program imports only from its own folder and the folders below it",
-            )
+            hint = "a program imports only from its own folder and the folders below it"
+            self._report("E0212", f"`{written}` lies outside the project", statement.path, hint)
             return
         if path in self.open:
             chain = " → ".join([*self.open[self.open.index(path) :], path])
-            self._report(
-                "E0211",
-                f"files import each other in a circle: {chain}",
-                statement.path,
-                "move what both need into a file of its own, which imports neither",
-            )
+            hint = "move what both need into a file of its own, which imports neither"
+            self._report("E0211", f"files import each other in a circle: {chain}", statement.path, hint)
             return
         module = self.known.get(path) or self._read(statement, path)
         if module is not None:
