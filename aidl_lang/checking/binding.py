@@ -309,15 +309,8 @@ def _agreeing(
     for index in following:
         meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
         if len(meant) > 1 and not isinstance(given[index].type, AnyType):
-            return [
-                Mismatch(
-                    fit.signature,
-                    f"does not tell whether {' or '.join(ticked(meant))} is meant",
-                    index,
-                    tuple(meant),
-                )
-                for fit in fits
-            ]
+            why = f"does not tell whether {' or '.join(ticked(meant))} is meant"
+            return [Mismatch(fit.signature, why, index, tuple(meant)) for fit in fits]
     return list(fits)
 
 

@@ -226,11 +226,8 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
         case BoxType():
             return _field(check, base, node, {})
         case _:
-            return check.report(
-                "E0202",
-                f"{a(base.type)} has no members, so there is no `{shown(node.value)}.{name}`",
-                node.name,
-            )
+            message = f"{a(base.type)} has no members, so there is no `{shown(node.value)}.{name}`"
+            return check.report("E0202", message, node.name)
 
 
 def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:

@@ -258,12 +258,8 @@ class _Walker:
                 self._report(Construct.SHAPE, name.span, name.text)
             case ast.Var(name=name):
                 word = Span(node.span.source, node.span.start, node.span.start + len("var"))
-                self._report(
-                    Construct.UNKNOWN,
-                    name.span,
-                    name.text,
-                    Fix("make it a `let`", (Edit(word, "let"),), is_sure=True),
-                )
+                fix = Fix("make it a `let`", (Edit(word, "let"),), is_sure=True)
+                self._report(Construct.UNKNOWN, name.span, name.text, fix)
             case ast.Call(callee=callee):
                 kind = self._type(node)
                 if isinstance(kind, StructureType) and self._may_call(node, ast.Structure):

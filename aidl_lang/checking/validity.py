@@ -160,13 +160,14 @@ class _Walker:
             items: list[FarReference] = []
             for i, item in enumerate(node.items):
                 place = (*path, f"{name}[{i}]")
-                items += (
-                    self._coordinates(item, place)
-                    if isinstance(item, ast.Point)
-                    else [FarReference(item, place, True)]
-                )
+                items += self._point(item, place)
             return items
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
+
+    def _point(self, node: ast.Expression, path: tuple[str, ...]) -> list[FarReference]:
+        if isinstance(node, ast.Point):
+            return self._coordinates(node, path)
+        return [FarReference(node, path, is_point=True)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
         """Returns a point as target, or the one coordinate that reads too far: the other stays as it is."""
@@ -203,12 +204,7 @@ class _Walker:
             return
         path = (member_path(node.name, node.indices), "origin")
         if (at := node.placement.at) is not None:
-            targets = (
-                self._coordinates(at, path)
-                if isinstance(at, ast.Point)
-                else [FarReference(at, path, is_point=True)]
-            )
-            self._geometry(targets, at, site)
+            self._geometry(self._point(at, path), at, site)
         if (rotated := node.placement.rotated) is not None:
             self._geometry([FarReference(rotated, None, is_size=True)], rotated, site)
 

@@ -169,11 +169,8 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
     """Returns code, headline and hint for a call of a function that other languages have."""
     name, word = node.callee.text, fold(node.callee.text)
     if word in _SOLIDS:
-        return (
-            "E0349",
-            f"there is no `{name}`: AIDL draws in two dimensions",
-            "draw the outline; how thick a part is says `@thickness(10mm)` before its `solid`",
-        )
+        thick = "draw the outline; how thick a part is says `@thickness(10mm)` before its `solid`"
+        return "E0349", f"there is no `{name}`: AIDL draws in two dimensions", thick
     if (form := _INSTEAD.get(word)) is not None:
         return "E0203", f"`{name}` is not called: a structure is written `{form}`", ""
     if (hint := _CALLS.get(word)) is not None:

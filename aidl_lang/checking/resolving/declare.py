@@ -166,11 +166,8 @@ class Declarer:
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:
         """Enters what a loop declares for the structure around it; `local` are the names of its turns."""
-        local = local | {
-            s.name.text
-            for s in statements
-            if isinstance(s, ast.Let) or (isinstance(s, ast.Assign) and not s.indices)
-        }
+        named = (s for s in statements if isinstance(s, ast.Let | ast.Assign))
+        local = local | {s.name.text for s in named if isinstance(s, ast.Let) or not s.indices}
         for node in statements:
             match node:
                 case ast.Assign(indices=indices) | ast.Structure(indices=indices) if indices:
@@ -238,8 +235,5 @@ def _together(a: Branch, b: Branch) -> bool:
 
 def _mentions(expressions: Sequence[ast.Expression], names: set[str]) -> bool:
     folded = {fold(name) for name in names}
-    return any(
-        isinstance(node, ast.Name) and fold(node.text) in folded
-        for expression in expressions
-        for node in ast.walk(expression)
-    )
+    nodes = (node for expression in expressions for node in ast.walk(expression))
+    return any(isinstance(node, ast.Name) and fold(node.text) in folded for node in nodes)

@@ -431,12 +431,10 @@ class _Loader:
             self._unread(statement)
             return None
         if PurePosixPath(path).suffix != SUFFIX:
-            hints = (
-                f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`",
-                "drawings of other programs end in `.svg` or `.dxf`"
-                if PurePosixPath(path).suffix
-                else "the library needs no import",
-            )
+            other = "the library needs no import"
+            if PurePosixPath(path).suffix:
+                other = "drawings of other programs end in `.svg` or `.dxf`"
+            hints = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", other
             message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
             self._report("E0210", message, statement.path, *hints)
             return None

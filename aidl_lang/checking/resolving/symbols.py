@@ -158,15 +158,8 @@ class SymbolScope:
         """
         key: str | None = name
         if not any(name in s.callables or name in s.aliases for s in self.chain()):
-            key = next(
-                (
-                    k
-                    for s in self.chain()
-                    if (k := s.spelled_alike("callables", name) or s.spelled_alike("aliases", name))
-                    is not None
-                ),
-                None,
-            )
+            alike = (s.spelled_alike(of, name) for s in self.chain() for of in ("callables", "aliases"))
+            key = next((known for known in alike if known is not None), None)
         found: list[Signature] = []
         canonical: str | None = None
         seen: set[str] = set()
