@@ -273,7 +273,7 @@ def test_forms_are_written_as_few() -> None:
     lines = guide().splitlines()
     for line in (
         "dome(…/bottom_center, width, height) →",
-        "kite(…/bottom_corner/top_corner, width, height, shoulder) → as rhombus",
+        "parallelogram(…, width, {height, shift | side, side_angle}) → edges corners",
         "arch(…/bottom_center, width, height, rise?) →",
         "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height,",
         "path(steps, from/start?, heading?, closed?)",
