@@ -311,11 +311,8 @@ class Way:
         """
         stretch = self.stretches[index]
         whole = stretch.length
-        unmet = [
-            ex.apply("maximum", ex.ZERO, over)
-            for over, is_kept in ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
-            if not is_kept
-        ]
+        overs = ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
+        unmet = [ex.apply("maximum", ex.ZERO, over) for over, is_kept in overs if not is_kept]
         own = ex.apply("maximum", own, ex.ZERO) if at_least else own
         own = ex.apply("minimum", own, whole) if at_most else own
         if isinstance(stretch, Stretch):
@@ -461,13 +458,8 @@ def _circle(curve: Geometry, here: Structure) -> Stretch:
     x, y = xy(core["center"])
     radius = number(core["radius"])
     turn = ex.constant(-1.0 if clockwise(curve, here) else 1.0)
-    return Stretch(
-        (ex.add(x, radius), y),
-        ex.mul(turn, ex.constant(90.0)),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(turn, _DEGREES), radius),
-    )
+    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    return Stretch((ex.add(x, radius), y), ex.mul(turn, ex.constant(90.0)), length, (x, y), bend)
 
 
 def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
@@ -478,13 +470,9 @@ def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stre
     is_clockwise = clockwise(curve, here)
     radius = distance(core["center"], core["start"])
     turn = ex.constant(-1.0 if is_clockwise != reverse else 1.0)
-    return Stretch(
-        xy(start),
-        ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0))),
-        ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius),
-        xy(core["center"]),
-        ex.div(ex.mul(turn, _DEGREES), radius),
-    )
+    ahead = ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0)))
+    length, bend = ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius), ex.mul(turn, _DEGREES)
+    return Stretch(xy(start), ahead, length, xy(core["center"]), ex.div(bend, radius))
 
 
 def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | None) -> Way | None:
@@ -507,15 +495,10 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
 
 
 def _written_round(circle: Geometry, here: Structure, *, inside: bool) -> Stretch:
-    core, turn = view(circle, here), 1.0 if inside else -1.0
+    core, turn = view(circle, here), ex.constant(1.0 if inside else -1.0)
     (x, y), radius = xy(core["center"]), number(core["radius"])
-    return Stretch(
-        (x, ex.add(y, ex.mul(ex.constant(turn), radius))),
-        ex.constant(180.0),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(ex.constant(turn), _DEGREES), radius),
-    )
+    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    return Stretch((x, ex.add(y, ex.mul(turn, radius))), ex.constant(180.0), length, (x, y), bend)
 
 
 def _value(place: Place) -> tuple[float, float]:

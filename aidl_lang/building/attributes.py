@@ -243,11 +243,9 @@ def _report_cycle(
 _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
 
 
-OWN_LOOKS = {
-    "drawing": ("color", "stroke", "dash", "opacity", "shade"),
-    "solid": ("color", "opacity", "shade"),
-    "assembly": ("color", "opacity", "shade"),
-}
+_MATERIAL_LOOKS = ("color", "opacity", "shade")
+_LINE_LOOKS = ("color", "stroke", "dash", "opacity", "shade")
+OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATERIAL_LOOKS}
 """Attributes that a geometry may have for itself, by the kind of its structure."""
 
 

@@ -241,11 +241,8 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    scope.values |= {
-        s.name.text: LetBinding(s.value, scope)
-        for s in block.statements
-        if isinstance(s, ast.Let | ast.Assign)
-    }
+    named = (s for s in block.statements if isinstance(s, ast.Let | ast.Assign))
+    scope.values |= {s.name.text: LetBinding(s.value, scope) for s in named}
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)

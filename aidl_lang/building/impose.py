@@ -363,13 +363,10 @@ def _boxes_of(g: Geometry) -> set[Structure]:
 def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
     """Reports a constraint on a box with geometry in it that follows something outside of its holder."""
     span = it.place(node) or node.span
-    it.report(
-        "E0402",
-        f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, which is derived "
-        f"of geometry outside of `{env.here.path}`",
-        span,
-        hints=[f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"],
-    )
+    why = f"which is derived of geometry outside of `{env.here.path}`"
+    message = f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, {why}"
+    hint = f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"
+    it.report("E0402", message, span, hints=[hint])
 
 
 def _impose_within(

@@ -229,11 +229,8 @@ class _Lowering:
         """Numbers the unknowns that can move: those of the drawing, and both coordinates of frames that a
         constraint names, or mentions.
         """
-        mentioned = self.mentioned = set(
-            ex.unknowns(
-                e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
-            )
-        )
+        parts = (part for c in self.model.constraints for part in c.comparisons)
+        mentioned = self.mentioned = set(ex.unknowns(e for part in parts for e in (part.left, part.right)))
         drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
         self.named = {c: self._named(c) for c in self.model.constraints}
         for constraint in self.model.constraints:

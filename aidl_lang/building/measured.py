@@ -115,12 +115,8 @@ def _chained(sides: Sequence[_Side]) -> Iterator[list[tuple[_Side, bool]]]:
             continue
         start, at = _values(chain[0][0])
         while math.dist(start, at) > _MEET * extent:
-            near = [
-                (math.dist(e, at), k, j)
-                for k, s in enumerate(left)
-                if s.ends
-                for j, e in enumerate(_values(s))
-            ]
+            ends = ((k, j, e) for k, s in enumerate(left) if s.ends for j, e in enumerate(_values(s)))
+            near = [(math.dist(e, at), k, j) for k, j, e in ends]
             if not near or min(near)[0] > _MEET * extent:
                 yield []
                 return

@@ -49,14 +49,8 @@ CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "distance": ("max",),
 }
 """The words that choose how an outline is made; the first is the default."""
-_SYNONYMS = {
-    "miter": "sharp",
-    "mitre": "sharp",
-    "mitred": "sharp",
-    "rounded": "round",
-    "flat": "butt",
-    "maximum": "max",
-}
+_SYNONYMS = dict.fromkeys(("miter", "mitre", "mitred"), "sharp")
+_SYNONYMS |= {"rounded": "round", "flat": "butt", "maximum": "max"}
 
 
 def _outline(kind: str, *words: str) -> Function:
@@ -152,11 +146,9 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
         if isinstance(item, PointVal) and kind == "hull":
             item = _as_point(it, item, node, env)
         if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
-            hint = (
-                "name the outline in it, as in `plate.outline`"
-                if isinstance(item, Structure)
-                else ("give it a circle, a shape such as `rectangle(…)`, or a list of curves that close")
-            )
+            hint = "give it a circle, a shape such as `rectangle(…)`, or a list of curves that close"
+            if isinstance(item, Structure):
+                hint = "name the outline in it, as in `plate.outline`"
             message = f"`{node.callee.text}` takes outlines, and this is {kind_of(item)}"
             it.report("E0337", message, node, hints=[hint])
             return None

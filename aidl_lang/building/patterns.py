@@ -280,12 +280,8 @@ def _along(call: _Call) -> Value:
     if places is None:
         return NOTHING
     if len(places) * len(way.stretches) > _MOST_ALONG:
-        call.it.report(
-            "E0805",
-            f"{len(places)} members along {len(way.stretches)} curves are too many: their product is at most "
-            f"{_MOST_ALONG}",
-            call.node,
-        )
+        what = f"{len(places)} members along {len(way.stretches)} curves are too many"
+        call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
         return NOTHING
     turns = call.a.get("turn") is not False
     about = call.centre()
@@ -311,11 +307,9 @@ def _evenly(call: _Call, way: Way) -> list[Expression] | None:
     length = way.length
     room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
     if room.value <= 0:
-        call.wrong(
-            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
-            "ends",
-            "make the `inset` less",
-        )
+        what = f"an `inset` of {inset.value:g} at both ends"
+        message = f"nothing is left of a curve of {length.value:g} mm with {what}"
+        call.wrong(message, "make the `inset` less")
         return None
     found = _steps(call, room, is_closed=way.is_closed)
     if found is None:
@@ -342,11 +336,9 @@ def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Ex
     while "n" in call.a and sum(parts) < found[0]:
         sparse = max(range(len(runs)), key=lambda k: (round(runs[k].value / parts[k], 6), runs[k].value))
         parts[sparse] += 1
-    places = [
-        ex.add(corner, ex.mul(ex.constant(k / part), run))
-        for corner, run, part in zip(corners, runs, parts, strict=True)
-        for k in range(part)
-    ]
+    spans = zip(corners, runs, parts, strict=True)
+    shares = ((corner, run, k / part) for corner, run, part in spans for k in range(part))
+    places = [ex.add(corner, ex.mul(ex.constant(share), run)) for corner, run, share in shares]
     return [p if p.value < way.length.value else ex.sub(p, way.length) for p in places]
 
 
