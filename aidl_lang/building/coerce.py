@@ -70,10 +70,8 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
     if not it.watched:
         kind = "geometry" if env.reach is Reach.OWN else "a constraint"
         allowed = "its own structure" if env.reach is Reach.OWN else "the structure that holds it"
-        code = "E0401" if env.reach is Reach.OWN else "E0402"
-        message = (
-            f"{kind} of `{env.here.path}` cannot use `{node.span.text}`, which belongs to `{owner.path}`"
-        )
+        code, name = "E0401" if env.reach is Reach.OWN else "E0402", node.span.text
+        message = f"{kind} of `{env.here.path}` cannot use `{name}`, which belongs to `{owner.path}`"
         hint = f"write a first guess here and a constraint in `{common_ancestor(owner, env.here).path}`"
         it.report(code, message, node, label=f"outside {allowed}", hints=[hint])
     return False

@@ -267,23 +267,18 @@ def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     """Returns a named point: its unknowns are called `p.x` and `p.y`."""
-    return point(*loose_coordinates(it, at, g, g.owner))
+    return point(*loose_place(it, at, g))
 
 
-def loose_coordinates(
-    it: Interpreter,
-    at: PointVal,
-    holder: Geometry | Structure,
-    owner: Structure,
-    frame_of: Structure | None = None,
-) -> tuple[Expression, Expression]:
-    """Returns the coordinates of a place: exact ones as they are, of others the unknowns `x` and `y`."""
+def loose_place(it: Interpreter, at: PointVal, of: Geometry | Structure) -> tuple[Expression, Expression]:
+    """Returns the coordinates of a point or a frame: exact ones as they are, else unknowns `x` and `y`."""
+    owner, moved = (of.owner, None) if isinstance(of, Geometry) else (of.parent or of, of)
 
     def coordinate(n: Num, axis: str) -> Expression:
         if n.status >= Exactness.FIXED:
-            return solvable(it, n, holder.span)
-        made = it.unknown(n.value, holder, axis, owner=owner, dimension=LENGTH, frame_of=of)
-        return it.became(n, made, holder, axis)
+            return solvable(it, n, of.span)
+        made = it.unknown(n.value, of, axis, owner=owner, dimension=LENGTH, frame_of=moved)
+        return it.became(n, made, of, axis)
 
     return coordinate(at.x, "x"), coordinate(at.y, "y")
 
