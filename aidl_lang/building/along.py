@@ -443,9 +443,7 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
     return walked
 
 
-def _next(
-    rest: Sequence[_Pair], at: tuple[float, float], near: float
-) -> tuple[_Pair, Stretch | Cubic] | None:
+def _next(rest: list[_Pair], at: tuple[float, float], near: float) -> tuple[_Pair, Stretch | Cubic] | None:
     for pair in rest:
         for stretch in pair:
             if math.dist(_value(stretch.start), at) <= near:

@@ -67,11 +67,9 @@ def _settle(it: Interpreter, s: Structure, stated: StatedClip) -> None:
             s.clip = tuple(_outline(it, s, stated, values))
 
 
-def _outline(
-    it: Interpreter, s: Structure, stated: StatedClip, values: Sequence[Value]
-) -> Iterator[Geometry]:
+def _outline(it: Interpreter, s: Structure, clip: StatedClip, values: Sequence[Value]) -> Iterator[Geometry]:
     """Yields the geometry that `@clip` names; reports what is no outline."""
-    attribute = stated.attribute
+    attribute = clip.attribute
     found = list(each_of(values[0], Geometry)) if len(values) == 1 else []
     if found and all(g.type != "point" and not g.is_nameless for g in found):
         yield from found

@@ -174,7 +174,7 @@ def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgumen
     return True
 
 
-def _loose_place(
+def _loose_coordinates(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
     """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether it did."""
@@ -340,7 +340,7 @@ def _placed_within(check: Inference, node: ast.Call, identifier: ast.Identifier)
 _ANSWERS = (
     _ambiguous,
     _filled_twice,
-    _loose_place,
+    _loose_coordinates,
     _pair_for_one,
     _half_or_double,
     _unknown_parameter,
