@@ -395,9 +395,7 @@ def _turn(before: Expression, after: Expression) -> Expression:
 
 
 def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
-    """Returns the way along curves that are joined at their ends, in the sense in which the first is written;
-    None for such as are not one line.
-    """
+    """Returns the way along curves joined at their ends, in the sense of the first; None if not one line."""
     if len(curves) == 1 and curves[0].type == "circle":
         return Way((_circle(curves[0], here),), is_closed=True)
     if any(curve.type == "circle" or (curve.type == "ellipse" and len(curves) > 1) for curve in curves):

@@ -376,9 +376,7 @@ def _points_in(name: str, value: Value) -> Iterator[tuple[str, PointVal]]:
 def _bind_inside(
     it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
 ) -> Value:
-    """Returns an argument that is no number: its points where they were placed, and the numbers in records as
-    sizes. Lists of numbers stay constants.
-    """
+    """Returns an argument that is no number: points as placed, numbers in records (not in lists) as sizes."""
     match value:
         case PointVal():
             return moved[name]

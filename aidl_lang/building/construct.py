@@ -353,9 +353,7 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
-    """Returns three literal points of one circle, rounded as by hand, as the radius of the start and two
-    angles: nothing is left to be held equal.
-    """
+    """Returns three literal points of one circle, rounded as by hand, as a radius and two angles."""
     if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
         return a
     center = _written(a, "center")

@@ -353,9 +353,7 @@ def common_ancestor(a: Structure, b: Structure) -> Structure:
 
 
 def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
-    """Returns the nearest structure around `here` and all the owners of the sources of something in it; None
-    if that is `here` itself.
-    """
+    """Returns the nearest structure around `here` and the owners of something's sources; None for `here`."""
     reach = reduce(common_ancestor, owners, here)
     return reach if reach is not here else None
 

@@ -255,9 +255,7 @@ def _named(key: str, kind: str) -> str:
 
 
 def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
-    """Returns the sizes by the table of exactness; a literal one is a parameter of the first corner. The
-    largest that fits, `max`, is none of them.
-    """
+    """Returns the sizes (but not `max`) by the table of exactness; a literal one is the first corner's."""
     given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
     numbers = [replace(v, expression=spelled_out(v.expression)[0]) for v in given if isinstance(v, Num)]
     if target.of:

@@ -206,9 +206,7 @@ class CallSite:
         return known
 
     def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:
-        """Returns the overload that is meant, and the arguments: a name in reach is read as a word for an
-        option only if it does not fit otherwise.
-        """
+        """Returns the overload that is meant, and the arguments; a name in reach is an option at worst."""
         chosen = self.meaning(values)
         if isinstance(chosen, list) and self.doubtful:
             before = len(values) - len(self.nodes)

@@ -43,9 +43,7 @@ def find_cycles(infer: Inference) -> None:
 
 
 def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]]:
-    """Returns for each param or let the symbols that its value names, and where. Members of an array may
-    follow from one another.
-    """
+    """Returns for each param or let, but for arrays, the symbols that its value names, and where."""
     uses = infer.resolution.uses
     return {
         symbol: [
@@ -257,9 +255,7 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
 
 
 def _check_logic(infer: Inference, node: ast.Expression) -> None:
-    """Reports `or`, `not` and `!=` over unknowns, which leave the solver no equation; over constants they are
-    checked while building.
-    """
+    """Reports `or`, `not` and `!=` over unknowns, which leave no equation; not those over constants."""
     match node:
         case ast.Binary(operator="and", left=left, right=right):
             _check_logic(infer, left)

@@ -180,9 +180,7 @@ def check_subset(infer: Inference, variant: Variant) -> list[Diagnostic]:
 
 
 def adapted(diagnostics: Iterable[Diagnostic], variant: Variant) -> list[Diagnostic]:
-    """Returns the diagnostics without advice that the variant cannot follow, and without those inside a
-    statement that it lacks.
-    """
+    """Returns diagnostics, but no advice that the variant cannot follow, nor in statements it lacks."""
     found = list(diagnostics)
     own = {rule.code for rule in FORBIDDEN[variant].values()}
     if not own:

@@ -128,9 +128,7 @@ class _Walker:
             self._geometry(self._targets(call, index, node, path), node, site)
 
     def _order(self, node: ast.Expression, site: StatementSite) -> None:
-        """Reports an operand of a derivation that is made further down. Names of this structure without a
-        path are checked elsewhere.
-        """
+        """Reports an operand of a derivation that is made further down, but for names of this structure."""
         for part in ast.walk(node):
             symbol = self.infer.resolution.uses.get(part)
             if symbol is None or symbol.node is None or symbol.kind not in UNKNOWNS or symbol.is_array:
@@ -176,9 +174,7 @@ class _Walker:
         return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]
 
     def _parameter(self, call: ast.Call, index: int) -> tuple[str | None, Type]:
-        """Returns the name and type of the parameter that the argument of that number goes to; None and ANY
-        if there is doubt.
-        """
+        """Returns name and type of the parameter that an argument goes to; None and ANY if in doubt."""
         nodes = arguments(self.infer, call)
         given = given_to(call, [self.infer.fact(node).type for node in nodes])
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)

@@ -1,6 +1,4 @@
-"""The numbers of the text that have a share in some constraints: those written in them, and the exact ones
-behind the names that they mention.
-"""
+"""The numbers of the text in some constraints: those written there, and the exact ones that they name."""
 
 from __future__ import annotations
 

@@ -155,9 +155,7 @@ def elsewhere_notes(
 def _guesses(
     model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
 ) -> Fix | None:
-    """Returns a fix that writes first guesses near to where things are now, from which the program solves as
-    it is written; None if none were found.
-    """
+    """Returns a fix that writes first guesses from which the program solves as written; or None."""
     places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
     was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
     mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))

@@ -252,9 +252,7 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """Returns the numbers of the constraints in another problem by those in this one; None if they are not
-    stated in the same order.
-    """
+    """Returns constraints' numbers in another problem by those in this one; None if their order differs."""
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -286,9 +284,7 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """Returns a key for each unknown that it keeps in another problem: its path, and the number of earlier
-    unknowns with that path.
-    """
+    """Returns a lasting key for each unknown: its path, and the number of earlier unknowns with that path."""
     met: Counter[str] = Counter()
     found = []
     for path in lowered.problem.names:

@@ -68,9 +68,7 @@ def _cuts_in(module: ast.Module) -> frozenset[str]:
 
 @record()
 class _Reader:
-    """A reader of the bodies of a file. `kind` is that of the structure around, `outlines` are the names of
-    which other outlines are made in it.
-    """
+    """A reader of bodies: `kind` is that of the structure around, of `outlines` others are made."""
 
     cuts: frozenset[str]
 
@@ -258,9 +256,7 @@ _OPTIONS = "angle: turn = 0deg, filled: bool = false, rotatable: bool = false"
 
 
 def _definitions(found: OutlineFile) -> Iterator[str]:
-    """Yields the text of the shapes: by the origin of the file, and by the middle of the outlines, with a
-    scale, a width or a height.
-    """
+    """Yields the shapes: about the file's origin and the outlines' middle, with a scale, a width or a height."""
     for name, trace in ((WHOLE, found.whole), *found.parts.items()):
         inner = _inner(found, trace)
         left, bottom, right, top = trace.box
