@@ -347,7 +347,7 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
 
 def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """Yields how far a drawing reaches: a multiple of its unit if its turn is known, else by its silhouette."""
+    """Yields how far a drawing reaches: a multiple of its unit if its turn is known, else its silhouette."""
     angle, axis = number(view(g, here)["angle"]), side in ("top", "bottom")
     if not angle.is_constant:
         at = on_text(g, here)

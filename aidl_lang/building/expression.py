@@ -318,7 +318,7 @@ def exact_turn(degrees: float) -> tuple[float, float]:
 
 
 def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[Expression]:
-    """Yields every node below the roots once, arguments first; or only the open ones, the top of each graph."""
+    """Yields every node below the roots once, arguments first; or the open ones, the top of each graph."""
     seen: set[Expression] = set()
     for root in roots:
         stack = [(root, False)]

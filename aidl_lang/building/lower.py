@@ -251,7 +251,7 @@ class _Lowering:
                     self.variables.setdefault(unknown.owner, []).append(unknown)
 
     def _placer(self, unknown: Unknown) -> Structure:
-        """Returns the structure at whose turn an unknown is placed; for the box of an empty one its parent."""
+        """Returns the structure at whose turn an unknown is placed; for an empty one's box its parent."""
         parent = unknown.owner.parent
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
 

@@ -101,7 +101,7 @@ def audible(found: Iterable[Diagnostic], allowed: Sequence[Allowance]) -> list[D
 
 
 def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:
-    """Returns a note on each code that is allowed where `found`, all that there is to tell, has none of it."""
+    """Returns a note on each code that is allowed where `found`, all there is to tell, has none of it."""
     told: list[Diagnostic] = []
     for each in allowed:
         if not each.may_come and not any(each.covers(d) for d in found):

@@ -425,7 +425,7 @@ class Signature:
 
 @record()
 class ArgumentSource:
-    """The origin of an argument: that at `index` in the call, a part of it, or its point with y from `other`."""
+    """The origin of an argument: that at `index` in the call, a part of it, or it as x and `other` as y."""
 
     index: int
     part: int | None = None

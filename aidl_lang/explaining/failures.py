@@ -43,7 +43,7 @@ _QUOTED = 60
 
 
 def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
-    """Returns an explanation of each group that failed for reasons of its own; `trials` tries its remedies."""
+    """Returns an explanation of each group that failed for reasons of its own; `trials` tries remedies."""
     own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
     found: list[Explanation] = []
     for failure in own:

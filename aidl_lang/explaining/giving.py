@@ -81,7 +81,7 @@ def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container
 
 
 def with_reasons(model: SolvedModel, given: Sequence[GaveWay], lowered: Lowered) -> SolvedModel:
-    """Returns the model with the reasons of its changed sizes; ways between literal points have none to tell."""
+    """Returns the model with the reasons of its changed sizes, but for ways between literal points."""
     texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
     bare = {change.path for change in model.changed} - texts.keys()
     for unknown in lowered.unknowns:

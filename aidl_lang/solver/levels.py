@@ -82,7 +82,7 @@ class Levels:
         self._evaluated: tuple[Floats, Floats] | None = None
 
     def _incidence(self) -> Ints:
-        """Returns pairs of a constraint and an unknown in it, ascending: n times the former plus the latter."""
+        """Returns pairs of a constraint and an unknown in it, ascending: n times the one plus the other."""
         problem = self.problem
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)

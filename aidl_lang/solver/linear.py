@@ -270,7 +270,7 @@ class _DualActiveSet:
         self.contradiction: Floats | None = None
 
     def solve(self, together: bool = False) -> Nearest:
-        """Returns the nearest point. If violated rows enter `together`, it is quicker, but may find no end."""
+        """Returns the nearest point. If violated rows enter `together`, it is quicker, but may never end."""
         feasible = self._settle()
         for _ in range(3 * len(self.y) + 10):
             if not feasible:
@@ -309,7 +309,7 @@ class _DualActiveSet:
         return False
 
     def _first_to_vanish(self, rows: Ints, direction: Floats, length: float) -> tuple[int | None, float]:
-        """Returns the inequality whose multiplier reaches zero along `direction` before `length`, and where."""
+        """Returns the inequality whose multiplier vanishes along `direction` before `length`, and where."""
         current = self.multipliers[rows]
         falling = self.inequality[rows] & (current + direction < 0.0 if length == 1.0 else direction < 0.0)
         candidates = np.flatnonzero(falling)

@@ -65,7 +65,7 @@ class Relaxation:
         """True if something in the rows neither is affine nor chooses."""
 
     def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
-        """Returns factors of some of the rows `among`, by number, that add up to an impossibility; or none."""
+        """Returns factors of some of the rows `among`, by number, that add up to what cannot be; or none."""
         return self._refuted(list(among)).factors
 
     @property
@@ -74,7 +74,7 @@ class Relaxation:
         return bool(self.refutation(self._all))
 
     def lack(self) -> float:
-        """Returns how far off the sum is that refutes the rows, its greatest factor as one; 0 if none does."""
+        """Returns how far off the sum is that refutes the rows, its greatest factor as 1; 0 if none does."""
         found = self._refuted(self._all)
         return found.off / max(map(abs, found.factors.values()), default=1.0)
 
@@ -365,7 +365,7 @@ class Linearised:
 
 
 def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> list[int]:
-    """Returns constraints whose rows, linearised here, contradict each other, each needed for that; or none."""
+    """Returns constraints whose linearised rows contradict each other, each needed for that; or none."""
     rows = Linearised(hierarchy, constraints, free)
     accused = rows.accused()
     if rows.can_hold(accused):

@@ -210,7 +210,7 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
 
 
 def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
-    """Returns the number of the token that ends the operand before or behind one: a separator or a bracket."""
+    """Returns the number of the token that ends the operand before or behind: a separator or a bracket."""
     depth, n = 0, at + step
     while n != limit:
         deeper = step * tokens[n].nesting

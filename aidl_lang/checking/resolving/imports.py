@@ -256,7 +256,7 @@ _OPTIONS = "angle: turn = 0deg, filled: bool = false, rotatable: bool = false"
 
 
 def _definitions(found: OutlineFile) -> Iterator[str]:
-    """Yields the shapes: about the file's origin and the outlines' middle, with a scale, a width or a height."""
+    """Yields the shapes: about the file's origin and the outlines' middle, by a scale, width or height."""
     for name, trace in ((WHOLE, found.whole), *found.parts.items()):
         inner = _inner(found, trace)
         left, bottom, right, top = trace.box
