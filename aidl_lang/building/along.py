@@ -185,11 +185,8 @@ def of_ellipse(
     cos, sin = ex.cos(angle), ex.sin(angle)
 
     def place(u: float, v: float) -> Place:
-        along, across = ex.mul(ex.constant(u), rx), ex.mul(ex.constant(v), ry)
-        return (
-            ex.add(center[0], ex.sub(ex.mul(cos, along), ex.mul(sin, across))),
-            ex.add(center[1], ex.add(ex.mul(sin, along), ex.mul(cos, across))),
-        )
+        x, y = ex.turned(cos, sin, ex.mul(ex.constant(u), rx), ex.mul(ex.constant(v), ry))
+        return ex.add(center[0], x), ex.add(center[1], y)
 
     found = []
     for k in range(count):
@@ -236,12 +233,9 @@ class Stretch:
             cos, sin = ex.cos(self.heading), ex.sin(self.heading)
             return ex.add(x, ex.mul(way, cos)), ex.add(y, ex.mul(way, sin))
         turn = ex.mul(self.bow, way)
-        cos, sin = ex.cos(turn), ex.sin(turn)
-        u, v = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
-        return (
-            ex.add(self.center[0], ex.sub(ex.mul(cos, u), ex.mul(sin, v))),
-            ex.add(self.center[1], ex.add(ex.mul(sin, u), ex.mul(cos, v))),
-        )
+        out = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
+        u, v = ex.turned(ex.cos(turn), ex.sin(turn), *out)
+        return ex.add(self.center[0], u), ex.add(self.center[1], v)
 
     def direction(self, way: Expression) -> Expression:
         return ex.add(self.heading, ex.mul(self.bow, way))

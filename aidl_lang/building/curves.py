@@ -120,11 +120,8 @@ def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expres
     up = -1.0 if clockwise(geometry, here) else 1.0
 
     def at(p: Vec) -> tuple[Expression, Expression]:
-        u, v = ex.constant(p[0]), ex.constant(up * p[1])
-        return (
-            ex.add(x, ex.sub(ex.mul(along[0], u), ex.mul(along[1], v))),
-            ex.add(y, ex.add(ex.mul(along[1], u), ex.mul(along[0], v))),
-        )
+        u, v = ex.turned(*along, ex.constant(p[0]), ex.constant(up * p[1]))
+        return ex.add(x, u), ex.add(y, v)
 
     return at
 

@@ -307,6 +307,11 @@ def atan2(y: Expression, x: Expression) -> Expression:
     return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
 
 
+def turned(c: Expression, s: Expression, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+    """Returns coordinates turned by the angle with this cosine and sine."""
+    return sub(mul(c, x), mul(s, y)), add(mul(s, x), mul(c, y))
+
+
 def exact_turn(degrees: float) -> tuple[float, float]:
     """Returns cosine and sine, exact at multiples of a right angle."""
     quarter = degrees / 90.0

@@ -72,8 +72,7 @@ class Frame:
             x = ex.apply("neg", x)
         if self.is_level:
             return x, y
-        c, s = self.cos_sin()
-        return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
+        return ex.turned(*self.cos_sin(), x, y)
 
     def cos_sin(self) -> tuple[Expression, Expression]:
         if self.rotation.is_constant:

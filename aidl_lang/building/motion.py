@@ -40,8 +40,7 @@ class Motion:
         u, v = self._from(x, self.about[0]), self._from(y, self.about[1])
         if self.mirrored:
             u = ex.apply("neg", u)
-        s = ex.sub(ex.mul(self.cos, u), ex.mul(self.sin, v))
-        t = ex.add(ex.mul(self.sin, u), ex.mul(self.cos, v))
+        s, t = ex.turned(self.cos, self.sin, u, v)
         return ex.add(self.to[0], ex.mul(self.scale, s)), ex.add(self.to[1], ex.mul(self.scale, t))
 
     @staticmethod

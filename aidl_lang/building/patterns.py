@@ -187,10 +187,8 @@ def _grid(call: _Call) -> Value:
 def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
     """Lays out members at whole numbers of steps from the first, in one direction or in two."""
     if "center" in call.a and "start" in call.a:
-        return call.wrong(
-            "a pattern is placed by its `center` or by the `start` of its first member, not by both",
-            "leave one of them out",
-        )
+        what = "a pattern is placed by its `center` or by the `start` of its first member, not by both"
+        return call.wrong(what, "leave one of them out")
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
     back = _total([(ex.constant(-1.0), span)])
     goes_on = call.has_place and "center" not in call.a and "start" not in call.a
@@ -269,10 +267,8 @@ def _along(call: _Call) -> Value:
     if way.is_closed and "margin" in call.a:
         margin = call.size("margin")
         if (inner := within(way, margin)) is None:
-            return call.wrong(
-                "a `margin` is kept within lines, and arcs that go on from them without a corner",
-                "draw a `construction` path where the members are, and go along that",
-            )
+            what = "a `margin` is kept within lines, and arcs that go on from them without a corner"
+            return call.wrong(what, "draw a `construction` path where the members are, and go along that")
         way, corners, off = inner
         if any(s.length.value < 1e-9 for s in way.stretches):
             return call.wrong(f"nothing is left of this outline within {margin.value:g} mm", "make it less")
@@ -352,10 +348,8 @@ def _way(call: _Call) -> Way | None:
     curves = [p for p in drawn if p.type != "point"]
     other = next((c.type for c in curves if c.type not in KINDS | FREE_KINDS), None)
     if other is not None or any(g.recipe is not None for g in given):
-        call.wrong(
-            f"`along` follows curves, and this is {with_article(given[0].type)}",
-            "follow a `path` or `polyline` near it, or what the outline is made of",
-        )
+        hint = "follow a `path` or `polyline` near it, or what the outline is made of"
+        call.wrong(f"`along` follows curves, and this is {with_article(given[0].type)}", hint)
         return None
     found = way_along(curves, call.env.here) if curves else None
     if found is None:

@@ -277,11 +277,8 @@ def call(check: Inference, node: ast.Call) -> Fact:
 
 def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) -> dict[int, str]:
     """Returns the arguments, by index, that are names in reach and could be words for an option as well."""
-    return {
-        i: a.value.span.text
-        for i, a in enumerate(node.arguments)
-        if a.value in check.resolution.uses and is_word(a, candidates)
-    }
+    named = ((i, a) for i, a in enumerate(node.arguments) if a.value in check.resolution.uses)
+    return {i: a.value.span.text for i, a in named if is_word(a, candidates)}
 
 
 def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:

@@ -61,10 +61,8 @@ def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]
 def _report(infer: Inference, circle: list[Symbol], name: ast.Name) -> None:
     first = circle[0]
     way = f": {' → '.join(s.name for s in [*circle, first])}" if len(circle) > 1 else ""
-    hint, fix = (meant_outside(first, name) if not way else None) or (
-        "one of them needs a value that does not depend on the others",
-        None,
-    )
+    outside = meant_outside(first, name) if not way else None
+    hint, fix = outside or ("one of them needs a value that does not depend on the others", None)
     infer.report("E0207", f"`{first.name}` is defined by way of itself{way}", name, hints=[hint], fix=fix)
 
 

@@ -290,11 +290,8 @@ def _unknown_parameter(
     free = [name for name in names if fold(name) not in taken]
     synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in free}
     closest = max(misses, key=lambda m: _closeness(m, given)).signature
-    wrong = [
-        a.name
-        for a in node.arguments
-        if a.name is not None and not any(_knows(m.signature, a.name.text) for m in misses)
-    ]
+    written = [a.name for a in node.arguments if a.name is not None]
+    wrong = [name for name in written if not any(_knows(m.signature, name.text) for m in misses)]
     for identifier in wrong:
         like = nearest(identifier.text, free, 2)
         fix = respell(identifier, like)

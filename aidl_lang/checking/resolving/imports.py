@@ -285,11 +285,8 @@ def _definitions(found: OutlineFile) -> Iterator[str]:
 def _inner(found: OutlineFile, trace: Trace) -> str:
     """Returns the text of the names within a part: of those that have some of its elements and no others."""
     own = set(trace.elements)
-    names = (
-        name
-        for name, part in found.parts.items()
-        if part is not trace and own.issuperset(part.elements) and name != trace.name
-    )
+    others = ((name, part) for name, part in found.parts.items() if part is not trace)
+    names = (name for name, part in others if own.issuperset(part.elements) and name != trace.name)
     return " ".join(f'let {name} = traced_part(art, "{name}")' for name in names)
 
 
