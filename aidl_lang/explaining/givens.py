@@ -1,4 +1,4 @@
-"""The numbers of the text in some constraints: those written there, and the exact ones that they name."""
+"""The numbers that have a share in constraints: those written in them, and exact ones behind names."""
 
 from __future__ import annotations
 

@@ -290,7 +290,7 @@ class RemedySearch:
         return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
 
     def _other_end(self, end: _Written, change: float) -> _Written | None:
-        """Returns the other end of what fits; `end` if it was not found, None if all that is meant fits."""
+        """Returns the other end of what fits; `end` if none was found, None if all that may be meant fits."""
         inside = end.value
         for part in _BEYOND:
             outside = end.value + part * change
@@ -373,7 +373,7 @@ class RemedySearch:
     # -- digits
 
     def _spelled(self, target: float, onward: float) -> Iterator[_Written]:
-        """Yields spellings of a number, or of others a little `onward` if not 0; the shortest first."""
+        """Yields spellings, the shortest first; with `onward` those a little further in that direction."""
         for digits in range(_MEANT + 1):
             if abs(round(target, digits) - target) <= _NEAR * max(1.0, abs(target)):
                 yield self._plain(round(target, digits) + 0.0)

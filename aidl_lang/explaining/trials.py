@@ -172,9 +172,7 @@ class Trials:
     def _counterpart(
         self, edits: Sequence[Edit], failure: GroupFailure
     ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
-        """Returns the problem after the edits, with its numbers of the constraints and of the unknowns; None
-        if it has errors or is of another kind.
-        """
+        """Returns the edited problem, its constraints and unknowns by number; None for another kind."""
         if self.is_over or (other := self._with(edits)) is None:
             return None
         if (matched := _matched(self.lowered, other)) is None:
@@ -209,6 +207,14 @@ class Trials:
             return False
         asked = {self.lowered.problem.names[u] for u in failure.sizes}
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
+
+    def holds(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
+        """Tells whether the constraints of a failure hold after the edits, whatever gives way for it."""
+        if self.is_over or (other := self._with(edits)) is None:
+            return False
+        matched = _matched(self.lowered, other) or {}
+        found = solve(other.problem, self._quick).satisfied if matched else ()
+        return bool(found) and all(found[matched[i]] for i in failure.conflict)
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
         """Tells whether edits that resolve a failure leave no errors, such as another failure."""
@@ -252,7 +258,7 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """Returns constraints' numbers in another problem by those in this one; None if their order differs."""
+    """Returns another problem's constraints by numbers in this one; None if their order differs."""
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -284,7 +290,7 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """Returns a lasting key for each unknown: its path, and the number of earlier unknowns with that path."""
+    """Returns a key that each unknown keeps: its path, and how many before it have that path."""
     met: Counter[str] = Counter()
     found = []
     for path in lowered.problem.names:
