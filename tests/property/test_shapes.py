@@ -1,5 +1,5 @@
-"""Area and perimeter of the library's shapes, by every constructor, against the closed forms of `shapes.md`, for
-random sizes. Figures of Bézier curves are integrated along the solved curves instead.
+"""Area and perimeter of shapes of the library, by every constructor, for random sizes, against the closed
+forms of `shapes.md`. Figures of Bézier curves are integrated along the solved curves instead.
 """
 
 from __future__ import annotations
