@@ -133,8 +133,9 @@ def _perpendicular(a: Any, b: Any) -> list[float]:
 
 def _collinear(*things: Any) -> list[float]:
     found = listed(things)
-    line = next((t for t in found if is_line(t)), None)
-    if line is not None:
+    lines = [t for t in found if is_line(t)]
+    if lines:
+        line = max(lines, key=lambda t: abs(t["end"] - t["start"]))
         rest = [t for t in found if t is not line]
         return [abs(offset(p, line)) for t in rest for p in (ends(t) if is_line(t) else [middle(t)])]
     a, b, *others = map(middle, found)
