@@ -6,7 +6,7 @@ import pytest
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.lenses import lenses
-from aidl_lang.tools.ide.outline import as_bytes, colors, spellings
+from aidl_lang.tools.ide.outline import colors, spellings
 from aidl_lang.tools.ide.workspace import View, applied, run
 
 from .conftest import seen
@@ -40,11 +40,6 @@ def test_whatever_is_picked_is_what_is_drawn(wanted: tuple[int, int, int]) -> No
             assert colors(seen(text))[number].rgb == wanted
 
 
-def test_parts_from_0_to_1_become_bytes() -> None:
-    assert as_bytes((0.0, 0.5, 1.0)) == (0, 128, 255)
-    assert as_bytes((-1.0, 2.0, 1 / 255)) == (0, 255, 1)
-
-
 def titles(text: str) -> list[tuple[str, str]]:
     return [(lens.span.text, lens.title) for lens in lenses(seen(text, solved=True))]
 
@@ -72,20 +67,6 @@ assembly a {
         ("knob", "1 constraint · body can slide along x, eye can slide along x"),
         ("h", "2 times · fully constrained"),
     ]
-
-
-def test_constraints_that_do_not_hold_are_counted() -> None:
-    text = (
-        "solid a {\n c = circle(center: origin, radius: 4)\n constrain { c.radius == 5, c.radius == 6 }\n}\n"
-    )
-    ((name, title),) = titles(text)
-    assert name == "a"
-    assert "not met" in title
-
-
-def test_nothing_is_said_of_a_text_that_was_not_solved() -> None:
-    assert lenses(seen("solid a { c = circle(center: origin, radius: 4) }")) == []
-    assert titles("solid a { c = circle(radius: ) }") == []
 
 
 def test_examples(example: View) -> None:

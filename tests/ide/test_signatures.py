@@ -61,13 +61,6 @@ def test_the_active_parameter(marked: str, name: str, parameter: str) -> None:
     assert shown == parameter
 
 
-@pytest.mark.parametrize(
-    "marked", ["¦", "x = circle¦(3)", "x = circle(3)¦", "x = (3, ¦)", "// circle(¦", "x = nothing(¦"]
-)
-def test_no_call_around(marked: str) -> None:
-    assert helped(marked) is None
-
-
 def test_all_overloads_are_shown_and_the_helpers_of_the_library_are_not() -> None:
     found = helped("x = circle(¦")
     assert found is not None
@@ -90,8 +83,3 @@ def test_what_the_comments_say() -> None:
     above = helped("constrain c.above(b, ¦")
     assert above is not None
     assert above.overloads[0].parameters[2].about == "`gap` is exact"
-
-
-def test_the_innermost_block_counts() -> None:
-    text, offset = cursor("solid a { x = circle( \n hole b { ¦ } }")
-    assert signature_help(seen(text), offset) is None

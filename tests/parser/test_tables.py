@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -38,10 +37,6 @@ def test_what_was_kept_reads_as_what_is_built() -> None:
         automaton = Automaton()
         assert all(map(automaton.feed, tokenize(SourceFile("", text)).tokens))
         assert automaton.tree == built.parse(text)
-
-
-def test_they_are_plain_data() -> None:
-    assert json.loads(tables.built())["data"]["rules"]
 
 
 def test_a_checkout_has_the_tables_of_its_grammar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
