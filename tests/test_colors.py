@@ -7,7 +7,7 @@ import colorsys
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
+from aidl_lang.common.colors import COLOR_NAMES, rgb
 from tests.amount import tries
 from tests.compiled import compiled as compiled_program
 
@@ -36,32 +36,9 @@ def test_hsl_is_what_python_makes_of_it(hue: int, saturation: float, lightness: 
     assert near(made, (255 * red, 255 * green, 255 * blue))
 
 
-@given(st.integers(0, 720), st.integers(2, 100), st.integers(2, 100))
-@tries(40)
-def test_hsl_in_per_cent_and_as_css_writes_it_are_the_same(hue: int, saturation: int, lightness: int) -> None:
-    shares = drawn(f"hsl({hue}deg, {saturation / 100}, {lightness / 100})")
-    assert near(drawn(f"hsl({hue}, {saturation}, {lightness})"), shares)
-    assert near(drawn(f'"hsl({hue}, {saturation}%, {lightness}%)"'), shares)
-    assert near(drawn(f'"hsl({hue}deg {saturation}% {lightness}%)"'), shares)
-
-
-def test_rgb_as_css_writes_it_is_what_three_numbers_are() -> None:
-    assert drawn('"rgb(200, 30, 7)"') == drawn('"RGB( 200 30 7 )"') == (200, 30, 7)
-    for wrong in ("rgb(300, 0, 0)", "hsl(9, 120%, 5%)", "rgba(1, 1, 1, 1)", "rgb(1, 1)"):
-        assert css_color([wrong]) is None
-
-
 @given(st.sampled_from(NAMES), st.sampled_from(NAMES), SHARES)
 @tries(40)
 def test_mix_lies_on_the_way_from_one_to_the_other(one: str, other: str, share: float) -> None:
     made = drawn(f'mix("{one}", "{other}", {share})')
     wanted = tuple((1 - share) * a + share * b for a, b in zip(rgb(one), rgb(other), strict=True))
     assert near(made, wanted)
-
-
-@given(st.sampled_from(NAMES), SHARES)
-@tries(20)
-def test_darker_and_lighter_leave_the_rest_of_the_way_to_black_and_white(name: str, by: float) -> None:
-    assert near(drawn(f'darker("{name}", {by})'), tuple((1 - by) * c for c in rgb(name)))
-    rest = tuple(255 - c for c in drawn(f'lighter("{name}", {by})'))
-    assert near(rest, tuple((1 - by) * (255 - c) for c in rgb(name)))

@@ -9,22 +9,13 @@ from typing import Any
 
 import pytest
 
-from aidl_lang import compile as compiled_model
-from aidl_lang import diff, pipeline
+from aidl_lang import pipeline
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import ExportError
-from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.tools.agents.calling import answer
-from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.ide.actions import drawn_alike
-from aidl_lang.tools.ide.dragging import drag, handles
-from aidl_lang.tools.ide.preview import preview
-from aidl_lang.tools.ide.references import CannotError, Refusal
-from aidl_lang.tools.ide.workspace import View, look, run
 
 PLATES = """\
 assembly plates {
@@ -50,10 +41,6 @@ def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "compile", compile)
 
 
-def view() -> View:
-    return run(look(Path("plates.aidl").absolute(), PLATES, MemoryWorld({})))
-
-
 def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     within = pipeline.within
     monkeypatch.setattr(pipeline, "within", lambda limit, doing: within(limit * (doing == "drawing"), doing))
@@ -69,14 +56,6 @@ def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.export(".svg")
 
 
-def test_drawing_itself() -> None:
-    found = pipeline.compile(SourceFile("plates.aidl", PLATES), settings=replace(Settings(), drawing=0.0))
-    assert (found.status, found.drawing) == ("wrong", None)
-    (told,) = found.diagnostics
-    message = "drawing what this program says takes more than 0 seconds"
-    assert (told.code, told.message, told.hints) == ("E0805", message, (HINT,))
-
-
 def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
@@ -86,21 +65,6 @@ def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told.code == "E0805"
     assert told.span is not None
     assert (told.span.line, told.label) == (3, "it came as far as this")
-
-
-def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    def late(*_: object) -> None:
-        raise OutOfTime
-
-    monkeypatch.setattr("aidl_lang.geometry.drawing.draw", late)
-    text = (
-        "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
-        "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"
-    )
-    (told,) = pipeline.compile(SourceFile("s.aidl", text)).diagnostics
-    assert told.code == "E0805"
-    assert told.span is not None
-    assert (told.span.line, told.label) == (3, "most of its curves are made here")
 
 
 @pytest.mark.parametrize(
@@ -120,15 +84,6 @@ def test_measuring_and_comparing(doing: str, work: Callable[[Compiled], object])
         TooLongError, match=f"^{doing} what this program says takes more than 0 seconds\\nhint: "
     ):
         work(made)
-
-
-@pytest.mark.usefixtures("hurried")
-def test_python_raises_value_errors() -> None:
-    model = compiled_model(PLATES)
-    with pytest.raises(ValueError, match="measuring what this program says takes more than 0 seconds"):
-        model.measure()
-    with pytest.raises(ValueError, match="comparing what this program says takes more than 0 seconds"):
-        diff(model, model)
 
 
 @pytest.mark.usefixtures("hurried")
@@ -177,37 +132,3 @@ def test_the_command_says_so_of_the_picture_of_two(
     assert not Path("both.svg").exists()
     lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"
     assert capsys.readouterr().err.startswith(lead)
-
-
-@pytest.mark.usefixtures("hurried")
-def test_models_are_told() -> None:
-    made = answer(Tools(), "measure", {"program": PLATES})
-    assert made.is_error
-    assert "measuring what this program says takes more than 0 seconds" in made.text
-    edited = answer(Tools(), "edit_param", {"program": PLATES, "name": "wide", "value": 30})
-    assert not edited.is_error
-    told = "nothing can be compared: comparing what this program says takes more than 0 seconds"
-    assert edited.data["changes"] == told
-
-
-@pytest.mark.usefixtures("hurried")
-def test_a_page_shows_a_problem_in_place_of_the_picture() -> None:
-    made = preview(view(), ["names"])
-    assert made.svg is None
-    assert [(p.code, p.message) for p in made.problems if p.severity == "error"] == [
-        ("E0805", "painting what this program says takes more than 0 seconds")
-    ]
-
-
-@pytest.mark.usefixtures("hurried")
-def test_what_cannot_be_drawn_is_not_dragged() -> None:
-    seen = view()
-    handle = next(h for h in handles(seen) if h.moves == "guess")
-    found = drag(seen, handle.id, (handle.at[0] + 5, handle.at[1]))
-    assert found == Refusal("drawing what this program says takes more than 0 seconds")
-
-
-@pytest.mark.usefixtures("hurried")
-def test_an_action_that_cannot_be_tried_is_refused() -> None:
-    with pytest.raises(CannotError, match=r"writing the drawing as `\.svg` takes more than 0 seconds"):
-        drawn_alike(view(), view())

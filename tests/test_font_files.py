@@ -141,20 +141,6 @@ def test_outlines_and_widths(make: Callable[[Mapping[str, Draw]], bytes]) -> Non
     assert "B" not in file
 
 
-def test_cubic_curves_stay_as_they_are() -> None:
-    curves, _ = FontFile(open_type({"A": round_bowl})).outline("A")
-    assert ((0, 0), (0, 900), (500, 900), (500, 0)) in curves
-    wide = FontFile(open_type({"A": round_bowl}))
-    assert len(wide.outline("A")[0]) == 2
-
-
-@pytest.mark.parametrize("make", [true_type, open_type])
-def test_the_capital_height_is_that_of_an_h_if_the_font_states_none(make: Callable[..., bytes]) -> None:
-    assert FontFile(make({"H": bar(top=640), "A": bar()}, capital=0)).capital_height == 640
-    with pytest.raises(FontError, match="how high its capitals are"):
-        FontFile(make({"A": bar()}, capital=0))
-
-
 def test_overlapping_contours_are_one() -> None:
     cross = both(bar(0, 300, 700, 400), bar(300, 0, 400, 700))
     for data in (true_type({"x": cross}), open_type({"x": cross})):
@@ -166,21 +152,6 @@ def test_overlapping_contours_are_one() -> None:
     (text,) = found.model.root.geometry
     lengths = sum(math.dist(c.start, c.end) for c in text.curves())  # type: ignore[union-attr]
     assert lengths == pytest.approx(28)
-
-
-def test_counters_stay_open() -> None:
-    def ring(pen: Any) -> None:
-        bar(0, 0, 700, 700)(pen)
-        pen.moveTo((100, 100))
-        for p in ((600, 100), (600, 600), (100, 600)):
-            pen.lineTo(p)
-        pen.closePath()
-
-    assert drawn_area(open_type({"O": ring}), "O") == pytest.approx(49 - 25)
-
-
-def test_letters_that_reach_into_each_other_are_one() -> None:
-    assert drawn_area(true_type({"-": bar(0, 0, 700, 100)}), "--") == pytest.approx(13)
 
 
 @pytest.mark.parametrize("bold", [False, True])
@@ -199,18 +170,6 @@ def test_united_contours_of_the_own_font_enclose_what_alternating_ones_do(bold: 
 
 
 # --- Where they are looked for ---------------------------------------------------------------------
-
-
-def test_paths_are_relative_to_the_file_that_writes_the_text(tmp_path: Path) -> None:
-    (tmp_path / "signs" / "fonts").mkdir(parents=True)
-    (tmp_path / "signs" / "fonts" / "own.ttf").write_bytes(true_type({"A": bar()}))
-    (tmp_path / "signs" / "sign.aidl").write_text(
-        'drawing sign() { t = text("A", height: 7, font: "fonts/own.ttf") }', encoding="utf-8"
-    )
-    text = """import "signs/sign.aidl"
-        assembly a { s = sign() drawing d { u = text("A", height: 7, font: "signs/fonts/own.ttf") } }"""
-    found = pipeline.compile(SourceFile(str(tmp_path / "main.aidl"), text), DiskWorld(tmp_path))
-    assert [d.message for d in found.diagnostics if d.is_error] == []
 
 
 @pytest.mark.parametrize(
@@ -233,11 +192,6 @@ def test_files_that_cannot_be_read(tmp_path: Path, path: str, reason: str) -> No
     text = f'drawing d {{ t = text("A", height: 7, font: "{path}") }}'
     (found,) = pipeline.check(SourceFile("p.aidl", text), DiskWorld(root))
     assert (found.code, found.message) == ("E0359", reason)
-
-
-def test_without_files_at_hand() -> None:
-    (found,) = pipeline.check(SourceFile("p", 'drawing d { t = text("A", height: 7, font: "own.ttf") }'))
-    assert found.message == "`own.ttf` cannot be read: only this text is at hand"
 
 
 def test_programs_of_models_read_fonts_and_nothing_else() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import copy
 import html
 import io
 import os
@@ -83,31 +82,11 @@ def test_the_block_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 # --- Programs and files ----------------------------------------------------------------------------
 
 
-def test_a_path_as_text_is_read(tmp_path: Path) -> None:
-    file = tmp_path / "plate.aidl"
-    file.write_text(PLATE, "utf-8")
-    for said in (file, str(file), f"{file}\n".strip()):
-        assert aidl_lang.compile(said).ok
-        assert aidl_lang.check(said) == []
-    with pytest.raises(FileNotFoundError):
-        aidl_lang.compile(str(tmp_path / "plane.aidl"))
-    assert aidl_lang.compile(f"{PLATE} // plate.aidl").ok
-
-
 @pytest.mark.parametrize("text", [PLATE, "solid plate { todo }\n" * 500], ids=["short", "long"])
 def test_a_program_as_path_is_told(text: str) -> None:
     with pytest.raises(aidl_lang.AidlError, match="this Path holds a program") as told:
         aidl_lang.compile(Path(text))
     assert told.value.diagnostic.hints == ("give the program itself as a str",)
-
-
-def test_what_is_neither_is_told(tmp_path: Path) -> None:
-    with pytest.raises(TypeError, match="a program is a str, or a Path to it, not bytes"):
-        aidl_lang.compile(PLATE.encode())  # type: ignore[arg-type]
-    (tmp_path / "latin.aidl").write_bytes("// größer".encode("latin-1"))
-    with pytest.raises(aidl_lang.AidlError, match="is not UTF-8 text") as told:
-        aidl_lang.compile(tmp_path / "latin.aidl")
-    assert told.value.diagnostic.code == "E0903"
 
 
 # --- Writing files ---------------------------------------------------------------------------------
@@ -182,11 +161,6 @@ def test_what_does_not_hold_is_written_only_on_request(tmp_path: Path) -> None:
     assert (tmp_path / "disc.svg").exists()
 
 
-def test_a_missing_folder_is_told(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="there is no such folder"):
-        aidl_lang.compile(PLATE).save(tmp_path / "nowhere" / "plate.svg")
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [("plate", "the name `plate` does not tell a format"), ("plate.sgv", "there is no format `sgv`")],
@@ -245,14 +219,6 @@ def test_models_pickle(path: Path) -> None:
     assert again.export(".svg", dimension=True) == model.export(".svg", dimension=True)
     assert aidl_lang.diff(model, again).is_equal
     assert again.params == model.params
-
-
-def test_a_wrong_model_pickles() -> None:
-    for text in (WRONG, FALSE):
-        model = aidl_lang.compile(text)
-        for again in (pickle.loads(pickle.dumps(model)), copy.copy(model), copy.deepcopy(model)):
-            assert again.status == model.status
-            assert [d.message for d in again.diagnostics] == [d.message for d in model.diagnostics]
 
 
 def test_a_copy_has_its_imports_with_it(tmp_path: Path) -> None:

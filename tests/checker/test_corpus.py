@@ -133,7 +133,7 @@ def _ends(path: Path) -> list[dict[str, float]]:
     return [{k.path: end} for k in knobs for end in (k.low, k.high) if end is not None]
 
 
-@pytest.mark.parametrize("path", compiled.LIGHTER)
+@pytest.mark.parametrize("path", compiled.FEW)
 def test_examples_hold_at_the_ends_of_their_knobs(path: Path) -> None:
     """An assertion of the program may refuse a value; the constraints hold all the same."""
     text = path.read_text("utf-8")

@@ -18,9 +18,10 @@ from shapely.ops import unary_union
 from aidl_lang import Model
 from aidl_lang.export import Options
 from tests import compiled
+from tests.amount import TRIES_ALL
 from tests.export import readers
 
-EXAMPLES = [path.stem for path in compiled.EXAMPLES]
+EXAMPLES = [path.stem for path in compiled.EXAMPLES][:: 1 if TRIES_ALL else 2]
 
 
 @cache
