@@ -5,7 +5,7 @@
 ///
 /// `start` and `end` may be points of any structure above, which it follows. It is the Bézier `way`, a parabola.
 ///
-/// Its middle is below the straight way, wherever that goes.
+/// Lies with its middle below the straight way by a fifth of it; `sag: 0` is straight.
 ///
 /// ```aidl
 /// assembly power_line {
@@ -19,6 +19,24 @@ shape cord(start: point, end: point, sag: length = norm(end - start) / 5) {
     let low = (start + end) / 2 - (0, 2 * sag)
     way = bezier(start, lerp(start, low, 2 / 3), lerp(end, low, 2 / 3), end)
 }
+
+/// A wire, a rope or a rod from `start` to `end`, `width` across: straight, or in the middle by `sag` below the straight way.
+///
+/// `start` and `end` may be points of any structure above, which it follows.
+///
+/// ```aidl
+/// assembly lantern {
+///     solid hood { body = dome(bottom_center: (0, 60), width: 50, height: 16) }
+///     solid tank { body = trapezoid(center: (0, 0), bottom_width: 60, top_width: 46, height: 20) }
+///     @color("dimgray")
+///     solid guard {
+///         left = wire(tank.body.top_left, hood.body.bottom_right, 2)
+///         right = wire(tank.body.top_right, hood.body.bottom_left, 2)
+///     }
+/// }
+/// ```
+fn wire(start: point, end: point, width: length, sag: length = 0) =
+    thick(cord(start, end, sag), width, caps: butt)
 
 // The way of a hose: a Bézier that keeps to its directions over about `reach`.
 shape hose_way(

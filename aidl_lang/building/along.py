@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.cubics_along import Cubic, of_ellipse
@@ -28,6 +29,8 @@ KINDS = frozenset({"line", "arc", "circle"})
 FREE_KINDS = frozenset({"bezier", "ellipse"})
 """Curves that are walked as cubics."""
 
+_SMOOTH = 1e-4
+"""Degrees by which what goes on without a corner may turn."""
 _BESIDE = 0.125
 """Share of a stretch from its ends where a place may come to lie on the one beside it."""
 _DEGREES = ex.constant(180.0 / math.pi)
@@ -164,6 +167,58 @@ class Way:
             x, y = ex.add(x, ex.sub(to[0], start[0])), ex.add(y, ex.sub(to[1], start[1]))
             rest = ex.sub(rest, stretch.length)
         return (x, y), heading
+
+
+def within(way: Way, margin: Expression) -> tuple[Way, list[Expression], list[Expression]] | None:
+    """Returns the way a margin within a closed one of lines and arcs, the lengths of it up to its corners (of
+    round ones, arcs between two lines, up to their middles), and what is 0 as long as that is so.
+    None where an arc meets something at an angle, and for free curves.
+    """
+    whole = [s for s in way.stretches if isinstance(s, Stretch)]
+    rim = [_value(s.at(ex.mul(s.length, ex.constant(k / 3)))) for s in whole for k in range(3)]
+    area = sum(a * d - b * c for (a, b), (c, d) in pairwise([*rim, rim[0]]))
+    aside = ex.mul(ex.constant(math.copysign(1.0, area)), margin)  # to the left
+    bows = [ex.mul(_RADIANS, s.bow) for s in whole]
+    shares = [ex.sub(ex.ONE, ex.mul(aside, bow)) for bow in bows]
+    kept = [i for i, share in enumerate(shares) if share.value > 1e-9]
+    if len(whole) < len(way.stretches) or not kept:
+        return None
+    cuts: dict[int, Expression] = {}
+    unmet = []
+    for before, i in zip([kept[-1], *kept], kept, strict=False):
+        lost = [k % len(whole) for k in range(before + 1, i + len(whole) * (i <= before))]
+        joined = [before, *lost, i]
+        turns = [_turn(whole[a].direction(whole[a].length), whole[b].heading) for a, b in pairwise(joined)]
+        turn = _turn(whole[before].direction(whole[before].length), whole[i].heading)
+        is_smooth = all(abs(t.value) < _SMOOTH for t in turns)
+        if not lost and is_smooth:
+            continue
+        if len(lost) > 1 or (lost and not is_smooth) or whole[i].center or whole[before].center:
+            return None
+        reach = ex.sub(aside, ex.div(ex.ONE, bows[lost[0]])) if lost else aside
+        cuts[i] = ex.mul(reach, ex.div(ex.sin(ex.half(turn)), ex.cos(ex.half(turn))))
+        unmet += [ex.apply("maximum", ex.ZERO, shares[k]) for k in lost]
+    made: list[Stretch] = []
+    corners, at = [], ex.ZERO
+    for i, after in zip(kept, [*kept[1:], kept[0]], strict=True):
+        s, cut = whole[i], cuts.get(i, ex.ZERO)
+        length = ex.sub(ex.mul(s.length, shares[i]), ex.add(cut, cuts.get(after, ex.ZERO)))
+        cos, sin = ex.cos(s.heading), ex.sin(s.heading)
+        x = ex.add(s.start[0], ex.sub(ex.mul(cut, cos), ex.mul(aside, sin)))
+        y = ex.add(s.start[1], ex.add(ex.mul(cut, sin), ex.mul(aside, cos)))
+        is_round = s.center is not None and len(kept) > 2 and not whole[kept[kept.index(i) - 1]].center
+        if i in cuts or (is_round and not whole[after].center):
+            corners.append(ex.add(at, ex.half(length)) if is_round else at)
+        made.append(Stretch((x, y), s.heading, length, s.center, ex.div(s.bow, shares[i])))
+        unmet.append(ex.apply("maximum", ex.ZERO, ex.apply("neg", length)))
+        at = ex.add(at, length)
+    return Way(tuple(made), is_closed=True), corners, unmet
+
+
+def _turn(before: Expression, after: Expression) -> Expression:
+    """Returns the angle from one direction to another, between -180 and 180 degrees at the first guesses."""
+    turn = ex.sub(after, before)
+    return ex.sub(turn, ex.constant(360.0 * round(turn.value / 360.0)))
 
 
 def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:

@@ -15,6 +15,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.checking import units
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.common.diagnostics import Label
+from aidl_lang.common.prose import short
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -22,6 +23,9 @@ _DIGITS = range(6, 18)
 """Significant digits in which a number is shown: the fewest that tell the two sides apart."""
 _GIVEN = 4
 """Places that are shown at most."""
+
+_ROUNDED = 1e-4
+"""Relative difference up to which two numbers may be one and its rounding."""
 
 Evaluate = Callable[[Expression], float]
 Side = tuple[ast.Expression, tuple[Num, ...]]
@@ -38,6 +42,18 @@ def differences(wording: Wording, evaluate: Evaluate, tolerance: float) -> list[
             text = _difference(wording, one, relation, other, evaluate, tolerance)
             found += [text] if text else []
     return found
+
+
+def rounding(one: float, other: float) -> tuple[str, ...]:
+    """Returns hints for two sides that should be equal and differ as a number and its rounding do."""
+    size = max(abs(one), abs(other))
+    if not 0.0 < abs(one - other) <= _ROUNDED * size:
+        return ()
+    return (
+        f"the sides are {short(abs(one - other))} apart, as a number and its rounding are: work one out from "
+        "the other, as in `let b = 2 * a`",
+        "or leave this out, if it follows from the rest",
+    )
 
 
 def _beyond(wording: Wording, node: ast.Membership, evaluate: Evaluate) -> list[str]:

@@ -241,7 +241,7 @@ def _text(name: str) -> Callable[[list[Value]], str]:
     return rule
 
 
-def _detached(values: list[Value]) -> str:
+def _yes_or_no(values: list[Value]) -> str:
     return "" if not values or [type(v) for v in values] == [bool] else "nothing, or true or false"
 
 
@@ -266,7 +266,8 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "material": _text("material"),
     **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
     **{name: _text(name) for name in ("thread", "tolerance", "finish")},
-    "detached": _detached,
+    "detached": _yes_or_no,
+    "rigid": _yes_or_no,
     "stroke": _stroke,
     "dash": _dash,
     "opacity": _opacity,

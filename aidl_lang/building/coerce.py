@@ -41,6 +41,8 @@ def as_written(value: Value) -> Value:
             return _guessed(value)
         case PointVal(x, y):
             return PointVal(_guessed(x), _guessed(y))
+        case ListVal(items):
+            return ListVal(tuple(map(as_written, items)))
         case _:
             return value
 

@@ -71,7 +71,9 @@ def copied(it: Interpreter, value: Value, motion: Motion, node: ast.Call, env: E
 def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: Env) -> Value:
     match value:
         case Geometry():
-            return copier.geometry(value)
+            copy = copier.geometry(value)
+            copy.construction = False  # the copy of a guide guides only if its own definition says so
+            return copy
         case PointVal():
             return copier.motion.point(value)
         case Structure():

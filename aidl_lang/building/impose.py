@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.arithmetic import compared, differences, givens, sides
+from aidl_lang.building.arithmetic import compared, differences, givens, rounding, sides
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
 from aidl_lang.building.by_hand import is_by_hand, record_dimension
 from aidl_lang.building.coerce import as_point
@@ -68,8 +68,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         case True:
             return
         case False:
-            if weight is None:
-                _never(it, node, env)
+            _never(it, node, env, weight)
         case Condition():
             _impose_condition(it, value, node, env, weight)
         case Geometry():
@@ -114,23 +113,27 @@ def _turn(env: Env) -> str:
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
-def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
+def _never(it: Interpreter, node: ast.Expression, env: Env, weight: float | None) -> None:
+    """Reports a condition, or a wish, over constants that is false."""
     if any(part in it.watched for part in ast.walk(node)):
         return  # reported as a breach of validity, and read with values as written
     shape = _library_shape(it, node, env)
     wording = Wording(node, it, env, _read)
-    if _refuses_measured(it, compared(wording), node):
+    found = compared(wording)
+    if _refuses_measured(it, found, node):
         return
     false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
     values = f", {both}" if both else ""
     places = () if shape is not None else givens(wording)
     change = "one of these, or what is stated" if places else "what it speaks of, or leave it out"
-    hints = [f"nothing in it moves: change {change}"]
-    if any(isinstance(part, ast.Member) for part in ast.walk(node)):
+    near = [h for c in found if c.relation == "==" for h in rounding(c.left.value, c.right.value)]
+    hints = near or [f"nothing in it moves: change {change}"]
+    wish = "" if weight is None else "the wish "
+    if not near and any(isinstance(part, ast.Member) for part in ast.walk(node)):
         hints.append("a size that shall move is written as a first guess, as in `radius: guess(5)`")
     it.report(
-        "E0513",
-        f"`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}",
+        "E0513" if weight is None else "N0605",
+        f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}",
         shape.span if shape is not None else node,
         label="; ".join(false) or "false as written",
         hints=hints,
@@ -187,7 +190,7 @@ def _impose_condition(
             _state_constants(it, node, env, _read)
             return
         if part is False:
-            _never(it, node, env)
+            _never(it, node, env, weight)
             return
         if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
             word = part.operator if isinstance(part, Condition) else part.relation

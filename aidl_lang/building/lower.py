@@ -129,6 +129,7 @@ class _Lowering:
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            sealed=np.array([self._sealed(u.owner) for u in found], dtype=np.intp),
             thing=_numbered(
                 (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
                 for u in found
@@ -200,6 +201,12 @@ class _Lowering:
             lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
             self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
         return self.standing[s]
+
+    def _sealed(self, s: Structure) -> int:
+        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none."""
+        around = chain(s)
+        rigid = (n for n, each in enumerate(around) if each.attributes.get("rigid", (False,)) != (False,))
+        return len(around) - 1 - next(rigid, len(around) - 1)
 
     def _is_rigid(self, s: Structure) -> bool:
         """Tells whether a structure can move and constraints around it name one thing of it at most: its
@@ -387,12 +394,12 @@ def _is_bound(part: Comparison) -> bool:
 
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
-    """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
-    drawings beside parts; but none that stands still, as its place was given in the frame of the root.
+    """Returns the children that belong to the drawing around them: all that lie in a part or in an assembly
+    within another, and in the root holes and drawings beside parts; but none that stands still, as its place was given in the frame of the root.
     """
     frames = [(c, c.frame) for c in parent.children]
     children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
-    if parent.plan or any(not geometry.construction for geometry in parent.own()):
+    if parent.plan or parent.parent or any(not geometry.construction for geometry in parent.own()):
         return children
     without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()

@@ -211,8 +211,8 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
     if (key := find(name, s.scope.values)) is not None:
         binding = s.scope.values[key]
         value = read(it, binding, node, env)
-        # Points kept as they are (`origin`, an argument) are in the structure's own frame.
-        is_own = isinstance(binding, PointVal | PassedBinding)
+        # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
+        is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
         return primitives.translate(key, value, s, env.here) if is_own else value
     if fold(name) == ROTATION and s.parent is not None:
         return _rotation(it, s, s.parent, node, env)
@@ -250,7 +250,7 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
     value = primitives.translate(key, value, g.owner, env.here)
-    if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
+    if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
             return as_written(value)
         if env.reach is Reach.SUBTREE and isinstance(value, Num) and value.dimension == ANGLE:

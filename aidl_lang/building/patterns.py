@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from itertools import product
+from itertools import pairwise, product
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import FREE_KINDS, KINDS, Way, way_along
+from aidl_lang.building.along import FREE_KINDS, KINDS, Way, way_along, within
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
@@ -119,6 +119,12 @@ class _Call:
                     unknown.exact = True
         return NOWHERE
 
+    def is_without_place(self, centre: Place) -> bool:
+        """True for a shape without a name that lies around the origin: one that was given no place."""
+        return (
+            isinstance(self.thing, Geometry) and self.thing.name is None and not any(c.value for c in centre)
+        )
+
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
@@ -182,21 +188,25 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
             "leave one of them out",
         )
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
+    back = _total([(ex.constant(-1.0), span)])
     goes_on = call.has_place and "center" not in call.a and "start" not in call.a
     about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
+    first = back if goes_on and call.is_without_place(about) else NOWHERE
     if goes_on:
-        start = about
-    elif "center" in call.a:
-        start = _total([(ex.ONE, call.position("center")), (ex.constant(-1.0), span)])
-    else:
+        start = _total([(ex.ONE, about), (ex.ONE, first)])
+    elif "start" in call.a:
         start = call.position("start")
+    else:
+        start = _total([(ex.ONE, call.position("center")), (ex.ONE, back)])
     call.settings.fields.setdefault("start", point(*start))
     call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
 
     def motion(index: Index) -> Motion | None:
         away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
         if goes_on:
-            return Motion(to=away) if any(index) else None
+            return (
+                Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if first is back or any(index) else None
+            )
         return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
 
     return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))
@@ -256,41 +266,35 @@ def _step(call: _Call, n: int) -> Expression:
 
 def _along(call: _Call) -> Value:
     way = _way(call)
+    off: list[Expression] = []
+    corners: list[Expression] = []
     if way is None:
         return NOTHING
-    inset = call.size("inset") if "inset" in call.a else ex.ZERO
-    length = way.length
-    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
-    if room.value <= 0:
-        return call.wrong(
-            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
-            "ends",
-            "make the `inset` less",
-        )
-    found = _steps(call, room, is_closed=way.is_closed)
-    if found is None:
+    if way.is_closed and "margin" in call.a:
+        margin = call.size("margin")
+        if (inner := within(way, margin)) is None:
+            return call.wrong(
+                "a `margin` is kept within lines, and arcs that go on from them without a corner",
+                "draw a `construction` path where the members are, and go along that",
+            )
+        way, corners, off = inner
+        if any(s.length.value < 1e-9 for s in way.stretches):
+            return call.wrong(f"nothing is left of this outline within {margin.value:g} mm", "make it less")
+    places = _on_corners(call, way, corners) if corners else _evenly(call, way)
+    if places is None:
         return NOTHING
-    n, step = found
-    if n * len(way.stretches) > _MOST_ALONG:
+    if len(places) * len(way.stretches) > _MOST_ALONG:
         call.it.report(
             "E0805",
-            f"{n} members along {len(way.stretches)} curves are too many: their product is at most "
+            f"{len(places)} members along {len(way.stretches)} curves are too many: their product is at most "
             f"{_MOST_ALONG}",
             call.node,
         )
         return NOTHING
-    first = inset
-    if not way.is_closed:
-        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
-        first = ex.add(inset, ex.half(left))
-    call.settings.fields.setdefault("pitch", Num(step, LENGTH))
     turns = call.a.get("turn") is not False
     about = call.centre()
 
-    off: list[Expression] = []
-
-    def motion(i: int) -> Motion:
-        place = ex.add(first, ex.mul(ex.constant(float(i)), step))
+    def motion(place: Expression) -> Motion:
         if way.is_free:
             to, heading, unmet = way.followed(place)
             off.extend(unmet)
@@ -298,10 +302,56 @@ def _along(call: _Call) -> Value:
             to, heading = way.at(place)
         return turned(heading, about, to) if turns else Motion(about, to)
 
-    made = call.laid_out(((i,), motion(i)) for i in range(n))
+    made = call.laid_out(((i,), motion(place)) for i, place in enumerate(places))
     if off := [e for e in off if not e.is_constant]:
         call.check_followed(off)
     return made
+
+
+def _evenly(call: _Call, way: Way) -> list[Expression] | None:
+    """Returns the ways to members that are as far apart everywhere."""
+    name = next((n for n in ("inset", "margin") if n in call.a), None)
+    inset = call.size(name) if name and not (way.is_closed and name == "margin") else ex.ZERO
+    length = way.length
+    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
+    if room.value <= 0:
+        call.wrong(
+            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
+            "ends",
+            "make the `inset` less",
+        )
+        return None
+    found = _steps(call, room, is_closed=way.is_closed)
+    if found is None:
+        return None
+    n, step = found
+    first = inset
+    if not way.is_closed:
+        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
+        first = ex.add(inset, ex.half(left))
+    call.settings.fields.setdefault("pitch", Num(step, LENGTH))
+    return [ex.add(first, ex.mul(ex.constant(float(i)), step)) for i in range(n)]
+
+
+def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Expression] | None:
+    """Returns the ways to members in all corners of a closed way, and evenly between each and the next."""
+    runs = [ex.sub(b, a) for a, b in pairwise([*corners, ex.add(corners[0], way.length)])]
+    found = _steps(call, way.length, is_closed=True)
+    if found is None:
+        return None
+    parts = [1 if "n" in call.a else max(1, round(run.value / found[1].value)) for run in runs]
+    if "n" in call.a and found[0] < len(runs):
+        call.wrong(f"{found[0]} members are fewer than the {len(runs)} corners", "write more, or no `margin`")
+        return None
+    while "n" in call.a and sum(parts) < found[0]:
+        sparse = max(range(len(runs)), key=lambda k: (round(runs[k].value / parts[k], 6), runs[k].value))
+        parts[sparse] += 1
+    places = [
+        ex.add(corner, ex.mul(ex.constant(k / part), run))
+        for corner, run, part in zip(corners, runs, parts, strict=True)
+        for k in range(part)
+    ]
+    return [p if p.value < way.length.value else ex.sub(p, way.length) for p in places]
 
 
 _MOST_ALONG = 20_000

@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     convert_point,
     own_geometry,
 )
-from aidl_lang.building.values import Num, PointVal, point
+from aidl_lang.building.values import ListVal, Num, PointVal, point
 from aidl_lang.checking.registry import fields_of
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.font_files import Vec
@@ -33,13 +33,15 @@ DIRECTIONS = fields_of("direction")
 
 
 def translate(name: str, value: Value, owner: Structure, here: Structure) -> Value:
-    """Returns a value read in the frame of `owner`, as `here` sees it: points and directions turn, lengths do
-    not.
+    """Returns a value read in the frame of `owner`, as `here` sees it, alone or in a list: points and
+    directions turn, lengths do not.
     """
     if owner is here:
         return value
     if isinstance(value, PointVal):
         return convert_point(value, owner, here)
+    if isinstance(value, ListVal):
+        return ListVal(tuple(translate(name, item, owner, here) for item in value.items))
     if isinstance(value, Num) and name in DIRECTIONS:
         return Num(convert_angle(value.expression, owner, here), ANGLE, value.status)
     return value

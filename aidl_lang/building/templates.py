@@ -7,13 +7,15 @@ holds.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import positions, refuses_measure
 from aidl_lang.building.model import Condition, Constraint, Geometry, Structure, convert_point
 from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import Exactness, Num, PointVal, RecordVal, Value, kind_of, members
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, RecordVal, Value, kind_of, members
 from aidl_lang.syntax import ast
 
 
@@ -25,7 +27,7 @@ def passed(
         message = f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}"
         hint = f"pass one of its points or sizes, or constrain `{instance.name}` from outside"
         it.report("E0313", message, node, hints=[hint])
-    if isinstance(value, Num | PointVal):
+    if isinstance(value, Num | PointVal) or (isinstance(value, ListVal) and _refers(value)):
         return PassedBinding(name, value, instance, holder, node)
     return value
 
@@ -69,12 +71,23 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
                 pairs = [(outside.x, point.x), (outside.y, point.y)]
                 _hold_equal(it, binding, [p for p in pairs if p[1].status is Exactness.REFERENCE])
             return own_point
+        case ListVal(items):
+            bindings = (replace(binding, name=f"{binding.name}[{i}]", value=v) for i, v in enumerate(items))
+            return ListVal(tuple(_tie(it, b, here) if _refers(b.value) else b.value for b in bindings))
         case value:
             return value
 
 
-def _refers(point: PointVal) -> bool:
-    return Exactness.REFERENCE in (point.x.status, point.y.status)
+def _refers(value: Value) -> bool:
+    match value:
+        case Num(status=status):
+            return status is Exactness.REFERENCE
+        case PointVal(x, y):
+            return _refers(x) or _refers(y)
+        case ListVal(items):
+            return any(map(_refers, items))
+        case _:
+            return False
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:

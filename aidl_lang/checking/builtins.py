@@ -71,7 +71,7 @@ STRUCTURE: Mapping[str, Type] = {
 
 PATTERN: Mapping[str, Mapping[str, Type]] = {
     "linear_array": _fields("center start", "pitch", "angle"),
-    "along": _fields("", "pitch inset"),
+    "along": _fields("", "pitch inset margin"),
     "grid": _fields("center start", "pitch pitch_x pitch_y"),
     "polar_array": _fields("center", "radius", "start sweep"),
 }
@@ -207,8 +207,8 @@ linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start:
 linear_array(x, n: integer, by: point, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
-along(x, curve, n: integer, inset: length?, turn: bool?)
-along(x, curve, pitch: length, inset: length?, turn: bool?)
+along(x, curve, n: integer, inset: length?, turn: bool?, margin: length?)
+along(x, curve, pitch: length, inset: length?, turn: bool?, margin: length?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
@@ -276,7 +276,7 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"coil", "spring", "chain", "cord", "hose", "hose_way", "ray_lines"})
+CONNECTING = frozenset({"ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"})
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
@@ -298,19 +298,8 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
-    *(
-        "detached",
-        "note",
-        "stroke",
-        "dash",
-        "opacity",
-        "shade",
-        "edges",
-        "halo",
-        "behind",
-        "in_front",
-        "clip",
-    ),
+    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo"),
+    *("behind", "in_front", "clip"),
     *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""

@@ -10,9 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
+from aidl_lang.building.arithmetic import rounding
 from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Constraint
+from aidl_lang.building.model import Comparison, Constraint, Structure, chain
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.checking.units import ANGLE, LENGTH
@@ -423,6 +424,12 @@ class Explanation:
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
+        named = (n for party in self.parties for c in party.stated.comparisons for n in _structures(c))
+        for s in dict.fromkeys(around for each in named for around in chain(each)):
+            if s.attributes.get("rigid", (False,)) != (False,) and s.span is not None:
+                head = s.span.text.partition("{")[0].rstrip()
+                place = Span(s.span.source, s.span.start, s.span.start + len(head))
+                yield Label(place, "`@rigid`: nothing in it moves against it")
 
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
@@ -434,9 +441,8 @@ class Explanation:
             yield f"{told} not sought to the end, for want of time"
         gaps = dict(self.failure.gaps)
         parties = sorted(self.parties, key=lambda party: party is not self._chief)
-        yield from itertools.islice(
-            filter(None, (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)), 1
-        )
+        apart = (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)
+        yield from next(filter(None, apart), ())
         match self.failure.reason:
             case Failure.OVERDETERMINED:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
@@ -452,21 +458,29 @@ class Explanation:
                 yield "what concerns one part only is solved faster if that part states it"
 
 
-def _apart(party: _StatedMember, gap: float) -> str:
-    """Returns a sentence on the difference of the sides of `a == b` where the other parties hold; "" for any
+def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
+    """Returns hints on the difference of the sides of `a == b` where the other parties hold; none for any
     other statement.
     """
     node, stated = party.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
-        return ""
+        return ()
     (comparison,) = stated.comparisons
     sides = [party.value(operand) for operand in node.operands]
     written = [comparison.left.value, comparison.right.value]  # how it is lowered may have turned them round
     if comparison.dimension == ANGLE or [s and s.value for s in sides] != written or written[0] == written[1]:
-        return ""
+        return ()
     left, right = (operand.span.one_line for operand in node.operands)
     more = "more" if gap > 0.0 else "less"
-    return f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`"
+    if near := rounding(written[1] + gap, written[1]):
+        return near
+    return (f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`",)
+
+
+def _structures(comparison: Comparison) -> Iterator[Structure]:
+    """Yields the structures that a comparison speaks of."""
+    yield from comparison.boxes
+    yield from (u.owner for u in unknowns([comparison.left, comparison.right]))
 
 
 def _name(parties: Sequence[_StatedMember]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.building.arithmetic import differences, givens
+from aidl_lang.building.arithmetic import differences, givens, rounding
 from aidl_lang.building.boxes import SIDES, constrain_sources
 from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
@@ -122,13 +122,14 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
             return None
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
+    near = [h for c in false if c.relation == "==" for h in rounding(evaluate(c.left), evaluate(c.right))]
     return Diagnostic(
         "E0604",
         f"assertion failed: {message}{where}",
         assertion.span,
         "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
         places,
-        (_hint(assertion, false, places),),
+        tuple(near) or (_hint(assertion, false, places),),
         _stated(assertion),
     )
 

@@ -24,7 +24,7 @@ from aidl_lang.solver.problem import Problem, Row, depths, violations
 from aidl_lang.solver.riding import riding_depths
 from aidl_lang.solver.settings import Settings, Stages
 from aidl_lang.solver.solution import GroupFailure, Solution, StageReport, Status
-from aidl_lang.solver.tiers import OWN, Scope, Tier, stage_name
+from aidl_lang.solver.tiers import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:
@@ -77,6 +77,10 @@ class Hierarchy:
         its parent. 0 if all are named.
         """
         return list(map(int, riding_depths(self.problem, self._group_depths)))
+
+    @cached_property
+    def _sealed(self) -> list[int]:
+        return list(map(int, self.problem.sealed))
 
     @cached_property
     def _standing(self) -> list[bool]:
@@ -227,6 +231,8 @@ class Hierarchy:
         """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
         depth = self._depth_of_group[group]
         level = self._depth[unknown] - depth
+        if self._sealed[unknown] > depth:
+            return SEALED
         match self.settings.stages:
             case Stages.FLAT:
                 return OWN

@@ -189,7 +189,7 @@ class Levels:
         tier = np.where(problem.kept, sizes, tier)
         span = np.where(level == 0, KINDS["placed"] * DEPTHS + 2, KINDS["positions"] * DEPTHS + level)
         tier = np.where(problem.spanned & placed, span, tier)
-        return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
+        return np.where((level < 0) | (problem.sealed > depth), (KINDS["sizes"] + 1) * DEPTHS, tier)
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
         """Returns the mask of parts (p,) that have something free in every violated constraint."""

@@ -85,7 +85,7 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
     bounds = [0.0] * len(problem.initial) if longest is None else longest.tolist()
     # Groups that ride along depend on constraints further up, too.
     riding = riding_depths(problem, depths(problem.parent))
-    dearness = (problem.standing, problem.spanned, riding)
+    dearness = (problem.standing, problem.spanned, problem.sealed, riding)
     columns = (problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
     for index, (group, bound, *entry) in enumerate(
         zip(problem.group.tolist(), bounds, *(column.tolist() for column in columns), strict=True)

@@ -103,6 +103,8 @@ class Problem:
     spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch
     rigid    (g,) True for a group of which constraints around it name one thing at most: it moves as a whole,
              and what is in it moves against its frame only as if no constraint named it
+    sealed   (n,) depth of the innermost group around an unknown in which nothing moves for constraints of the
+             groups around it; 0 for none
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride
@@ -131,6 +133,7 @@ class Problem:
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     rigid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    sealed: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     thing: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     clinging: frozenset[int] | None = None
     observables: tuple[tuple[int, int], ...] = ()
@@ -143,6 +146,7 @@ class Problem:
             ("standing", np.zeros(count, dtype=np.bool_)),
             ("spanned", np.zeros(count, dtype=np.bool_)),
             ("rigid", np.zeros(groups, dtype=np.bool_)),
+            ("sealed", np.zeros(count, dtype=np.intp)),
             ("thing", np.zeros(count, dtype=np.intp)),
         ):
             if len(getattr(self, name)) != len(usual):

@@ -71,6 +71,7 @@ def groups_riding(problem: Problem) -> Riding:
     movable = ~problem.kept & ((moved < 0) | may_move)
     movable &= (moved >= 0) | named.inside[problem.group]
     movable |= _stirred(problem, named, movable)
+    movable &= problem.sealed == 0
     carried = ~named.frames & problem.named
     carried[0] = False
     return Riding(carried, _anchors(problem, carried), movable)

@@ -13,6 +13,7 @@ At a group every unknown of its subtree has a tier, which says at which stage it
     (6, 0)  kept size that a constraint places, at any level
     (6, 1)  own kept size
     (6, 1 + d)  kept size of a group d levels below
+    (9, 1)  what is in a group that is sealed: it is never freed
 
 A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
 constraints of descendants that mention something free. Those constraints are the ones that a move could
@@ -45,7 +46,8 @@ POSITIONS: Tier = (6, -1)
 """A tier after those of all positions, before the first one of kept sizes."""
 SIZES: Tier = (6, 0)
 ENDLESS: Tier = (9, 0)
-"""A tier after all."""
+"""A tier after all that may be freed."""
+SEALED: Tier = (9, 1)
 
 NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
 

@@ -29,7 +29,7 @@ MOST = 200
 _KINDS = ("slide", "turn", "grow", "change", "together")
 """Kinds of motion of one thing, the more telling first."""
 _FOLLOWED = frozenset(_KINDS) - {"together"}
-_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "{} at first"}
+_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "turn"}
 """Words for a motion that does not go on as it begins."""
 
 

@@ -95,7 +95,7 @@ def _calls(variant: Variant, *topics: str) -> str:
     without the Béziers of a figure, to which nothing is joined) and how it lies.
     """
     lines, told = [], dict[str, set[str]]()
-    for entry in _entries(variant, topics):
+    for entry in [e for e in _entries(variant, topics) if e.name not in _RARE]:
         told_of = (part for node in entry.nodes for part in parts(node) if part.type != "bezier")
         named = _gathered(dict.fromkeys(part.name for part in told_of))
         like = next((n for n, known in told.items() if len(known) > 3 and known <= set(named)), None)
@@ -211,8 +211,16 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
+_RARE = frozenset(
+    "checkers crescent d_shape double_arrow double_d kite leaf ogee_arch ogive reuleaux rhombus rosette squircle".split()
+)
+"""Shapes whose names are told among those of `names` only, of whatever topic they are."""
+
+
 def _names(variant: Variant, *topics: str) -> str:
-    return f"`{' '.join(entry.name for entry in _entries(variant, topics))}`"
+    rare = [name for name in sorted(_RARE) if "rare" in topics]
+    entries = _entries(variant, tuple(topic for topic in topics if topic != "rare"))
+    return f"`{' '.join([*rare, *(entry.name for entry in entries)])}`"
 
 
 def _fields(variant: Variant) -> str:
