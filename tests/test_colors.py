@@ -7,7 +7,7 @@ import colorsys
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.common.colors import COLOR_NAMES, rgb
+from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
 from tests.amount import tries
 from tests.compiled import compiled as compiled_program
 
@@ -34,6 +34,21 @@ def test_hsl_is_what_python_makes_of_it(hue: int, saturation: float, lightness: 
     red, green, blue = colorsys.hls_to_rgb(hue % 360 / 360, lightness, saturation)
     made = drawn(f"hsl({hue}deg, {saturation}, {lightness})")
     assert near(made, (255 * red, 255 * green, 255 * blue))
+
+
+@given(st.integers(0, 720), st.integers(2, 100), st.integers(2, 100))
+@tries(40)
+def test_hsl_in_per_cent_and_as_css_writes_it_are_the_same(hue: int, saturation: int, lightness: int) -> None:
+    shares = drawn(f"hsl({hue}deg, {saturation / 100}, {lightness / 100})")
+    assert near(drawn(f"hsl({hue}, {saturation}, {lightness})"), shares)
+    assert near(drawn(f'"hsl({hue}, {saturation}%, {lightness}%)"'), shares)
+    assert near(drawn(f'"hsl({hue}deg {saturation}% {lightness}%)"'), shares)
+
+
+def test_rgb_as_css_writes_it_is_what_three_numbers_are() -> None:
+    assert drawn('"rgb(200, 30, 7)"') == drawn('"RGB( 200 30 7 )"') == (200, 30, 7)
+    for wrong in ("rgb(300, 0, 0)", "hsl(9, 120%, 5%)", "rgba(1, 1, 1, 1)", "rgb(1, 1)"):
+        assert css_color([wrong]) is None
 
 
 @given(st.sampled_from(NAMES), st.sampled_from(NAMES), SHARES)

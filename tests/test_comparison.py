@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import aidl_lang
-from aidl_lang.export.comparison import Comparison, StructureChange, Version, compare
+from aidl_lang.export.comparison import Comparison, GeometryChange, StructureChange, Version, compare
 from aidl_lang.export.comparison.changes import Fields, Move, Sort
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
@@ -87,6 +87,13 @@ def test_turned() -> None:
     assert paths(found) == ["a", "a.arm"]
 
 
+def test_an_ellipse_turns_by_its_axis() -> None:
+    text = "solid s {{ e = ellipse(center: fixed((5, 0)), rx: 8, ry: 3, angle: fixed({angle}deg)) }}"
+    (change,) = difference(text.format(angle=10), text.format(angle=170)).structures
+    assert change.move is not None
+    assert change.move.turn == pytest.approx(-20)  # the shorter way: an ellipse turned by 180° is the same
+
+
 def test_appeared_and_vanished() -> None:
     cord = "solid cord { c = circle(center: fixed((0, 90)), radius: 3) }"
     label = "solid label { r = square(center: fixed((0, -90)), size: 4) }"
@@ -113,6 +120,15 @@ def test_renamed(x: float) -> None:
     assert "t.old" not in paths(found)
 
 
+def test_renamed_geometry() -> None:
+    text = (
+        "solid s {{ {a} = circle(center: origin, radius: 3) {b} = circle(center: fixed((9, 0)), radius: 3) }}"
+    )
+    (change,) = difference(text.format(a="p", b="q"), text.format(a="p", b="z")).structures
+    assert change.geometry == (GeometryChange("z", "circle", was="q"),)
+    assert change.sizes == {}
+
+
 def test_params_and_attributes() -> None:
     before = (
         '@material("steel") @thickness(3mm) @detached '
@@ -128,6 +144,26 @@ def test_params_and_attributes() -> None:
         "@detached": (True, None),
     }
     assert (change.sizes, change.move, change.geometry) == ({}, None, ())
+
+
+def test_fillets() -> None:
+    found = of(difference(plate(more="fillet(edge, 2)"), plate(more="fillet(edge, 3)")), "plate")
+    assert found.settings == {"fillet of edge": (2.0, 3.0)}
+    assert near(found.sizes)["area"] == (800 - 4 * (4 - math.pi), 800 - 9 * (4 - math.pi))
+    assert found.geometry == ()
+
+
+def test_a_line_and_an_arc() -> None:
+    text = """
+    drawing d {{
+        l = line(fixed((0, 0)), fixed(({x}, 4)))
+        a = arc(center: fixed((9, 9)), radius: 2, start_angle: 0deg, end_angle: fixed({end}deg))
+    }}"""
+    (change,) = difference(text.format(x=3, end=90), text.format(x=4, end=180)).structures
+    line, arc = change.geometry
+    assert near(line.fields)["end"] == ((3, 4), (4, 4))
+    assert near(line.fields)["length"] == (5, math.sqrt(32))
+    assert near(arc.fields) == {"end": ((9, 11), (7, 9)), "sweep": (90, 180)}
 
 
 def test_letters_have_an_outline_alone() -> None:
@@ -164,6 +200,13 @@ def test_plans_have_boxes() -> None:
     assert near(of(difference(text.format(x=0, w=10), text.format(x=0, w=12)), "a.plan").sizes) == {
         "width": (10, 12)
     }
+
+
+def test_a_second_root_puts_the_first_into_an_assembly() -> None:
+    found = difference(
+        plate(), f"{plate()} @detached solid lid {{ c = circle(center: fixed((0, 0)), radius: 1) }}"
+    )
+    assert [(s.path, s.sort) for s in found.structures] == [("text.lid", "appeared")]
 
 
 # --- Telling little --------------------------------------------------------------------------------

@@ -49,6 +49,16 @@ def searched(of: Knob, end: float, works: Callable[[float], bool]) -> tuple[floa
         return *done.value, asked
 
 
+def test_what_fails_on_the_way_to_a_limit_is_the_limit() -> None:
+    of = knob(40.0, 40.0, 200.0)
+    works, beyond, asked = searched(of, 200.0, lambda v: v <= 150 and not 90 <= v <= 100)
+    assert (works, beyond) == (89.99, 90)
+    assert {v for v in asked if v < works} >= {
+        round(40 + share * (works - 40), 4) for share in (0.25, 0.5, 0.75)
+    }
+    assert all(float(f"{v:.12g}") == v for v in asked)
+
+
 @pytest.mark.parametrize(
     ("of", "end", "threshold", "expected"),
     [

@@ -104,6 +104,12 @@ def test_texts_can_be_searched_and_stand_where_they_should():
     assert boxes[found + 1][0] == pytest.approx(boxes[found][0], abs=2)
 
 
+def test_tiles_are_pages():
+    document = PdfDocument(written(PLATE, Options(tile=(105, 105))))
+    assert len(document) == 2
+    assert all([MM * s for s in page.get_size()] == pytest.approx([105, 105], abs=1e-3) for page in document)
+
+
 def test_a_page_that_is_too_large():
     with pytest.raises(ExportError) as reason:
         written(structure("solid", "s", rectangle("r", 0, 0, 12000, 3000)))

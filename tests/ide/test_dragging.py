@@ -133,6 +133,16 @@ def test_a_point_that_nothing_holds_elsewhere_is_not_offered(name: str) -> None:
     assert len(handles(view)) > 5
 
 
+def test_a_count_turns_by_whole_steps() -> None:
+    text = (
+        "solid a { param n = 3 in 1..6 step 1\n param w = 50 in 20..90\n"
+        "base = rectangle(bottom_left: fixed((0, 0)), width: w * n, height: 5) }"
+    )
+    view = seen(text, solved=True)
+    found = dragged(view, "base.bottom_right", (203, 0))
+    assert "n = 4 in" in dropped(view, found).source.text
+
+
 # --- What is shown meanwhile -----------------------------------------------------------------
 
 

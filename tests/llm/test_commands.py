@@ -80,6 +80,19 @@ sys.stdout.write("code")
     assert (reply.text, heard) == ("ünïcode", ["ünï", "code"])
 
 
+def test_command_may_tell_more_as_json(command: Make) -> None:
+    told = {
+        "text": "solid a {}",
+        "usage": {"input": 100, "output": 10, "cost": 0.5},
+        "finish": "cut",
+        "model": "mine",
+    }
+    heard: list[str] = []
+    reply = command(f"print('''{json.dumps(told)}''')").reply(SAID, PLAIN, heard.append)
+    assert reply == Reply("solid a {}", Usage(100, 10, 0.5), Finish.CUT, "mine")
+    assert heard == ["solid a {}"]
+
+
 @pytest.mark.parametrize(
     ("program", "code", "message", "hints"),
     [

@@ -96,6 +96,21 @@ def test_a_reply_cut_off_at_the_limit(generate: Callable[..., Any]) -> None:
     assert second["verdict"]["ok"]
 
 
+def test_no_program_at_all(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
+    code, _ = generate(["No."] * 5, "-o", "plate.aidl")
+    assert code == 1
+    assert "no reply held a program; the last one begins: 'No.'" in capsys.readouterr().err
+    assert not Path("plate.aidl").exists()
+    assert len(transcript()["attempts"]) == 5
+
+
+def test_a_refusal_ends_it(generate: Callable[..., Any]) -> None:
+    code, server = generate([Says("I will not.", finish="content_filter")], "-o", "plate.aidl")
+    assert code == 1
+    assert len(server.requests) == 1
+    assert transcript()["attempts"][0]["finish"] == "refused"
+
+
 # --- Programs that are wrong ----------------------------------------------------------------------
 
 

@@ -148,6 +148,11 @@ def test_reply_that_always_breaks_off(scripted: Start, kind: str) -> None:
     )
 
 
+def test_models_are_named_when_one_is_not_there(scripted: Start) -> None:
+    server = scripted([Failed(404)], models=["llama3.1:8b", "qwen3-coder:30b"])
+    assert failure(server, model="qwen3-coder")[2] == ("the server has qwen3-coder:30b, …",)
+
+
 def test_address_that_is_wrong_is_told(scripted: Start) -> None:
     server = scripted([Failed(404)])
     assert failure(server, base_url=server.address + "/nowhere/else")[2] == (

@@ -236,6 +236,26 @@ POT = """assembly t {
 LEFT, ABOVE = "handle.left == pot.right - 10", "lid.above(pot)"
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (LEFT, "handle.left >= pot.right - 10", "less: it fits as it was; put it back"),
+        (LEFT, "pot.left_of(handle, at_least: -10)", "less: it fits as it was; put it back"),
+        (ABOVE, "lid.width <= pot.width", "less: it fits as it was; put it back"),
+        (
+            ABOVE,
+            "pot.above(lid)",
+            "otherwise: as it was it conflicts with `pot.above(lid)`; say it in another way, or mend one of"
+            " those",
+        ),
+    ],
+)
+def test_what_says_less_or_the_opposite_is_a_loss(old: str, new: str, says: str) -> None:
+    after = changed((old, new), text=POT)
+    assert compiled(after).status == "solved"
+    assert phrases(POT, after) == [f"`{old}` (in `t`) was replaced by `{new}`, which says {says}"]
+
+
 ON_TOP = changed((ABOVE, f"{ABOVE}\n        lid.bottom == pot.top - 4"), text=POT)
 
 
