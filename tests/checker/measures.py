@@ -187,6 +187,9 @@ def of_shape(geo: Geo, name: str) -> Any:
     for kinds, fields in _SHAPES.items():
         if geo.type in kinds.split() and name in fields and (len(corners) == 4 or "outer" not in kinds):
             return fields[name](geo.parts, corners)
+    if name in ("start", "end"):  # of a chain: a path, a polyline, a spline
+        chain = [p for n, p in geo.parts.items() if n.startswith(("edges[", "segment["))]
+        return field(chain[0 if name == "start" else -1], name) if chain else None
     return sum(corners) / 4 if name == "center" and len(corners) == 4 else None
 
 

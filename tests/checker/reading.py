@@ -29,7 +29,6 @@ _ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
     "%": lambda a, b: a % b,
     "^": lambda a, b: a**b,
 }
-Callables = ast.FunctionDefinition | ast.ConstraintDefinition | ast.Structure
 
 
 @dataclass
