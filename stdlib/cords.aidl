@@ -5,7 +5,7 @@
 ///
 /// `start` and `end` may be points of any structure above, which it follows. It is the Bézier `way`, a parabola.
 ///
-/// Lies with its middle below the straight way by a fifth of it; `sag: 0` is straight.
+/// With `sag: 0` it is straight, as a `wire` is.
 ///
 /// ```aidl
 /// assembly power_line {
@@ -19,24 +19,6 @@ shape cord(start: point, end: point, sag: length = norm(end - start) / 5) {
     let low = (start + end) / 2 - (0, 2 * sag)
     way = bezier(start, lerp(start, low, 2 / 3), lerp(end, low, 2 / 3), end)
 }
-
-/// A wire, a rope or a rod from `start` to `end`, `width` across: straight, or in the middle by `sag` below the straight way.
-///
-/// `start` and `end` may be points of any structure above, which it follows.
-///
-/// ```aidl
-/// assembly lantern {
-///     solid hood { body = dome(bottom_center: (0, 60), width: 50, height: 16) }
-///     solid tank { body = trapezoid(center: (0, 0), bottom_width: 60, top_width: 46, height: 20) }
-///     @color("dimgray")
-///     solid guard {
-///         left = wire(tank.body.top_left, hood.body.bottom_right, 2)
-///         right = wire(tank.body.top_right, hood.body.bottom_left, 2)
-///     }
-/// }
-/// ```
-fn wire(start: point, end: point, width: length, sag: length = 0) =
-    thick(cord(start, end, sag), width, caps: butt)
 
 // The way of a hose: a Bézier that keeps to its directions over about `reach`.
 shape hose_way(
@@ -89,8 +71,9 @@ shape coil(start: point, end: point, width: length, turns: integer = 8, lead: nu
     let up = turned(unit(end - start), 90deg) * (width / 2mm)
     fn quarter(x, y, i) = lerp(start, end, lead) + pitch * (i / 4 + loop_reach * x) + up * y
     fn place(i) = quarter([0, 1, 0, -1][i % 4], [-1, 0, 1, 0][i % 4], i)
-    fn way(i) = pitch * (1 / 12 + loop_handle * loop_reach * [1, 0, -1, 0][i % 4])
-        + up * (loop_handle * [0, 1, 0, -1][i % 4])
+    fn way(i) = pitch * (1 / 12 + loop_handle * loop_reach * [
+        1, 0, -1, 0
+    ][i % 4]) + up * (loop_handle * [0, 1, 0, -1][i % 4])
     let quarters = 4 * turns
     let last = quarters + 1
     for i in 0..quarters { knot[i] = place(i) }
@@ -101,7 +84,10 @@ shape coil(start: point, end: point, width: length, turns: integer = 8, lead: nu
         segment[i + 1] = bezier(knot[i], knot[i] + way(i), knot[i + 1] - way(i + 1), knot[i + 1])
     }
     segment[last] = bezier(
-        knot[quarters], knot[quarters] + (end - start) * (lead / 2), end - (end - start) * (lead / 2), end
+        knot[quarters],
+        knot[quarters] + (end - start) * (lead / 2),
+        end - (end - start) * (lead / 2),
+        end
     )
 }
 
@@ -125,7 +111,12 @@ let loop_handle = 0.5523
 /// }
 /// ```
 shape spring(
-    start: point, end: point, width: length, turns: integer = 6, lead: number = 0.1, round: bool = true
+    start: point,
+    end: point,
+    width: length,
+    turns: integer = 6,
+    lead: number = 0.1,
+    round: bool = true
 ) {
     assert turns >= 1, "a spring has at least one turn"
     assert 0 < lead < 0.5, "the leads of a spring are a share of its way, between 0 and 0.5"
@@ -172,7 +163,10 @@ shape spring(
 /// }
 /// ```
 shape chain(
-    start: point, end: point, links: integer = 9, width: length = norm(end - start) / max(1, links) / 2
+    start: point,
+    end: point,
+    links: integer = 9,
+    width: length = norm(end - start) / max(1, links) / 2
 ) {
     assert links >= 1, "a chain has at least one link"
     let up = turned(unit(end - start), 90deg) * (width / 2mm)

@@ -1,5 +1,5 @@
-// What joins two parts: rams, links, hinges, brackets and straps. They follow the points or outlines they are made of,
-// which may be of other structures; all else of them is worked out from these, so they hold no equations.
+// What joins two parts: rams, links, wires, hinges, brackets, straps, rivets and screws. They follow the points or outlines they
+// are made of, which may be of other structures; all else of them is worked out from these, so they hold no equations.
 
 /// A ram from `start` to `end`: a cylinder, `barrel` across, and its rod, `rod` across, each with an eye about its end.
 ///
@@ -36,7 +36,9 @@ shape ram(
         "the barrel of a ram is longer than it is wide, and ends before the eye of its rod"
     let mouth = place(share * reach, 0)
     foot = arc(center: start, radius: barrel / 2, start_angle: way + 90deg, end_angle: way + 270deg)
-    head = arc(center: end, radius: eye, start_angle: way + 180deg + neck, end_angle: way + 180deg - neck)
+    head = arc(
+        center: end, radius: eye, start_angle: way + 180deg + neck, end_angle: way + 180deg - neck
+    )
     let right = [
         foot.end,
         place(share * reach - lip, -barrel / 2),
@@ -98,6 +100,24 @@ shape link(start: point, end: point, width: length, bore: length = width / 2, ey
     }
 }
 
+/// A wire, a rope or a rod from `start` to `end`, `width` across: straight, or in the middle by `sag` below the straight way.
+///
+/// `start` and `end` may be points of any structure above, which it follows.
+///
+/// ```aidl
+/// assembly lantern {
+///     solid hood { body = dome(bottom_center: (0, 60), width: 50, height: 16) }
+///     solid tank { body = trapezoid(center: (0, 0), bottom_width: 60, top_width: 46, height: 20) }
+///     @color("dimgray")
+///     solid guard {
+///         left = wire(tank.body.top_left, hood.body.bottom_right, 2)
+///         right = wire(tank.body.top_right, hood.body.bottom_left, 2)
+///     }
+/// }
+/// ```
+fn wire(start: point, end: point, width: length, sag: length = 0) =
+    thick(cord(start, end, sag), width, caps: butt)
+
 /// A hinge along the joint of two parts, from `start` to `end`: two leaves with knuckles about a pin, and holes for screws.
 ///
 /// A `leaf` reaches that far to either side, knuckles included, which are `pin` across; the first is of the leaf on the left of
@@ -139,7 +159,8 @@ shape hinge(
         if is_some(bore) {
             for i in 0..<screws {
                 screw_hole[k][i] = circle(
-                    center: place(reach * (i + 0.5) / screws, out * (leaf + pin / 2 + play) / 2), radius: bore / 2
+                    center: place(reach * (i + 0.5) / screws, out * (leaf + pin / 2 + play) / 2),
+                    radius: bore / 2
                 )
             }
         }
@@ -175,7 +196,13 @@ shape bracket(
         "the legs of a bracket are longer than they are thick"
     if is_some(brace) {
         outline = polygon(
-            [place(0, 0), place(width, 0), place(width, thickness), place(thickness, height), place(0, height)]
+            [
+                place(0, 0),
+                place(width, 0),
+                place(width, thickness),
+                place(thickness, height),
+                place(0, height)
+            ]
         )
         if written(brace * slope / b) < 0.9 * written(a) {
             opening = polygon(
@@ -254,7 +281,11 @@ shape screw_head(size, drive: text) {
         recess = polygon([polar(r / 2, 60deg * i) for i in 0..5])
     } else if kind != "none" {
         recess = polygon(
-            [polar(1mm, 90deg * i) * (x * r / 5mm) + polar(1mm, 90deg * i + 90deg) * (y * r / 5mm) for i in 0..3 for x, y in (if kind == "cross" then [[3, -1], [3, 1], [1, 1]] else if i % 2 == 0 then [[4, -1], [4, 1]] else [])]
+            [polar(1mm, 90deg * i) * (x * r / 5mm) + polar(
+                1mm, 90deg * i + 90deg
+            ) * (y * r / 5mm) for i in 0..3 for x, y in (if kind == "cross" then [
+                [3, -1], [3, 1], [1, 1]
+            ] else if i % 2 == 0 then [[4, -1], [4, 1]] else [])]
         )
     }
 }

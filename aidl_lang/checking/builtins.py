@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from aidl_lang.checking.registry import DECLARATIONS, PRIMITIVES
-from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.types import (
     ANY,
+    DECLARATIONS,
     PARAMETER_TYPES,
+    PRIMITIVES,
     BoxType,
     GeometryType,
     ListType,
@@ -78,23 +79,10 @@ PATTERN: Mapping[str, Mapping[str, Type]] = {
 """Fields of a pattern, beside its members."""
 
 OUTLINE = frozenset(
-    [
-        "corner",
-        "corners",
-        "segment",
-        "segments",
-        "edge",
-        "edges",
-        "point",
-        "points",
-        "fillet",
-        "chamfer",
-        "outline",
-        "parts",
-        "source",
-        "member",
-        "members",
-    ]
+    (
+        *("corner", "corners", "segment", "segments", "edge", "edges", "point", "points", "fillet"),
+        *("chamfer", "outline", "parts", "source", "member", "members"),
+    )
 )
 """Names that operations give to shapes beside those of their definitions; only the builder knows which."""
 
@@ -276,7 +264,12 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"})
+CONNECTING = frozenset(
+    (
+        *("ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire"),
+        *("hose", "hose_way", "ray_lines"),
+    )
+)
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(

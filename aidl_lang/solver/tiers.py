@@ -93,7 +93,8 @@ class Tiers:
         constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
         placing = [index for index in indices if constraints[index].placed & mentions[index]]
         unmet = set(hierarchy.unmet(placing))
-        sizing = {i for i in placing if any(map(hierarchy.is_kept, constraints[i].placed & mentions[i]))}
+        is_kept = hierarchy.is_kept
+        sizing = {i for i in placing if any(is_kept[u] for u in constraints[i].placed & mentions[i])}
         for index, reached in self.reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)
@@ -121,7 +122,7 @@ class Tiers:
                     continue
                 free.add(unknown)
                 for index in hierarchy.solved_mentioning(unknown, self.group):
-                    if index not in constraints and hierarchy.is_hard(index):
+                    if index not in constraints and hierarchy.is_hard[index]:
                         constraints.add(index)
                         stack.append(index)
         return Scope(frozenset(free), tuple(sorted(constraints)))
@@ -142,7 +143,7 @@ class Tiers:
         hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
         hierarchy.refresh(indices)
         mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
-        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept(u)))
+        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept[u]))
         slopes: dict[int, Mapping[int, float]] = {}
         bent: list[int] = []
         for index in indices:
@@ -165,9 +166,7 @@ class Tiers:
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def independent(self, constraints: Iterable[int]) -> list[list[int]]:
-        """Returns the constraints in independent parts, by the unknowns they share that could ever move, in
-        their order.
-        """
+        """Returns the constraints in independent parts, by the unknowns they share that could ever move."""
         parts: list[list[int]] = []
         left = list(constraints)
         while left:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.binding import MEMBERS
 from tests.checker.model import (
     Angle,
     Boxed,

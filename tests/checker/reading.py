@@ -10,7 +10,7 @@ from inspect import signature
 from typing import Any
 
 from aidl_lang.checking import library
-from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.syntax import ast
 from tests.checker import measures
 from tests.checker.measures import FUNCTIONS, is_line, items

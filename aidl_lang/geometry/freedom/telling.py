@@ -21,7 +21,7 @@ from aidl_lang.geometry.freedom.scene import NUMBER, ROOT, WHOLE, Floats, Ints, 
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.gradients import connected
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Solution
 
 MOST = 200
 """Parts of the model that are put into words."""

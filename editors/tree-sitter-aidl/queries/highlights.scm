@@ -116,7 +116,7 @@
     "enumerate" "zip" "reversed" "str" "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up"
     "down" "forward" "horizontal_to" "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to"
     "smooth_to" "wave_to" "zigzag_to" "scallops_to" "bezier_to" "quadratic_to" "close" "mirrored"
-    "move_to" "wire" "hose" "strap_around" "rivets" "screws" "between" "anchor" "spot" "spots"
+    "move_to" "hose" "wire" "strap_around" "rivets" "screws" "between" "anchor" "spot" "spots"
     "vertical_through" "horizontal_through" "distance" "horizontal_distance" "vertical_distance" "gap"
     "angle" "length" "radius" "diameter" "clearance" "hatching" "crosshatch" "mesh" "knurling" "threads"
     "ribs" "slats" "bricks" "tiles" "planks" "checkers" "dots" "honeycomb" "scales" "shingles"
