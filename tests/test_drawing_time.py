@@ -67,6 +67,21 @@ def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (told.span.line, told.label) == (3, "it came as far as this")
 
 
+def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(*_: object) -> None:
+        raise OutOfTime
+
+    monkeypatch.setattr("aidl_lang.geometry.drawing.draw", late)
+    text = (
+        "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
+        "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"
+    )
+    (told,) = pipeline.compile(SourceFile("s.aidl", text)).diagnostics
+    assert told.code == "E0805"
+    assert told.span is not None
+    assert (told.span.line, told.label) == (3, "most of its curves are made here")
+
+
 @pytest.mark.parametrize(
     ("doing", "work"),
     [

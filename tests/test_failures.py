@@ -110,6 +110,13 @@ def test_a_search_that_does_not_arrive_says_how_near_it_came() -> None:
         assert failure.fix is None
 
 
+def test_a_search_without_time_says_so() -> None:
+    (failure,) = errors(TRIANGLE, seconds=0.0)
+    assert failure.code == "E0603"
+    assert failure.message.startswith("the time for solving ran out before ")
+    assert failure.fix is None
+
+
 def test_json_has_the_places_what_would_fit_and_the_fix() -> None:
     text = UNSOLVABLE[0].text
     (failure,) = errors(text)

@@ -11,12 +11,14 @@ import pytest
 from PIL import Image
 
 from aidl_lang.tools.terminal import (
+    CELL,
     Cell,
     Label,
     Screen,
     cells,
     fit,
     kitty,
+    plausible,
     protocol,
     sixel,
     text,
@@ -153,3 +155,9 @@ def test_pictures_fill_the_screen_in_their_proportions(width: float, height: flo
     extent = fit(width, height, Screen(80, 24))
     assert (extent.columns, extent.rows) == expected
     assert extent.pixels == (8 * expected[0], 16 * expected[1])
+
+
+def test_cells_that_cannot_be_are_not_believed():
+    assert plausible(9, 18) == (9, 18)
+    assert plausible(0, 0) == CELL
+    assert plausible(100, 10) == CELL

@@ -5,11 +5,38 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import apply_fixes
-from aidl_lang.common.source import SourceFile
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.drawing import draw
-from tests.geometry.models import circle, model, primitive, structure
+from aidl_lang.geometry.solved import SolvedStructure
+from tests.geometry.models import circle, model, primitive, rectangle, structure
+
+
+def notes(root: SolvedStructure) -> list[Diagnostic]:
+    return draw(model(root))[1].everything()
+
+
+def only(root: SolvedStructure) -> Diagnostic:
+    (note,) = notes(root)
+    return note
+
+
+def span_of(source: SourceFile, text: str) -> Span:
+    start = source.text.index(text)
+    return Span(source, start, start + len(text))
+
+
+def test_the_fix_makes_the_inner_loop_a_hole():
+    source = SourceFile(
+        "x.aidl", "solid s {\n    plate = square(10)\n    bore = circle(center: (5, 5), radius: 2)\n}\n"
+    )
+    bore = circle("bore", 5, 5, 2)
+    bore = primitive("bore", bore.curve, span=span_of(source, "bore = circle(center: (5, 5), radius: 2)"))
+    note = only(structure("solid", "s", rectangle("plate", 0, 0, 10, 10), bore))
+    text, count = apply_fixes(source, [note])
+    assert count == 1
+    assert "    hole bore_hole { bore = circle(center: (5, 5), radius: 2) }\n" in text
 
 
 def test_a_hole_at_the_root_cuts_nothing_and_is_outlined():

@@ -82,6 +82,13 @@ def test_the_solved_value(marked: str, line: str) -> None:
     assert line in at(marked)
 
 
+def test_instances_and_turns_list_the_first_few() -> None:
+    said = at("¦rim = ")
+    assert [f"pin[{i}]: rim.radius = {2 + i / 2:g} mm" in said for i in range(5)] == [True] * 4 + [False]
+    assert said.count("size") <= 1
+    assert "i = 3: pin[i].center_y = 3 mm" in at("pin[i].¦center_y")
+
+
 def test_what_can_move_is_free_and_what_cannot_is_not() -> None:
     text = """\
 drawing d {
@@ -122,6 +129,14 @@ def test_no_value_of_another_text() -> None:
     assert "no value" in said
     waiting = look(Path("/project/part.aidl"), PLATE + " ", view.world)
     assert "60 mm, param" not in at("width: wi¦dth", PLATE, waiting)
+
+
+def test_a_selected_expression() -> None:
+    start = PLATE.index("0.1 + 0.2")
+    found = hover(solved(), start - 1, start + len("0.1 + 0.2"))
+    assert found is not None
+    assert found.text == "- `0.1 + 0.2 = 0.3`"
+    assert found.span.text == "0.1 + 0.2"
 
 
 @pytest.mark.parametrize("path", LIGHTER)

@@ -69,6 +69,15 @@ assembly a {
     ]
 
 
+def test_constraints_that_do_not_hold_are_counted() -> None:
+    text = (
+        "solid a {\n c = circle(center: origin, radius: 4)\n constrain { c.radius == 5, c.radius == 6 }\n}\n"
+    )
+    ((name, title),) = titles(text)
+    assert name == "a"
+    assert "not met" in title
+
+
 def test_examples(example: View) -> None:
     view = run(example)
     assert view.outcome is not None
