@@ -13,9 +13,17 @@ from aidl_lang import pipeline
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import ExportError
 from aidl_lang.pipeline import Compiled
+from aidl_lang.tools.agents.calling import answer
+from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
+from aidl_lang.tools.ide.actions import drawn_alike
+from aidl_lang.tools.ide.dragging import drag, handles
+from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.references import CannotError, Refusal
+from aidl_lang.tools.ide.workspace import View, look, run
 
 PLATES = """\
 assembly plates {
@@ -39,6 +47,10 @@ def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
         return replace(plain(*given, **named), limit=0.0)
 
     monkeypatch.setattr(pipeline, "compile", compile)
+
+
+def view() -> View:
+    return run(look(Path("plates.aidl").absolute(), PLATES, MemoryWorld({})))
 
 
 def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -147,3 +159,37 @@ def test_the_command_says_so_of_the_picture_of_two(
     assert not Path("both.svg").exists()
     lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"
     assert capsys.readouterr().err.startswith(lead)
+
+
+@pytest.mark.usefixtures("hurried")
+def test_models_are_told() -> None:
+    made = answer(Tools(), "measure", {"program": PLATES})
+    assert made.is_error
+    assert "measuring what this program says takes more than 0 seconds" in made.text
+    edited = answer(Tools(), "edit_param", {"program": PLATES, "name": "wide", "value": 30})
+    assert not edited.is_error
+    told = "nothing can be compared: comparing what this program says takes more than 0 seconds"
+    assert edited.data["changes"] == told
+
+
+@pytest.mark.usefixtures("hurried")
+def test_a_page_shows_a_problem_in_place_of_the_picture() -> None:
+    made = preview(view(), ["names"])
+    assert made.svg is None
+    assert [(p.code, p.message) for p in made.problems if p.severity == "error"] == [
+        ("E0805", "painting what this program says takes more than 0 seconds")
+    ]
+
+
+@pytest.mark.usefixtures("hurried")
+def test_what_cannot_be_drawn_is_not_dragged() -> None:
+    seen = view()
+    handle = next(h for h in handles(seen) if h.moves == "guess")
+    found = drag(seen, handle.id, (handle.at[0] + 5, handle.at[1]))
+    assert found == Refusal("drawing what this program says takes more than 0 seconds")
+
+
+@pytest.mark.usefixtures("hurried")
+def test_an_action_that_cannot_be_tried_is_refused() -> None:
+    with pytest.raises(CannotError, match=r"writing the drawing as `\.svg` takes more than 0 seconds"):
+        drawn_alike(view(), view())

@@ -11,7 +11,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.common.render import to_dict
+from aidl_lang.common.render import render, to_dict
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.explaining.failures import _follows
 from aidl_lang.solver.problem import Failure, GroupFailure
@@ -127,6 +127,17 @@ def test_json_has_the_places_what_would_fit_and_the_fix() -> None:
     assert SourceFile("part.aidl", text).text[data["fix"]["edits"][0]["start"] :].lstrip().startswith("rim")
 
 
+@pytest.mark.parametrize("value", ["1e12", "-1e12", "1e-300", "0", "-1e12mm", "6.000001"])
+def test_extreme_numbers_do_not_break_the_message(value: str) -> None:
+    stated = f"a.radius == 6; a.radius == {value}"
+    found = errors(f"drawing d {{ a = circle(center: (0, 0), radius: 5); constrain {{ {stated} }} }}")
+    assert found
+    assert {d.code for d in found} == {"E0601"}
+    for d in found:
+        assert render(d)
+        assert d.fix is not None
+
+
 def test_a_search_that_may_have_failed_for_a_failure_inside_it_is_not_told() -> None:
     """Only what is wrong for reasons of its own: the conflict, not the structures around it."""
     paths = ["box", "box.lid", "box.lid.knob", "boxes"]
@@ -140,6 +151,16 @@ def test_a_search_that_may_have_failed_for_a_failure_inside_it_is_not_told() -> 
         GroupFailure(3, Failure.NOT_CONVERGED, ()),
     ]
     assert [f for f in found if not _follows(f, found, paths)] == [found[0], conflict, found[4], found[5]]
+
+
+def test_a_search_that_is_cut_short_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "solid a { b = circle(center: origin, radius: 5); constrain { b.radius == 6; b.radius <= 4 } }"
+    told = "what would fit was not sought to the end, for want of time"
+    (found,) = errors(text)
+    assert told not in found.hints
+    monkeypatch.setattr("aidl_lang.explaining.trials.SECONDS", -1.0)
+    (found,) = errors(text)
+    assert told in found.hints
 
 
 def test_of_sizes_that_change_together_each_statement_is_named_that_asks_for_it() -> None:

@@ -172,6 +172,18 @@ def test_united_contours_of_the_own_font_enclose_what_alternating_ones_do(bold: 
 # --- Where they are looked for ---------------------------------------------------------------------
 
 
+def test_paths_are_relative_to_the_file_that_writes_the_text(tmp_path: Path) -> None:
+    (tmp_path / "signs" / "fonts").mkdir(parents=True)
+    (tmp_path / "signs" / "fonts" / "own.ttf").write_bytes(true_type({"A": bar()}))
+    (tmp_path / "signs" / "sign.aidl").write_text(
+        'drawing sign() { t = text("A", height: 7, font: "fonts/own.ttf") }', encoding="utf-8"
+    )
+    text = """import "signs/sign.aidl"
+        assembly a { s = sign() drawing d { u = text("A", height: 7, font: "signs/fonts/own.ttf") } }"""
+    found = pipeline.compile(SourceFile(str(tmp_path / "main.aidl"), text), DiskWorld(tmp_path))
+    assert [d.message for d in found.diagnostics if d.is_error] == []
+
+
 @pytest.mark.parametrize(
     ("path", "reason"),
     [
@@ -192,6 +204,11 @@ def test_files_that_cannot_be_read(tmp_path: Path, path: str, reason: str) -> No
     text = f'drawing d {{ t = text("A", height: 7, font: "{path}") }}'
     (found,) = pipeline.check(SourceFile("p.aidl", text), DiskWorld(root))
     assert (found.code, found.message) == ("E0359", reason)
+
+
+def test_without_files_at_hand() -> None:
+    (found,) = pipeline.check(SourceFile("p", 'drawing d { t = text("A", height: 7, font: "own.ttf") }'))
+    assert found.message == "`own.ttf` cannot be read: only this text is at hand"
 
 
 def test_programs_of_models_read_fonts_and_nothing_else() -> None:

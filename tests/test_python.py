@@ -82,11 +82,31 @@ def test_the_block_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 # --- Programs and files ----------------------------------------------------------------------------
 
 
+def test_a_path_as_text_is_read(tmp_path: Path) -> None:
+    file = tmp_path / "plate.aidl"
+    file.write_text(PLATE, "utf-8")
+    for said in (file, str(file), f"{file}\n".strip()):
+        assert aidl_lang.compile(said).ok
+        assert aidl_lang.check(said) == []
+    with pytest.raises(FileNotFoundError):
+        aidl_lang.compile(str(tmp_path / "plane.aidl"))
+    assert aidl_lang.compile(f"{PLATE} // plate.aidl").ok
+
+
 @pytest.mark.parametrize("text", [PLATE, "solid plate { todo }\n" * 500], ids=["short", "long"])
 def test_a_program_as_path_is_told(text: str) -> None:
     with pytest.raises(aidl_lang.AidlError, match="this Path holds a program") as told:
         aidl_lang.compile(Path(text))
     assert told.value.diagnostic.hints == ("give the program itself as a str",)
+
+
+def test_what_is_neither_is_told(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match="a program is a str, or a Path to it, not bytes"):
+        aidl_lang.compile(PLATE.encode())  # type: ignore[arg-type]
+    (tmp_path / "latin.aidl").write_bytes("// größer".encode("latin-1"))
+    with pytest.raises(aidl_lang.AidlError, match="is not UTF-8 text") as told:
+        aidl_lang.compile(tmp_path / "latin.aidl")
+    assert told.value.diagnostic.code == "E0903"
 
 
 # --- Writing files ---------------------------------------------------------------------------------
@@ -159,6 +179,11 @@ def test_what_does_not_hold_is_written_only_on_request(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
     model.save(tmp_path / "disc.svg", best_effort=True)
     assert (tmp_path / "disc.svg").exists()
+
+
+def test_a_missing_folder_is_told(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match="there is no such folder"):
+        aidl_lang.compile(PLATE).save(tmp_path / "nowhere" / "plate.svg")
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from aidl_lang.tools.terminal import (
     Screen,
     cells,
     fit,
+    has_true_colour,
     kitty,
     plausible,
     protocol,
@@ -78,6 +79,12 @@ def test_without_colour_or_letters_less_is_shown():
     assert protocol(kitty_terminal, "utf-8", is_terminal=False, has_colour=True) == "blocks"
     assert protocol({}, "latin-1", is_terminal=True, has_colour=True) == "ascii"
     assert protocol({}, "ascii", is_terminal=False, has_colour=False) == "ascii"
+
+
+def test_true_colour_is_used_where_it_is_promised():
+    assert has_true_colour({"COLORTERM": "truecolor"})
+    assert not has_true_colour({"TERM": "xterm-256color"})
+    assert not has_true_colour({"COLORTERM": "truecolor", "STY": "1.pts"})
 
 
 def test_kitty_is_given_the_file_in_chunks():

@@ -90,3 +90,10 @@ def test_a_link_that_comes_between_look_and_read_is_not_followed(tmp_path: Path)
     with pytest.raises(NotADirectoryError):
         Reads().contents(root / "a" / "b" / "x.aidl", below=root)
     assert Reads().contents(root / "a" / "b" / "x.aidl") == b"other"
+
+
+def test_only_text_is_read(tmp_path: Path) -> None:
+    (tmp_path / "bytes").write_bytes(b"\xff\xfe")
+    with pytest.raises(FileError) as caught:
+        DiskWorld(tmp_path).read("bytes")
+    assert caught.value.reason is ReadFailure.NOT_TEXT

@@ -39,6 +39,16 @@ def test_the_fix_makes_the_inner_loop_a_hole():
     assert "    hole bore_hole { bore = circle(center: (5, 5), radius: 2) }\n" in text
 
 
+def test_an_open_outline_names_its_ends_and_the_gap():
+    lines = [Line((0, 0), (10, 0)), Line((10, 0), (10, 8)), Line((10, 8), (0, 0.5))]
+    root = structure("solid", "s", *(primitive(f"l{i}", line) for i, line in enumerate(lines)))
+    note = only(root)
+    assert note.code == "W0702"
+    assert "the end at (0, 0) is 0.5 mm away from (0, 0.5)" in note.message
+    assert "`constrain l0.start == l2.end`" in note.hints[0]
+    assert [s.role for s in draw(model(root))[0].strokes] == ["open"] * 3
+
+
 def test_a_hole_at_the_root_cuts_nothing_and_is_outlined():
     drawing, found = draw(model(structure("hole", "h", circle("c", 0, 0, 2))))
     assert [n.code for n in found.everything()] == ["W0703"]

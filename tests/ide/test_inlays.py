@@ -64,3 +64,10 @@ def test_a_param_set_from_outside_is_told(params: dict[str, float], hints: list[
     found = inlays(view)
     assert [i.text for i in found] == hints
     assert all(text[: i.offset].endswith("2cm") for i in found)
+
+
+def test_a_picture_of_another_text_tells_nothing_of_this_one() -> None:
+    first = seen(MOVED, solved=True)
+    broken = look(first.path, MOVED.replace("radius:", "radius"), first.world)
+    assert inlays(run(broken, first)) == []
+    assert inlays(broken) == []

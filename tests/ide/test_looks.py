@@ -78,6 +78,11 @@ def test_constraints_that_do_not_hold_are_counted() -> None:
     assert "not met" in title
 
 
+def test_nothing_is_said_of_a_text_that_was_not_solved() -> None:
+    assert lenses(seen("solid a { c = circle(center: origin, radius: 4) }")) == []
+    assert titles("solid a { c = circle(radius: ) }") == []
+
+
 def test_examples(example: View) -> None:
     view = run(example)
     assert view.outcome is not None

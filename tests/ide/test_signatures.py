@@ -61,6 +61,13 @@ def test_the_active_parameter(marked: str, name: str, parameter: str) -> None:
     assert shown == parameter
 
 
+@pytest.mark.parametrize(
+    "marked", ["¦", "x = circle¦(3)", "x = circle(3)¦", "x = (3, ¦)", "// circle(¦", "x = nothing(¦"]
+)
+def test_no_call_around(marked: str) -> None:
+    assert helped(marked) is None
+
+
 def test_all_overloads_are_shown_and_the_helpers_of_the_library_are_not() -> None:
     found = helped("x = circle(¦")
     assert found is not None

@@ -114,6 +114,12 @@ def assert_in_order(tokens: list[Colored]) -> None:
         assert token.modifiers <= set(MODIFIERS)
 
 
+def test_folds_stay_where_brackets_are_missing() -> None:
+    view = seen(PART.replace("solid washer", "solid washer { ( ] }\nsolid x"))
+    found = {(f.start, f.end, f.kind) for f in folds(view)}
+    assert {(2, 3, "comment"), (7, 19, "region"), (8, 11, "region"), (17, 18, "comment")} <= found
+
+
 def check_everything(view: View, at: int) -> None:
     text = view.source.text
     assert_in_order(semantic_tokens(view))

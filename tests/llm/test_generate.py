@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 from collections.abc import Callable
@@ -234,6 +235,16 @@ def test_the_best_of_several_runs_is_kept(
     assert Path("plate.run-1.aidl").read_text("utf-8") == WRONG
     assert transcript("plate.run-2.transcript.json")["result"]["ok"]
     assert "run 1: not valid after 1 attempt" in capsys.readouterr().err
+
+
+def test_a_picture_goes_with_the_request(generate: Callable[..., Any]) -> None:
+    Image.new("RGB", (8, 8), "red").save("sketch.png")
+    _, server = generate([block(PLATE)], "-o", "plate.aidl", "--image", "sketch.png")
+    sent = server.requests[0].messages[1]
+    assert Image.open(BytesIO(sent.images[0].data)).getpixel((0, 0)) == (255, 0, 0)
+    assert sent.text.startswith("The picture shows what is meant.\n\n")
+    uri = transcript()["messages"][1]["images"][0]
+    assert base64.b64decode(uri.partition(",")[2]) == sent.images[0].data
 
 
 def test_the_programs_of_this_file_are_what_they_are_said_to_be() -> None:

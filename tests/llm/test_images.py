@@ -27,6 +27,18 @@ def failure(path: Path) -> tuple[str, tuple[str, ...]]:
     return caught.value.diagnostic.message, caught.value.diagnostic.hints
 
 
+@pytest.mark.parametrize(
+    ("kind", "media"),
+    [("PNG", "image/png"), ("JPEG", "image/jpeg"), ("WEBP", "image/webp"), ("GIF", "image/gif")],
+)
+def test_small_pictures_are_sent_as_they_are(tmp_path: Path, kind: str, media: str) -> None:
+    data = encoded(PIL.Image.new("RGB", (40, 30), "red"), kind)
+    path = tmp_path / "picture.txt"  # the content tells
+    path.write_bytes(data)
+    image = read_image(str(path))
+    assert (image.media_type, image.data) == (media, data)
+
+
 def test_what_is_long_becomes_jpeg(tmp_path: Path) -> None:
     noise = numpy.random.default_rng(1).integers(0, 256, (1500, 1500, 3), dtype=numpy.uint8)
     path = tmp_path / "noise.png"

@@ -203,6 +203,19 @@ def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: 
         assert page.answer("aidl/fix", **of, fix=0)["error"]["message"] == "the text has changed"
 
 
+@pytest.mark.parametrize("to", [(1e300, 0.0), (float("nan"), 0.0), (float("inf"), 1.0)])
+@pytest.mark.parametrize("handle", ["", "a.body", "no such", "a.body.top_right"])
+def test_dragging_nowhere_is_refused(
+    client: TestClient, talking: Any, file: Path, handle: str, to: tuple[float, float]
+) -> None:
+    with talking(client) as page:
+        page.preview()
+        assert page.answer("aidl/try", drag={"id": handle, "to": to})["error"]["message"]
+        done = page.answer("aidl/drag", id=handle, to=to)
+        assert "error" in done or done["reason"]
+    assert file.read_text("utf-8") == TEXT
+
+
 def test_noise_is_passed_over(client: TestClient, talking: Any) -> None:
     noise = (
         "",

@@ -75,6 +75,11 @@ def _places(node: ast.Node) -> list[tuple[str, int, int]]:
     return [(n.span.source.name, n.span.start, n.span.end) for n in ast.walk(node)]
 
 
+def test_only_trees_become_data() -> None:
+    with pytest.raises(TypeError, match="SourceFile is no part of a syntax tree"):
+        ast.encoded((SourceFile("", ""),))
+
+
 def test_a_changed_library_is_parsed_anew(checkout: Path) -> None:
     fresh()
     (old,) = kept(checkout)
