@@ -132,5 +132,5 @@ def thickness_of(model: Model, path: str) -> float:
 
 def test_nothing_of_the_examples_is_lost():
     """What has bodies in the JSON is what the tests above have looked at."""
-    assert len(EXAMPLES) >= 13
+    assert len(EXAMPLES) >= (13 if TRIES_ALL else 7)
     assert all(bodies_of(name) for name in EXAMPLES)
