@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from aidl_lang.geometry.stacking import stacked
+from aidl_lang.geometry.styles import stacked
 from tests.geometry.models import structure
 
 

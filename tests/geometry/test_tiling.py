@@ -11,10 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import affinity
 
-from aidl_lang.geometry.clipping import clipped_each
+from aidl_lang.geometry.boolean import clipped_each
 from aidl_lang.geometry.curves import Circle, Line, Piece, Vec
-from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, area, length
 from aidl_lang.geometry.tiling import (
     MOST,
     Lattice,

@@ -14,7 +14,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
-from aidl_lang.tools.ide.completion.constraints import forms
+from aidl_lang.tools.ide.completion.names import forms
 from aidl_lang.tools.ide.workspace import Workspace, look
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import FEW

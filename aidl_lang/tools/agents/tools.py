@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 from aidl_lang import pipeline
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
-from aidl_lang.common.diagnostics import Edit, has_errors
+from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.common.records import record
@@ -59,8 +59,7 @@ if TYPE_CHECKING:
 else:
     Format = Literal[tuple(dict.fromkeys(("png", "model", *OFFERED)))]
 Formats: TypeAlias = Annotated[
-    Sequence[Format],
-    "What to make: png is a picture, model the solved model as JSON, the others are files.",
+    Sequence[Format], "What to make: png is a picture, model the solved model as JSON, the others are files."
 ]
 _UNSOLVED = "no mistakes found; nothing was solved: `compile` tells whether the constraints hold"
 _WITHOUT_CONFLICT = {
@@ -174,15 +173,10 @@ class Tools:
         thinnest wall and the narrowest gap, volume and mass, of the whole and of each body or of the part at
         a path, and the gaps and overlaps between bodies.
         """
-        from aidl_lang.geometry.survey import NothingThereError
-
         _, compiled, reader = self._compiled(program, params, files)
         if not compiled.ok:
             raise RefusalError(*compiled.errors)
-        try:
-            found = compiled.surveyed([path] if path else [])
-        except (NothingThereError, TooLongError) as reason:
-            raise RefusalError(reason.diagnostic) from None
+        found = compiled.surveyed([path] if path else [])
         most = drawing.MOST_LISTED
         pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
         parts, whole = found.parts[:most], found.whole
@@ -223,7 +217,7 @@ class Tools:
         if before.status == "wrong":
             raise RefusalError(*before.errors)
         edit = workspace.edit_of(workspace.find(before.knobs, name), source, value)
-        text = _edited(source, edit)
+        text = source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
         workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
@@ -270,10 +264,6 @@ class Tools:
         reader = world.reader(source)
         compiled = pipeline.compile(source, world, params, self.workspace.limits.settings)
         return source, reader.compiled(compiled), reader
-
-
-def _edited(source: SourceFile, edit: Edit) -> str:
-    return source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
 
 
 def _changes(before: Compiled, after: Compiled) -> str:

@@ -85,17 +85,13 @@ def data(name: str, sweep: Sweep) -> dict[str, Any]:
     }
 
 
-# --- `aidl check`: find what is wrong without writing anything, and mend what can be mended.
-
 _WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
 """Why `--fix` leaves a fix that is not sure, and one that is."""
 
 
 @record()
 class _Checked:
-    """The findings in a file, the titles of the fixes made, and the result of solving: `solved`, `partial`,
-    `failed`; "" if it was not tried.
-    """
+    """The findings in a file, the fixes made, and the status of solving; "" if it was not tried."""
 
     diagnostics: list[Diagnostic]
     fixes: tuple[str, ...] = ()
@@ -160,7 +156,6 @@ def run_check(arguments: argparse.Namespace) -> int:
 
 
 def _check(name: str, arguments: argparse.Namespace) -> _Checked:
-    """Checks one file; an unreadable file is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
 
     settings = pipeline.Settings.of(arguments.variant)
@@ -187,7 +182,6 @@ def _found(
     arguments: argparse.Namespace,
     fixes: tuple[str, ...] = (),
 ) -> _Checked:
-    """Returns the findings in a program as it stands."""
     from aidl_lang import pipeline
 
     if not arguments.solve:
@@ -214,9 +208,6 @@ def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> 
         tell(name, checked.sweep)
 
 
-# --- `aidl fmt`: put programs into their canonical form.
-
-
 def register_fmt(parser: argparse.ArgumentParser) -> None:
     """`aidl fmt`: put programs into their canonical form."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
@@ -239,21 +230,17 @@ def _format(name: str, check: bool, diff: bool) -> int:
         if text is None:
             show(diagnostics)
             return exit_code(diagnostics)
-        return _deliver(name, source, text, check, diff)
+        changed = text != source.text
+        if diff:
+            print(_diff(source, text), end="")
+        if check and changed:
+            say(f"{name}: would be reformatted")
+        if not (check or diff) and (changed or name == files.STANDARD):
+            files.rewrite(name, text.encode())
+        return int(check and changed)
     except UseError as reason:
         show([reason.diagnostic])
         return 2
-
-
-def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) -> int:
-    changed = text != source.text
-    if diff:
-        print(_diff(source, text), end="")
-    if check and changed:
-        say(f"{name}: would be reformatted")
-    if not (check or diff) and (changed or name == files.STANDARD):
-        files.rewrite(name, text.encode())
-    return int(check and changed)
 
 
 def _diff(source: SourceFile, text: str) -> str:
@@ -267,9 +254,6 @@ def _diff(source: SourceFile, text: str) -> str:
     )
     unended = "\n\\ No newline at end of file\n"
     return "".join(line if line.endswith("\n") else line + unended for line in lines)
-
-
-# --- `aidl params`: the knobs of a program, with their ranges and values.
 
 
 def register_params(parser: argparse.ArgumentParser) -> None:

@@ -37,9 +37,7 @@ _PLAIN = {
 
 
 def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
-    """Returns the verbs and options that have every word of a query, each with its line; those named so
-    first.
-    """
+    """Returns the verbs and options with every word of a query, each with its line; those named so first."""
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
@@ -64,9 +62,6 @@ def _all(verbs: dict[str, str]) -> Iterator[tuple[str, str, str]]:
                 seen.add(name)
                 yield name, f"aidl {verb} {name}", " ".join(action.help.split())
 
-
-# --- `aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
-# Other words list the names that speak of them.
 
 _FEW = 3
 """Names that a message lists."""
@@ -119,7 +114,13 @@ def run_doc(arguments: argparse.Namespace) -> int:
         else:
             _list_all(known, style)
     elif arguments.picture:
-        return _draw(found, arguments.picture)
+        from aidl_lang.tools.reference.pages import picture
+
+        files.require_directory(arguments.picture)
+        files.write(arguments.picture, picture(found))
+        if arguments.picture != files.STANDARD:
+            say(f"{arguments.picture}: the example of `{found.name}`")
+        return 0
     elif arguments.json:
         _print_json(to_dict(found))
     else:
@@ -182,19 +183,6 @@ def _print_json(found: object) -> None:
     print(json.dumps(found, indent=2, ensure_ascii=False))
 
 
-def _draw(entry: Entry, output: str) -> int:
-    from aidl_lang.tools.reference.pages import picture
-
-    files.require_directory(output)
-    files.write(output, picture(entry))
-    if output != files.STANDARD:
-        say(f"{output}: the example of `{entry.name}`")
-    return 0
-
-
-# --- `aidl guide`: the language on a few pages, for a reader or a model that has never seen it.
-
-
 def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
@@ -221,7 +209,6 @@ def run_guide(arguments: argparse.Namespace) -> int:
 
 
 def _topics(written: str) -> list[str]:
-    """Returns the names of the topics that are asked for."""
     from aidl_lang.tools.reference.collect import reference
 
     known = [topic.name for topic in reference().topics]
@@ -235,9 +222,6 @@ def _topics(written: str) -> list[str]:
                 f"topics: {', '.join(known)}",
             )
     return topics
-
-
-# --- `aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers.
 
 
 def register_grammar(parser: argparse.ArgumentParser) -> None:
@@ -273,9 +257,6 @@ def run_grammar(arguments: argparse.Namespace) -> int:
     if arguments.output != files.STANDARD:
         say(f"{arguments.output}: written")
     return 0
-
-
-# --- `aidl explain`: what a code such as E0301 means, with the mistake and the mended program.
 
 
 def register_explain(parser: argparse.ArgumentParser) -> None:
@@ -350,8 +331,6 @@ def structure_name(stem: str) -> str:
     unfit = not name or name[0].isdigit() or name in load_tables().reserved
     return f"part_{name}".rstrip("_") if unfit else name
 
-
-# --- `aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model.
 
 _STYLES = ("openai", "anthropic", "mcp")
 

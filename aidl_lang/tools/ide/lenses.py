@@ -97,7 +97,6 @@ def _set_from_outside(view: View) -> Iterator[Inlay]:
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
-    """Returns the value of a literal; None for any other expression."""
     match node:
         case ast.String(value=value) | ast.Boolean(value=value):
             return value
@@ -129,9 +128,7 @@ def can_be_tried(view: View) -> bool:
 
 
 def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Sweep:
-    """Tries a program at the ends of its params. Raises ValueError if it cannot be tried, and Cancelled if
-    the request was given up.
-    """
+    """Tries a program at the ends of its params. Raises ValueError if it cannot be tried, and Cancelled."""
     if view.outcome is None or not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
@@ -170,7 +167,6 @@ def _told_at_ends(view: View, found: Sweep) -> Iterator[Lens]:
 
 
 def _title(turned: Sequence[Turned], name: str) -> str:
-    """Returns the results of one param as a title."""
     said = [text for each in turned if (text := ends.sentence(each, name))]
     if said:
         return " · ".join(said)
@@ -234,7 +230,6 @@ def _status(outcome: Compiled, model: SolvedModel) -> str:
 def _title_of_structure(
     found: Sequence[SolvedStructure], motions: Sequence[Motion], reports: Sequence[ConstraintReport]
 ) -> str:
-    """Returns the title for the structures that one piece of text made."""
     said = list(dict.fromkeys(_one(structure, motions, reports) for structure in found))
     times = f"{len(found)} times · " if len(found) > 1 else ""
     return times + first_few(said, _NAMED, " …", " | ")
@@ -252,9 +247,7 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
         for motion in motions
         if all(thing == structure.path or thing.startswith(inside) for thing in motion.things)
     ]
-    if free:
-        return f"{held}{first_few(free, _NAMED, ' …')}"
-    return f"{held}{_HELD}"
+    return f"{held}{first_few(free, _NAMED, ' …')}" if free else f"{held}{_HELD}"
 
 
 def _names(motion: Motion, inside: str) -> str:
