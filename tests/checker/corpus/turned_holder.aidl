@@ -1,5 +1,5 @@
 /// Constraints held by a turned structure speak of boxes and coordinates in its own frame.
-// changes: panel.lock.bow
+// changes: panel.window.pane
 assembly wall {
     solid panel at (20, 10) rotated 35deg {
         sheet = rectangle(width: 80, height: 40)
