@@ -50,6 +50,14 @@ class TestMemory:
         assert (again.status, again.stages) == (first.status, first.stages)
         assert again.values.tobytes() == first.values.tobytes()
 
+    def test_numbers_that_hash_alike_are_told_apart(self) -> None:
+        memory = Memory()
+        for high in (-1.0, -2.0):  # hash(-1.0) == hash(-2.0)
+            m = Model()
+            _, y = m.point(0.0, 3.0)
+            m.equal(y - high)
+            assert solve(m.problem(), memory=memory).values[1] == pytest.approx(high)
+
     def test_what_has_changed_is_solved_with_all_above_it(self) -> None:
         memory, lengths = Memory(), [5.0] * 6
         before = solve(row_of_parts(6, lengths), memory=memory)
