@@ -287,7 +287,6 @@ def _is_troubled(solution: Solution) -> bool:
 def _explained(
     lowered: Lowered, solution: Solution, settings: Settings, tried: Callable[[], Trials], watch: Stopwatch
 ) -> tuple[Sequence[GaveWay], Sequence[Explanation]]:
-    """Returns what gave way, and the failures."""
     if not _is_troubled(solution):
         return (), ()
     from aidl_lang.explaining.failures import explained
@@ -406,6 +405,7 @@ def _finish(
         partial(_follows, lowered, solution),
         built.model,
         evaluator,
+        drawn.everything,
         settings.drawing,
     )
 
@@ -413,7 +413,6 @@ def _finish(
 def _drawn(
     built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
-    """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)

@@ -121,7 +121,8 @@ def _node_keys(problem: Problem) -> list[int]:
 
 def _keyed(column: NDArray[np.generic]) -> list[int]:
     """Returns the numbers of a column by their bits: -1.0 and -2.0 have the same hash."""
-    return column.view(np.int64).tolist() if column.dtype == np.float64 else column.tolist()
+    found: list[int] = (column.view(np.int64) if column.dtype == np.float64 else column).tolist()
+    return found
 
 
 def ancestors(parent: Ints, depth: Ints, at: int) -> Ints:
