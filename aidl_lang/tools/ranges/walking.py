@@ -38,13 +38,13 @@ LONGEST = 300.0
 """Seconds for all params."""
 _A_KNOB = 60.0
 """Seconds for one param, after which no value is begun."""
-_STEPS, _FEWER, _MANY = 20, 12, 300
-"""Values that are tried, and those of programs of more than so many names."""
+_STEPS = {300: 20, 800: 12, math.inf: 7}
+"""Values that are tried at equal distances in programs of at most so many names."""
 _AT_LEAST = 3
 """Values that are tried on each side of the one as written, if there are so many."""
 _MOST = 150
 """Values that are tried at the most."""
-_DEEPEST = 5
+_DEEPEST = 3
 """How often a way is halved where something may pass between its ends."""
 _UNEVEN = 0.55
 """What is left of the unevenness of a move on half of its way: 1/4 if smooth, 1/2 at a bend, 1 in a jump."""
@@ -152,7 +152,8 @@ class Walker:
     def walk(self) -> str:
         """Walks both ways; returns why it stopped before the ends, or ""."""
         try:
-            number = _FEWER if len(self.at(self.written).names) > _MANY else _STEPS
+            names = len(self.at(self.written).names)
+            number = next(steps for most, steps in _STEPS.items() if names <= most)
             self.is_count = is_whole(self.knob) and self._breaks_between()
             ways = [self._way(end, number) for end in (self.low, self.high)]
             self.grid = sorted({self.written, *ways[0], *ways[1]})
