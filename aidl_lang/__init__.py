@@ -269,11 +269,18 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
     return SourceFile(name, text), KeptWorld(disk)
 
 
-def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`."""
+def check(text: str | Path, settings: Settings | None = None, *, range: bool = False) -> list[Diagnostic]:
+    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`. With `range`
+    it is solved, and if it works each param is walked over its range: a warning tells what changes kind.
+    """
     from aidl_lang import pipeline
 
-    return pipeline.check(*_read(text), settings or pipeline.Settings())
+    source, world = _read(text)
+    if not range:
+        return pipeline.check(source, world, settings or pipeline.Settings())
+    from aidl_lang.tools.ranges import checked
+
+    return checked(source, world, settings or pipeline.Settings())
 
 
 def compile(

@@ -3,7 +3,19 @@
 `looks` says what a kind is, `walking` how the way is made, `telling` what is said of it.
 """
 
-from aidl_lang.tools.ranges.telling import described, sentence, sentences, summary
+from aidl_lang.tools.ranges.telling import checked, described, findings, sentence, sentences, summary
 from aidl_lang.tools.ranges.walking import Ranges, Turn, Walk, has_way, ranges
 
-__all__ = ["Ranges", "Turn", "Walk", "described", "has_way", "ranges", "sentence", "sentences", "summary"]
+__all__ = [
+    "Ranges",
+    "Turn",
+    "Walk",
+    "checked",
+    "described",
+    "findings",
+    "has_way",
+    "ranges",
+    "sentence",
+    "sentences",
+    "summary",
+]

@@ -7,15 +7,18 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
-from aidl_lang import parser
+from aidl_lang import parser, pipeline
 from aidl_lang.building.model import Knob
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import World
 from aidl_lang.compiled import Compiled
+from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ends import valued
+from aidl_lang.tools.ends import SweepJob, valued
 from aidl_lang.tools.ranges.looks import Look, differences, look
-from aidl_lang.tools.ranges.walking import Ranges, Remedy, Turn, Walk
+from aidl_lang.tools.ranges.walking import Ranges, Remedy, Turn, Walk, ranges
 
 _TOLD = 3
 """Changes of one place that a sentence names."""
@@ -24,6 +27,7 @@ _PLACES = 6
 _CALLS = 6
 """Ambiguous calls that are tried to be stated."""
 _STILL = 1e-6
+_CODE = "W0607"
 _AMBIGUOUS = re.compile(
     r"(angle|tangent)\((?P<things>[^()]*(?:\([^()]*\)[^()]*)*)\)(?:\s*==\s*(?P<value>[^,;{}]+))?"
 )
@@ -107,6 +111,28 @@ def _walked(walk: Walk) -> dict[str, Any]:
         "stopped": walk.stopped,
         "seconds": round(walk.seconds, 3),
     }
+
+
+def findings(found: Ranges, source: SourceFile) -> list[Diagnostic]:
+    """Returns a warning for each place where the kind changes, at the param, with the first edit that keeps it
+    as its fix; and one for each param that was not walked to its ends.
+    """
+    told = [_finding(walk, turn, source) for walk in found.walks for turn in walk.turns]
+    stopped = [(walk.knob, walk.stopped) for walk in found.walks if walk.stopped]
+    stopped += [(knob, "there was no time for it") for knob in found.left]
+    for knob, why in stopped:
+        told.append(Diagnostic(_CODE, f"`{knob.path}` was not walked to its ends: {why}", knob.span))
+    return told
+
+
+def _finding(walk: Walk, turn: Turn, source: SourceFile) -> Diagnostic:
+    fixes = [
+        Fix(remedy.title, (Edit(Span(source, *remedy.edit[:2]), remedy.edit[2]),)) for remedy in turn.remedies
+    ]
+    label = f"up to {valued(walk.knob, turn.before)} it is of the kind that it has as written"
+    more = tuple(f"or {fix.title}" for fix in fixes[1:])
+    text = sentence(walk, turn)
+    return Diagnostic(_CODE, text, walk.knob.span, label, hints=more, fix=fixes[0] if fixes else None)
 
 
 # --- What would keep the kind: a call that is stated, or a range that ends before.
@@ -203,3 +229,12 @@ def _ended(source: SourceFile, knob: Knob, turn: Turn, compiling: Compiling) -> 
             is_there = abs((low if is_low else high) - turn.before) < 1e-9 * max(1.0, abs(turn.before))
             return remedy if then.ok and is_there else None
     return None
+
+
+def checked(source: SourceFile, world: World | None, settings: Settings) -> list[Diagnostic]:
+    """Returns the diagnostics of a program, and if it works what changes kind over the ranges of its params."""
+    compiled = pipeline.compile(source, world, settings=settings)
+    if not compiled.ok:
+        return compiled.diagnostics
+    found = ranges(SweepJob(source.name, source.text, world, settings), compiled.knobs)
+    return [*compiled.diagnostics, *findings(found, source)]
