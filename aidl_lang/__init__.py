@@ -215,7 +215,6 @@ class Model:
         return to_build123d(self._compiled, thickness)
 
     def _repr_svg_(self) -> str | None:
-        """Returns the drawing for notebooks, as far as the solver came."""
         return self.to_svg() if self._compiled.model is not None else None
 
     def _repr_html_(self) -> str | None:
@@ -270,17 +269,17 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
 
 
 def check(text: str | Path, settings: Settings | None = None, *, range: bool = False) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`. With `range`
-    it is solved, and if it works each param is walked over its range: a warning tells what changes kind.
+    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`. With
+    `range`, after solving it, and a warning tells where something changes kind over the range of a param.
     """
     from aidl_lang import pipeline
 
     source, world = _read(text)
-    if not range:
-        return pipeline.check(source, world, settings or pipeline.Settings())
-    from aidl_lang.tools.ranges import checked
+    if range:
+        from aidl_lang.tools.ranges import checked as check_ranges
 
-    return checked(source, world, settings or pipeline.Settings())
+        return check_ranges(source, world, settings or pipeline.Settings())
+    return pipeline.check(source, world, settings or pipeline.Settings())
 
 
 def compile(

@@ -37,7 +37,7 @@ def _never(span: Span) -> bool:
     return False
 
 
-_LEFT_BEHIND = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None, "drawn": list}
+_LEFT_BEHIND = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None, "on_drawing": list}
 
 
 @record()
@@ -83,8 +83,7 @@ class Compiled:
     built: Model | None = field(default=None, repr=False)
     """The structure tree with its expressions, whose solved values `evaluate` gives."""
     evaluate: Evaluator | None = field(default=None, repr=False)
-    drawn: Callable[[], list[Diagnostic]] = field(default=list, repr=False)
-    """Works out what there is to tell of the drawing alone."""
+    on_drawing: Callable[[], list[Diagnostic]] = field(default=list, repr=False)
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)

@@ -84,7 +84,6 @@ def interpret(
 
 
 def _speaks_of_rotation(module: ast.Module) -> bool:
-    """Tells whether a file reads the rotation of something."""
     if fold(ROTATION) not in folded(module.source.text):
         return False
     return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))

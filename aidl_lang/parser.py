@@ -154,7 +154,6 @@ class _Reader:
             position += 1
 
     def _statements(self) -> tuple[ast.Statement, ...]:
-        """Returns the statements of the tree of the whole text."""
         assert self.automaton.tree is not None
         statements: tuple[ast.Statement, ...] = Nodes(self.builder).transform(self.automaton.tree)
         return statements
@@ -367,7 +366,6 @@ def _follow(depths: list[int], kind: str) -> None:
 
 
 def _depth(root: ast.Node) -> int:
-    """Returns the number of levels of a tree."""
     deepest = 0
     stack: list[tuple[ast.Node, int]] = [(root, 1)]
     while stack:

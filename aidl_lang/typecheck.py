@@ -160,7 +160,6 @@ class Checker:
                 self._simple(node)
 
     def _simple(self, node: ast.Statement) -> None:
-        """Checks a statement without a body."""
         infer = self.infer
         match node:
             case ast.Let(value=value):
@@ -238,7 +237,6 @@ class Checker:
             )
 
     def _items(self, block: ast.Block) -> None:
-        """Checks the items of `constrain { }` or of the body of a constraint."""
         for item in block.statements:
             if isinstance(item, ast.ExpressionStatement):
                 check_item(self.infer, item.value)
@@ -276,7 +274,6 @@ class Checker:
             self.infer.serves(fact, wanted.dimension, node)
 
     def _unknown(self, node: ast.Expression) -> None:
-        """Checks the first guess of a `var`."""
         kind = self.infer.fact(node).type
         if all(accepts(k, kind) is None for k in (NumberType(LENGTH), NumberType(ANGLE), PointType())):
             message = f"a `var` wants a number or a point, and this is {a(kind)}"

@@ -64,7 +64,7 @@ def flips() -> Iterator[Planted]:
 }}""",
             place,
         )
-    for place, radius in ((14, 9), (22.2, 15), (37.5, 4), (5.5, 3)):
+    for place, radius in ((14.0, 9), (22.2, 15), (37.5, 4), (5.5, 3)):
         yield Planted(
             "circle at a line",
             kinds,
@@ -106,7 +106,7 @@ def flips() -> Iterator[Planted]:
 def topologies() -> Iterator[Planted]:
     """Yields programs in which openings, pieces or outlines change."""
     openings, pieces = frozenset({"openings"}), frozenset({"pieces", "openings", "warning"})
-    for radius, wide in ((3, 80), (7.5, 100), (2.2, 61), (10, 90), (5, 74)):
+    for radius, wide in ((3.0, 80), (7.5, 100), (2.2, 61), (10, 90), (5, 74)):
         yield Planted(
             "hole at the edge",
             openings,
@@ -118,12 +118,12 @@ def topologies() -> Iterator[Planted]:
             wide / 2 - radius,
             wide / 2 + radius,
         )
-    for radius, high in ((6, 30), (4.4, 25), (8, 44), (3, 20), (9.1, 31)):
+    for radius, far in ((6, 30), (4.4, 25), (8, 44), (3, 20), (9.1, 31)):
         yield Planted(
             "holes that meet",
             openings,
             f"""solid plate {{
-    param apart = {high} in 1..{high + 8}
+    param apart = {far} in 1..{far + 8}
     body = rectangle(center: origin, width: 120, height: 60)
     hole a {{ rim = circle(center: (-apart / 2, 0), radius: {radius}) }}
     hole b {{ rim = circle(center: (apart / 2, 0), radius: {radius}) }}
@@ -143,7 +143,7 @@ def topologies() -> Iterator[Planted]:
             broad / 2 + radius,
             broad / 2 - radius,
         )
-    for high, most in ((40, 55), (31, 33), (52.5, 90), (26, 40)):
+    for high, most in ((40.0, 55), (31, 33), (52.5, 90), (26, 40)):
         yield Planted(
             "plate in two",
             pieces,
@@ -263,8 +263,7 @@ def main() -> None:
             is_found, others = judged(case, walk)
             found, false, seconds = found + is_found, false + others, seconds + took
             if others or not is_found:
-                told = [(t.before, t.after, [c.text for c in t.changes]) for t in walk.turns]
-                print(f"{case.name} at {case.place}: {told}")
+                print(f"{case.name} at {case.place}:", *sentences(walk), sep="\n    ")
         told_of = f"{found} of {len(cases)} found, {false} false"
         print(f"{family.__name__:12} {told_of}, {seconds / len(cases):.2f} s each")
 

@@ -27,8 +27,8 @@ def test_a_place_is_told_on_standard_output_with_what_would_keep_it(aidl: Aidl, 
     assert (result.code, result.out.splitlines()[:2]) == (
         1,
         [
-            "plate.aidl: at `way = 34.05` the openings of `plate` go from 1 to 0: `plate.bore.rim` breaks through "
-            "its edge",
+            "plate.aidl: at `way = 34.05` the openings of `plate` go from 1 to 0: "
+            "`plate.bore.rim` breaks through its edge",
             "plate.aidl:   let the range of `way` end at 34",
         ],
     )

@@ -8,8 +8,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ends import SweepJob
 from aidl_lang.tools.ranges import Walk, ranges, sentences, walking
-from aidl_lang.tools.ranges.telling import Remedy
-from aidl_lang.tools.ranges.walking import walked
+from aidl_lang.tools.ranges.walking import Remedy, walked
 
 
 def walk(text: str) -> Walk:
@@ -94,7 +93,7 @@ solid plate {
 """
     found = walk(text)
     first, last = found.turns
-    assert (first.after, last.after) == (pytest.approx(16, abs=0.1), pytest.approx(64, abs=0.1))
+    assert [first.after, last.after] == pytest.approx([16, 64], abs=0.1)
     assert first.changes[0].text == (
         "the openings of `plate` go from 2 to 1: `plate.a.rim`, `plate.b.rim` run into each other"
     )
@@ -151,7 +150,7 @@ solid plate {
 }
 """
     (meets, alone) = walk(text).turns
-    assert (meets.after, alone.after) == (pytest.approx(629, abs=1.1), pytest.approx(645, abs=1.1))
+    assert [meets.after, alone.after] == pytest.approx([629, 645], abs=1.1)
 
 
 def test_time_that_is_over_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

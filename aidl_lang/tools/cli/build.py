@@ -295,9 +295,6 @@ def _show_timings(timings: Mapping[str, float]) -> None:
         say(f"{stage:<12}{1000 * seconds:>9.1f} ms")
 
 
-# --- `aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved.
-
-
 def register_watch(parser: argparse.ArgumentParser) -> None:
     """`aidl watch`: draw a program again whenever it, or a file beside it that it may read, is saved."""
     parser.epilog = (

@@ -103,8 +103,6 @@ def data(name: str, sweep: Sweep | Ranges) -> dict[str, Any]:
     }
 
 
-# --- `aidl check`: find what is wrong without writing anything, and mend what can be mended.
-
 _WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
 """Why `--fix` leaves a fix that is not sure, and one that is."""
 
@@ -242,9 +240,6 @@ def _tell(name: str, checked: _Checked, arguments: argparse.Namespace) -> None:
         tell(name, checked.sweep)
 
 
-# --- `aidl fmt`: put programs into their canonical form.
-
-
 def register_fmt(parser: argparse.ArgumentParser) -> None:
     """`aidl fmt`: put programs into their canonical form."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
@@ -295,9 +290,6 @@ def _diff(source: SourceFile, text: str) -> str:
     )
     unended = "\n\\ No newline at end of file\n"
     return "".join(line if line.endswith("\n") else line + unended for line in lines)
-
-
-# --- `aidl params`: the knobs of a program, with their ranges and values.
 
 
 def register_params(parser: argparse.ArgumentParser) -> None:

@@ -65,9 +65,6 @@ def _all(verbs: dict[str, str]) -> Iterator[tuple[str, str, str]]:
                 yield name, f"aidl {verb} {name}", " ".join(action.help.split())
 
 
-# --- `aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
-# Other words list the names that speak of them.
-
 _FEW = 3
 """Names that a message lists."""
 
@@ -192,9 +189,6 @@ def _draw(entry: Entry, output: str) -> int:
     return 0
 
 
-# --- `aidl guide`: the language on a few pages, for a reader or a model that has never seen it.
-
-
 def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
@@ -237,9 +231,6 @@ def _topics(written: str) -> list[str]:
     return topics
 
 
-# --- `aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers.
-
-
 def register_grammar(parser: argparse.ArgumentParser) -> None:
     """`aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers."""
     value(parser, "--format", "FORMAT", f"{', '.join(FORMATS)} (default: lark)", str, "lark")
@@ -273,9 +264,6 @@ def run_grammar(arguments: argparse.Namespace) -> int:
     if arguments.output != files.STANDARD:
         say(f"{arguments.output}: written")
     return 0
-
-
-# --- `aidl explain`: what a code such as E0301 means, with the mistake and the mended program.
 
 
 def register_explain(parser: argparse.ArgumentParser) -> None:
@@ -350,8 +338,6 @@ def structure_name(stem: str) -> str:
     unfit = not name or name[0].isdigit() or name in load_tables().reserved
     return f"part_{name}".rstrip("_") if unfit else name
 
-
-# --- `aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model.
 
 _STYLES = ("openai", "anthropic", "mcp")
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from aidl_lang.tools.llm.messages import Language, Provider
 
 
-# --- `aidl generate`: from a sentence to a program that is right, by a language model.
-
 _PROGRAM = ".aidl"
 _CODES = 4
 """Most error codes in the line of an attempt."""
@@ -297,8 +295,6 @@ def _beginning(text: str) -> str:
     line = re.sub(r"\s+", " ", text.strip())
     return repr(line if len(line) <= 80 else line[:79] + "…")
 
-
-# --- `aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs.
 
 _PACKAGE = "aidl_eval"
 """A distribution of its own, which stands on this one; so it is known by its name alone."""

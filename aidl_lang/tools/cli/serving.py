@@ -100,8 +100,6 @@ def _refused(host: str, port: int, error: OSError, code: str, hint: str) -> UseE
     return UseError(code, f"{where} cannot be served: {(error.strerror or str(error)).lower()}", hint)
 
 
-# --- `aidl preview`: a program drawn in the browser beside any editor, again on every save.
-
 _NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
 
 
@@ -158,8 +156,6 @@ def _write(path: Path, data: bytes) -> None:
         raise OSError(reason.diagnostic.message) from None
 
 
-# --- `aidl lsp`: serve editors over the Language Server Protocol, on standard input and output.
-
 _CODE = "E0954"
 
 
@@ -201,8 +197,6 @@ def _address(text: str) -> tuple[str, int]:
         raise argparse.ArgumentTypeError(f"expected HOST:PORT, as in 127.0.0.1:0, not `{text}`")
     return host.strip("[]"), int(port)
 
-
-# --- `aidl mcp`: serve the tools to agents over the Model Context Protocol, on standard input and output.
 
 _TOKEN = "AIDL_MCP_TOKEN"
 

@@ -4,8 +4,8 @@ A *kind* is all that cannot change little by little: whether the program solves 
 ambiguous calls are read, the way round of its edges, the openings and pieces of its bodies, which bodies
 touch or overlap, and the warnings about outlines and holes. In a picture, bodies lie over each other: where
 some do as written, contacts count between those of a known thickness alone, and otherwise what touches
-nothing any more. Two outcomes with different sets of names, as
-those of different counts, are compared by what all members of an array have in common.
+nothing any more. Two outcomes with different sets of names, as those of different counts, are compared by
+what all members of an array have in common.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -23,7 +24,7 @@ from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
 from aidl_lang.geometry.curves import Arc, Line, Piece
-from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, all_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.sections import Section, fill, intersection
@@ -42,12 +43,15 @@ _TOUCHING = 1e-4
 _OPEN_TYPES = frozenset(("line", "arc", "bezier", "point"))
 _BY_HAND = frozenset(("line", "arc", "path", "polygon"))
 """Geometry whose edges are written one by one."""
+_MOST_BOXES = 300
+"""Boxes of which all pairs are followed."""
 _RADII = frozenset(("radius", "rx", "ry"))
 _INDEX = re.compile(r"\[[^\]]*\]")
 _RANK = re.compile(r"\((\d+) of \d+\)$")
 
 Place = tuple[str, str | None, int | None]
 Pair = tuple[str, str]
+Cutter = tuple[str, bool, Bounds]
 
 
 @record()
@@ -76,11 +80,9 @@ class Look:
     unknowns  what the solver found, by path
     spots     the coordinates of all points, and radii, in sizes of the drawing; `places` names each
     ways      the vectors of straight edges and the sweeps of arcs, by path
-    cutters   the closed geometries of holes: the body that they cut, and whether each has its opening alone
-    bodies    the number of pieces and of openings
-    overlaps  the pairs of bodies that overlap, of those whose contacts count; those in `near` touch at least
-    boxes     of cutters, with the body that each belongs to, and of the bodies whose contacts count
-    outer     of all bodies
+    cutters   the closed geometries of holes: the body that each cuts, whether it has its own opening, its box
+    bodies    the number of pieces and of openings, and the box
+    touchable the bodies whose contacts count: pairs in `near` touch at least, those in `overlaps` overlap
     """
 
     value: float
@@ -94,12 +96,11 @@ class Look:
     spots: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     readings: tuple[tuple[int, str, str], ...] = ()
     ways: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    bodies: Mapping[str, tuple[int, int]] = field(default_factory=dict)
-    cutters: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
+    bodies: Mapping[str, tuple[int, int, Bounds]] = field(default_factory=dict)
+    cutters: Mapping[str, Cutter] = field(default_factory=dict)
+    touchable: frozenset[str] = frozenset()
     near: frozenset[Pair] = frozenset()
     overlaps: frozenset[Pair] = frozenset()
-    boxes: Mapping[str, tuple[str, Bounds]] = field(default_factory=dict)
-    outer: Mapping[str, Bounds] = field(default_factory=dict)
     size: float = 1.0
 
 
@@ -112,29 +113,27 @@ def look(compiled: Compiled, value: float, written: Look | None = None) -> Look:
     if not found.is_solved or model is None or drawing is None or compiled.evaluate is None:
         return found
     found.size = drawing.size
-    told = [d for d in compiled.audible(compiled.drawn()) if d.code in OF_KIND]
+    told = [d for d in compiled.audible(compiled.on_drawing()) if d.code in OF_KIND]
     found.warnings = {each.place: each for each in map(fault, told)}
     found.unknowns = {unknown.path: number for unknown, number in compiled.evaluate.values.items()}
     spots = list(_spots(model))
     found.places = tuple(place for place, _ in spots)
     found.spots = np.array([number for _, number in spots]) / found.size
     found.readings = tuple((r.span.line, r.span.one_line, r.text) for r in model.readings)
-    found.names = frozenset(_names(model))
+    found.names = frozenset(
+        (*(s.path for s in model.root.walk()), *(g.path for g in model.root.walk_geometry()))
+    )
     found.ways = dict(_ways(model))
-    found.bodies = {b.path: _counts(b) for b in drawing.bodies}
+    found.bodies = {
+        b.path: (len(b.region.faces), sum(len(face.holes) for face in b.region.faces), b.box)
+        for b in drawing.bodies
+    }
     found.cutters = dict(_cutters(model, drawing))
     _see_contacts(found, model, drawing)
     if written is None and found.overlaps:
         found.is_picture = True
         _see_contacts(found, model, drawing)
     return found
-
-
-def _names(model: SolvedModel) -> Iterator[str]:
-    for structure in model.root.walk():
-        yield structure.path
-        for geometry in structure.geometry:
-            yield from (part.path for part in geometry.walk())
 
 
 def _spots(model: SolvedModel) -> Iterator[tuple[str, float]]:
@@ -150,37 +149,31 @@ def _spots(model: SolvedModel) -> Iterator[tuple[str, float]]:
 
 def _ways(model: SolvedModel) -> Iterator[tuple[str, tuple[float, ...]]]:
     """Yields the edges of what is filled, as far as they are written one by one."""
-    for structure in model.root.walk():
-        is_filled = structure.kind in ("solid", "hole")
-        for geometry in structure.geometry if is_filled else ():
-            if geometry.type not in _BY_HAND:
-                continue
-            for number, leaf in enumerate(geometry.leaves()):
-                key = f"{leaf.path}\0{number}"
-                if isinstance(leaf.curve, Line):
-                    (a, b), (c, d) = leaf.curve.start, leaf.curve.end
-                    yield key, (c - a, d - b)
-                elif isinstance(leaf.curve, Arc):
-                    yield key, (leaf.curve.sweep,)
+    filled = (s for s in model.root.walk() if s.kind in ("solid", "hole"))
+    for geometry in (g for s in filled for g in s.geometry if g.type in _BY_HAND):
+        for number, leaf in enumerate(geometry.leaves()):
+            key = f"{leaf.path}\0{number}"
+            if isinstance(leaf.curve, Line):
+                (a, b), (c, d) = leaf.curve.start, leaf.curve.end
+                yield key, (c - a, d - b)
+            elif isinstance(leaf.curve, Arc):
+                yield key, (leaf.curve.sweep,)
 
 
-def _counts(body: Body) -> tuple[int, int]:
-    return len(body.region.faces), sum(len(face.holes) for face in body.region.faces)
-
-
-def _cutters(model: SolvedModel, drawing: Drawing) -> Iterator[tuple[str, tuple[str, bool]]]:
-    """Yields what cuts bodies, with the body, and whether its outline is an opening of that body."""
+def _cutters(model: SolvedModel, drawing: Drawing) -> Iterator[tuple[str, Cutter]]:
+    """Yields what cuts bodies; it has an opening of its own if one has its box."""
     slack = _SAME_BOX * drawing.size
     openings = {
         b.path: np.array([_box(loop.pieces) for face in b.region.faces for loop in face.holes]).reshape(-1, 4)
         for b in drawing.bodies
     }
 
-    def visit(structure: SolvedStructure, body: str | None) -> Iterator[tuple[str, tuple[str, bool]]]:
+    def visit(structure: SolvedStructure, body: str | None) -> Iterator[tuple[str, Cutter]]:
         body = structure.path if structure.path in openings else body
         if structure.kind == "hole" and body is not None:
             for path, box in _closed(structure):
-                yield path, (body, bool((np.abs(openings[body] - box).max(axis=1, initial=0) < slack).any()))
+                is_own = bool((np.abs(openings[body] - box).max(axis=1, initial=0) < slack).any())
+                yield path, (body, is_own, box)
         for child in structure.structures:
             yield from visit(child, body)
 
@@ -202,21 +195,15 @@ def _box(curves: Iterable[Piece]) -> Bounds | None:
 
 
 def _see_contacts(found: Look, model: SolvedModel, drawing: Drawing) -> None:
-    """Adds the contacts between bodies that are at one height, and the boxes."""
+    """Adds the contacts between bodies that may be at one height."""
     heights = dict(_heights(model, drawing))
-    counts = heights if found.is_picture else {b.path: None for b in drawing.bodies}
-    near = [
-        (a, b)
-        for a, b in drawing.contacts.near()
-        if a in counts and b in counts and _meet(heights.get(a), heights.get(b))
-    ]
-    known: dict[str, Section] = {}
-    bodies = {b.path: b for b in drawing.bodies}
+    found.touchable = frozenset(heights if found.is_picture else found.bodies)
+    pairs = [pair for pair in drawing.contacts.near() if found.touchable.issuperset(pair)]
+    regions = {b.path: b.region for b in drawing.bodies}
 
+    @cache
     def section(path: str) -> Section:
-        if path not in known:
-            known[path] = fill(region_polygons(bodies[path].region, 1e-4 * drawing.size), "EvenOdd")
-        return known[path]
+        return fill(region_polygons(regions[path], _TOUCHING * drawing.size), "EvenOdd")
 
     def is_overlap(a: str, b: str) -> bool:
         common = intersection(section(a), section(b))
@@ -225,14 +212,8 @@ def _see_contacts(found: Look, model: SolvedModel, drawing: Drawing) -> None:
         left, bottom, right, top = common.bounds()
         return common.area() > _TOUCHING * drawing.size * (right - left + top - bottom)
 
-    found.outer = {b.path: b.box for b in drawing.bodies}
-    found.near = frozenset(near)
-    found.overlaps = frozenset(pair for pair in near if is_overlap(*pair))
-    boxes = {b.path: ("", b.box) for b in drawing.bodies if b.path in counts}
-    holes = (s for s in model.root.walk() if s.kind == "hole")
-    cuts = [cut for hole in holes for cut in _closed(hole) if cut[0] in found.cutters]
-    boxes.update((path, (found.cutters[path][0], box)) for path, box in cuts)
-    found.boxes = boxes
+    found.near = frozenset((a, b) for a, b in pairs if _meet(heights.get(a), heights.get(b)))
+    found.overlaps = frozenset(pair for pair in found.near if is_overlap(*pair))
 
 
 def _heights(model: SolvedModel, drawing: Drawing) -> Iterator[tuple[str, tuple[str, float, float]]]:
@@ -266,13 +247,12 @@ def differences(a: Look, b: Look) -> list[Change]:
         return list(_of_errors(a, b))
     if not (a.is_solved and b.is_solved):
         return []
-    is_same = a.names == b.names
-    found = [*_of_warnings(a, b), *_of_readings(a, b)]
-    if is_same:
-        found += [*_of_edges(a, b), *_of_openings(a, b), *_of_contacts(a, b)]
-    else:
-        found += [*_of_arrays(a, b)]
-    return found
+    fresh = [each for place, each in b.warnings.items() if place not in a.warnings]
+    found = [Change("warning", said(each), each.line, (each.code,)) for each in fresh]
+    found += _of_readings(a, b)
+    if a.names != b.names:
+        return [*found, *_of_arrays(a, b)]
+    return [*found, *_of_edges(a, b), *_of_openings(a, b), *_of_contacts(a, b)]
 
 
 def _of_errors(a: Look, b: Look) -> Iterator[Change]:
@@ -292,22 +272,12 @@ def said(each: Fault) -> str:
     return f"line {each.line}: {each.message}" if each.line is not None else each.message
 
 
-def _of_warnings(a: Look, b: Look) -> Iterator[Change]:
-    for place, each in b.warnings.items():
-        if place not in a.warnings:
-            yield Change("warning", said(each), each.line, (each.code,))
-
-
 def _of_readings(a: Look, b: Look) -> Iterator[Change]:
     """Yields ambiguous calls that are read as another of their meanings."""
     if len(a.readings) == len(b.readings):
         for (line, call, before), (_, _, after) in zip(a.readings, b.readings, strict=True):
-            if _rank(before) != _rank(after):
+            if _RANK.findall(before) != _RANK.findall(after):
                 yield Change("reading", f"`{call}` in line {line} is read in another sense", line, (call,))
-
-
-def _rank(text: str) -> str:
-    return match[1] if (match := _RANK.search(text)) else ""
 
 
 def _of_edges(a: Look, b: Look) -> Iterator[Change]:
@@ -328,8 +298,8 @@ def _of_openings(a: Look, b: Look) -> Iterator[Change]:
     for path in b.bodies.keys() - a.bodies.keys():
         yield Change("pieces", f"`{path}` is a body", None, (path,))
     for path in [path for path in a.bodies if path in b.bodies]:
-        (pieces, openings), (pieces_then, openings_then) = a.bodies[path], b.bodies[path]
-        parts = [p for p in b.cutters if b.cutters[p] != a.cutters.get(p) and path == b.cutters[p][0]]
+        (pieces, openings, _), (pieces_then, openings_then, _) = a.bodies[path], b.bodies[path]
+        parts = [p for p, cut in b.cutters.items() if cut[0] == path and cut[:2] != a.cutters[p][:2]]
         if openings != openings_then or parts:
             text = f"the openings of `{path}` go from {openings} to {openings_then}"
             if openings == openings_then:
@@ -344,36 +314,22 @@ def _why(parts: list[str], b: Look) -> str:
     """Returns what the cutters whose openings differ do, as the end of a sentence."""
     lost = [path for path in parts if not b.cutters[path][1]]
     won = [path for path in parts if b.cutters[path][1]]
-    boxes = np.array([b.boxes[path][1] for path in lost]).reshape(-1, 4)
-    met = [
-        _gaps(np.vstack((boxes, boxes[k])), np.full(len(lost), len(lost)), np.arange(len(lost)))
-        for k in range(len(lost))
-    ]
-    told = []
-    for does, does_all, kind in _FATES:
-        which = [path for k, path in enumerate(lost) if _fate(path, np.delete(met[k], k), b) == kind]
-        if which:
-            told.append(f"{first_few(ticked(which), 4)} {does if len(which) == 1 else does_all}")
-    if won:
-        told.append(f"{first_few(ticked(won), 4)} {'stands' if len(won) == 1 else 'stand'} alone")
+    fates: dict[tuple[str, str], list[str]] = {("stands alone", "stand alone"): won} if won else {}
+    for path in lost:
+        body, _, box = b.cutters[path]
+        if any(_gap(box, b.cutters[other][2]) < 0 for other in lost if other != path):
+            fate = "meets another", "run into each other"
+        elif _gap(box, b.bodies[body][2]) >= 0:
+            fate = "leaves it", "leave it"
+        else:
+            fate = "breaks through its edge", "break through its edge"
+        fates.setdefault(fate, []).append(path)
+    told = [f"{first_few(ticked(these), 4)} {does[len(these) > 1]}" for does, these in fates.items()]
     return f": {'; '.join(told)}" if told else ""
 
 
-_FATES = (
-    ("meets another", "run into each other", "meets"),
-    ("leaves it", "leave it", "leaves"),
-    ("breaks through its edge", "break through its edge", "breaks"),
-)
-
-
-def _fate(path: str, gaps: NDArray[np.float64], look: Look) -> str:
-    """Returns what becomes of a cutter that has no opening alone, which is so far from others like it."""
-    body, box = look.boxes[path]
-    if (gaps < 0).any():
-        return "meets"
-    around = look.outer[body]
-    is_out = max(around[0] - box[2], around[1] - box[3], box[0] - around[2], box[1] - around[3]) >= 0
-    return "leaves" if is_out else "breaks"
+def _gap(a: Bounds, b: Bounds) -> float:
+    return max(a[0] - b[2], a[1] - b[3], b[0] - a[2], b[1] - a[3])
 
 
 def _of_contacts(a: Look, b: Look) -> Iterator[Change]:
@@ -385,27 +341,13 @@ def _of_contacts(a: Look, b: Look) -> Iterator[Change]:
 
 def _of_arrays(a: Look, b: Look) -> Iterator[Change]:
     """Yields what becomes of members of arrays, where their number is another."""
-    was, now = _members(a), _members(b)
-    for name, (body, is_own) in now.items():
-        if name in was and was[name][1] and not is_own:
-            yield Change("openings", f"`{name}` has no longer an opening of `{body}` for each", None, (name,))
-    names = {_bare(path) for path in a.names} & {_bare(path) for path in b.names}
-
-    def pairs(look: Look) -> set[Pair]:
-        found = {(_bare(one), _bare(other)) for one, other in look.overlaps}
-        return {pair for pair in found if names.issuperset(pair)}
-
-    for one, other in sorted(pairs(b) - pairs(a)):
+    alone, shared = ({_bare(p) for p, cut in look.cutters.items() if not cut[1]} for look in (a, b))
+    for name in sorted((shared - alone) & set(map(_bare, a.cutters))):
+        yield Change("openings", f"not each `{name}` has an opening of its own any more", None, (name,))
+    names = set(map(_bare, a.names)) & set(map(_bare, b.names))
+    was, now = ({(_bare(one), _bare(other)) for one, other in look.overlaps} for look in (a, b))
+    for one, other in sorted(pair for pair in now - was if names.issuperset(pair)):
         yield Change("contact", f"`{one}` and `{other}` begin to overlap", None, (one, other))
-
-
-def _members(look: Look) -> dict[str, tuple[str, bool]]:
-    """Returns by the name of an array whether all of its members have their openings."""
-    found: dict[str, tuple[str, bool]] = {}
-    for path, (body, is_own) in look.cutters.items():
-        name = _bare(path)
-        found[name] = (_bare(body), is_own and found.get(name, ("", True))[1])
-    return found
 
 
 def _bare(path: str) -> str:
@@ -424,23 +366,24 @@ def may_meet(a: Look, b: Look) -> float | None:
     """Returns the part of the way from `a` to `b` at which two boxes meet that are apart at both, if all move
     evenly: two openings of one body, two bodies. None if none do.
     """
-    paths = [path for path in a.boxes if path in b.boxes]
-    if len(paths) < 2 or a.names != b.names:
+    boxes, then = _moving(a), _moving(b)
+    if not 2 <= len(boxes) <= _MOST_BOXES or boxes.keys() != then.keys():
         return None
-    start, end = (np.array([look.boxes[path][1] for path in paths]) for look in (a, b))
-    owners = [a.boxes[path][0] for path in paths]
-    of = np.array([owners.index(owner) for owner in owners])
-    one, other = np.array(list(combinations(range(len(paths)), 2))).T
-    one, other = one[same := of[one] == of[other]], other[same]
-    first = None
+    start, end = (np.array([box for _, box in look.values()]) for look in (boxes, then))
+    owners = [owner for owner, _ in boxes.values()]
+    pairs = [(i, j) for i, j in combinations(range(len(owners)), 2) if owners[i] == owners[j]]
+    one, other = np.array(pairs, dtype=np.intp).reshape(-1, 2).T
     apart = (_gaps(start, one, other) > 0) & (_gaps(end, one, other) > 0)
-    for share in np.linspace(0, 1, 18)[1:-1].tolist():
-        gaps = _gaps(start + share * (end - start), one, other)
-        if (apart & (gaps < 0)).any():
-            deepest = float(gaps[apart].min())
-            if first is None or deepest < first[1]:
-                first = (share, deepest)
-    return first and first[0]
+    shares = np.linspace(0, 1, 18)[1:-1].tolist() if apart.any() else ()
+    deepest = [(float(_gaps(start + t * (end - start), one, other)[apart].min()), t) for t in shares]
+    gap, share = min(deepest, default=(0.0, 0.0))
+    return share if gap < 0 else None
+
+
+def _moving(look: Look) -> dict[str, tuple[str, Bounds]]:
+    """Returns the boxes that may meet, with what they belong to."""
+    cutters = {path: (body, box) for path, (body, _, box) in look.cutters.items()}
+    return cutters | {path: ("", box) for path, (*_, box) in look.bodies.items() if path in look.touchable}
 
 
 def _gaps(boxes: NDArray[np.float64], one: NDArray[np.intp], other: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -114,8 +114,8 @@ def _walked(walk: Walk) -> dict[str, Any]:
 
 
 def findings(found: Ranges, source: SourceFile) -> list[Diagnostic]:
-    """Returns a warning for each place where the kind changes, at the param, with the first edit that keeps it
-    as its fix; and one for each param that was not walked to its ends.
+    """Returns a warning for each place where the kind changes, at the param, with the first edit that keeps
+    it as its fix; and one for each param that was not walked to its ends.
     """
     told = [_finding(walk, turn, source) for walk in found.walks for turn in walk.turns]
     stopped = [(walk.knob, walk.stopped) for walk in found.walks if walk.stopped]
@@ -232,7 +232,7 @@ def _ended(source: SourceFile, knob: Knob, turn: Turn, compiling: Compiling) -> 
 
 
 def checked(source: SourceFile, world: World | None, settings: Settings) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, and if it works what changes kind over the ranges of its params."""
+    """Returns the diagnostics of a program, and if it works what changes kind as its params are turned."""
     compiled = pipeline.compile(source, world, settings=settings)
     if not compiled.ok:
         return compiled.diagnostics
