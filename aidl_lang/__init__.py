@@ -275,11 +275,12 @@ def check(text: str | Path, settings: Settings | None = None, *, range: bool = F
     from aidl_lang import pipeline
 
     source, world = _read(text)
-    if range:
-        from aidl_lang.tools.ranges import checked as check_ranges
+    if not range:
+        return pipeline.check(source, world, settings or pipeline.Settings())
+    from aidl_lang.tools.ranges import turned
 
-        return check_ranges(source, world, settings or pipeline.Settings())
-    return pipeline.check(source, world, settings or pipeline.Settings())
+    compiled = pipeline.compile(source, world, settings=settings or pipeline.Settings())
+    return [*compiled.diagnostics, *turned(compiled)]
 
 
 def compile(

@@ -262,7 +262,6 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
 
 def _examined(limit: float, noted: Callable[[], _Noted]) -> _Noted:
-    """Returns what is noted; if that takes too long, that it does."""
     try:
         with within(limit, "examining"):
             return noted()

@@ -494,3 +494,14 @@ def test_same_call_same_answer() -> None:
     assert ask("compile", program=TELEPHONE, formats=["png", "model", "dxf"]) == ask(
         "compile", program=TELEPHONE, formats=["png", "model", "dxf"]
     )
+
+
+def test_check_with_ranges_tells_where_something_changes_kind() -> None:
+    program = PLATE.replace("circle(center: fixed((10, 0))", "circle(center: fixed((width / 4, 3))")
+    (finding,) = ask("check", program=program.replace("20..80", "14..80"), ranges=True).data["findings"][
+        "listed"
+    ]
+    assert (finding["code"], finding["place"]["line"]) == ("W0607", 3)
+    assert "`plate.bore.rim` breaks through its edge" in finding["message"]
+    steady = PLATE.replace("20..80", "35..80")
+    assert "one kind over the range of each param" in ask("check", program=steady, ranges=True).text

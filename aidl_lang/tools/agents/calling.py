@@ -162,7 +162,6 @@ def _text(value: object) -> str:
 
 
 def _shown(value: object) -> str:
-    """Returns a value as it came, for a message."""
     text = json.dumps(value)
     return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"
 

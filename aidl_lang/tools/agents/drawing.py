@@ -172,11 +172,7 @@ class Remedies:
 
     def _given(self, given: failures.ExactNumber) -> Given:
         return Given(
-            given.name,
-            place(given.span),
-            given.would_fit,
-            repair(given.fix),
-            self._solves(given.fix),
+            given.name, place(given.span), given.would_fit, repair(given.fix), self._solves(given.fix)
         )
 
     def _party(self, party: failures.Party) -> Party:

@@ -217,7 +217,6 @@ def _added(zero: str, expression: str) -> float | str:
 
 
 def _is_alone(source: SourceFile, start: int, length: int) -> bool:
-    """Tells whether what was typed is one expression and nothing beside it."""
     statements = parser.parse(source).module.statements
     value = statements[0].value if isinstance(statements[0], ast.Param) else None
     return len(statements) == 2 and value is not None and value.span.end >= start + length

@@ -218,8 +218,6 @@ def generate(
 
 
 class _Run:
-    """One conversation under way."""
-
     def __init__(
         self,
         task: Task,

@@ -3,14 +3,13 @@
 `looks` says what a kind is, `walking` how the way is made, `telling` what is said of it.
 """
 
-from aidl_lang.tools.ranges.telling import checked, described, findings, sentence, sentences, summary
+from aidl_lang.tools.ranges.telling import described, findings, sentence, sentences, summary, turned
 from aidl_lang.tools.ranges.walking import Ranges, Turn, Walk, has_way, ranges
 
 __all__ = [
     "Ranges",
     "Turn",
     "Walk",
-    "checked",
     "described",
     "findings",
     "has_way",
@@ -18,4 +17,5 @@ __all__ = [
     "sentence",
     "sentences",
     "summary",
+    "turned",
 ]

@@ -7,18 +7,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
-from aidl_lang import parser, pipeline
+from aidl_lang import parser
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import World
 from aidl_lang.compiled import Compiled
-from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ends import SweepJob, valued
 from aidl_lang.tools.ranges.looks import Look, differences, look
-from aidl_lang.tools.ranges.walking import Ranges, Remedy, Turn, Walk, ranges
+from aidl_lang.tools.ranges.walking import LONGEST, Ranges, Remedy, Turn, Walk, ranges
 
 _TOLD = 3
 """Changes of one place that a sentence names."""
@@ -231,10 +229,10 @@ def _ended(source: SourceFile, knob: Knob, turn: Turn, compiling: Compiling) -> 
     return None
 
 
-def checked(source: SourceFile, world: World | None, settings: Settings) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, and if it works what changes kind as its params are turned."""
-    compiled = pipeline.compile(source, world, settings=settings)
-    if not compiled.ok:
-        return compiled.diagnostics
-    found = ranges(SweepJob(source.name, source.text, world, settings), compiled.knobs)
-    return [*compiled.diagnostics, *findings(found, source)]
+def turned(compiled: Compiled, seconds: float = LONGEST) -> list[Diagnostic]:
+    """Returns what changes kind over the ranges of the params of a program, if it is ok."""
+    asked = compiled.asked
+    if asked is None or not compiled.ok:
+        return []
+    job = SweepJob(asked.source.name, asked.source.text, asked.world, asked.settings)
+    return findings(ranges(job, compiled.knobs, seconds=seconds), asked.source)

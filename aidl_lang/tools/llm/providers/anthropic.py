@@ -95,14 +95,7 @@ class Anthropic(Server):
 
 def _turn(message: Message) -> dict[str, object]:
     pictures: list[dict[str, object]] = [
-        {
-            "type": "image",
-            "source": {
-                "type": "base64",
-                "media_type": image.media_type,
-                "data": image.base64,
-            },
-        }
+        {"type": "image", "source": {"type": "base64", "media_type": image.media_type, "data": image.base64}}
         for image in message.images
     ]
     text = message.text if message.text.strip() else "(nothing)"  # the API refuses an empty text

@@ -30,9 +30,7 @@ class OpenAI(Server):
         from aidl_lang.tools.llm.providers import server
 
         client = openai.OpenAI(
-            api_key=connection.key or "none",
-            base_url=connection.base_url,
-            **server.options(connection),
+            api_key=connection.key or "none", base_url=connection.base_url, **server.options(connection)
         )
         host = urlsplit(connection.base_url).hostname or ""
         self._limit = _LIMITS[host.endswith(_NEWER)]

@@ -194,9 +194,7 @@ class Server(ABC):
         because = f" ({status}): {said}" if said else f" ({status})"
         if status in (401, 403):
             return ProviderError(
-                "E0932",
-                f"the key was refused{because}",
-                f"look at {self.kind.upper()}_API_KEY",
+                "E0932", f"the key was refused{because}", f"look at {self.kind.upper()}_API_KEY"
             )
         if status in (402, 429):
             return ProviderError(
