@@ -4,8 +4,8 @@ A *kind* is all that cannot change little by little: whether the program solves 
 ambiguous calls are read, the way round of its edges, the openings and pieces of its bodies, which bodies
 touch or overlap, and the warnings about outlines and holes. In a picture, bodies lie over each other: where
 some do as written, contacts count between those of a known thickness alone, and otherwise what touches
-nothing any more. Two outcomes with different sets of names, as those of different counts, are compared by
-what all members of an array have in common.
+nothing any more; the others are paint, which may fall into pieces. Two outcomes with different sets of names,
+as those of different counts, are compared by what all members of an array have in common.
 """
 
 from __future__ import annotations
@@ -300,12 +300,13 @@ def _of_openings(a: Look, b: Look) -> Iterator[Change]:
     for path in [path for path in a.bodies if path in b.bodies]:
         (pieces, openings, _), (pieces_then, openings_then, _) = a.bodies[path], b.bodies[path]
         parts = [p for p, cut in b.cutters.items() if cut[0] == path and cut[:2] != a.cutters[p][:2]]
-        if openings != openings_then or parts:
+        is_paint = path not in b.touchable
+        if parts or (openings != openings_then and not is_paint):
             text = f"the openings of `{path}` go from {openings} to {openings_then}"
             if openings == openings_then:
                 text = f"an opening of `{path}` is another"
             yield Change("openings", text + _why(parts, b), None, (path, *parts))
-        if pieces != pieces_then:
+        if pieces != pieces_then and not is_paint:
             text = f"`{path}` goes from {counted(pieces, 'piece')} to {pieces_then}"
             yield Change("pieces", text, None, (path,))
 
