@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.tools.ends import Sweep
-from aidl_lang.tools.ide.lenses import can_be_tried, end_lenses, tried
+from aidl_lang.tools.ide.lenses import Found, can_be_tried, end_lenses, tried
 from aidl_lang.tools.ide.workspace import SETTINGS, View
 from tests.ide.conftest import seen
 
@@ -24,11 +23,11 @@ solid plate {
 """
 
 
-def titles(view: View, found: Sweep | None = None) -> list[tuple[str, str]]:
+def titles(view: View, found: Found | None = None) -> list[tuple[str, str]]:
     return [(lens.span.text.split()[1], lens.title) for lens in end_lenses(view, found)]
 
 
-def swept(view: View) -> Sweep:
+def swept(view: View) -> Found:
     return tried(view, SETTINGS, lambda done, count: None, 60.0)
 
 
@@ -47,7 +46,7 @@ def test_each_param_tells_what_came_of_it() -> None:
             "at `width = 120mm` the assert in line 10 fails (120 is not < 100); "
             "`width < 100` holds up to 99.99mm",
         ),
-        ("height", "works from 20mm to 200mm"),
+        ("height", "works from 20mm to 200mm, one kind throughout"),
         ("look", 'works with "other" and "third"'),
     ]
 
@@ -66,8 +65,13 @@ assembly a {
 """
     view = seen(text, solved=True)
     found = swept(view)
-    assert [each.knob.path for each in found.turned] == ["left.long", "left.long", "right.long", "right.long"]
-    assert titles(view, found) == [("long", "works from 5mm to 20mm")]
+    assert [each.knob.path for each in found.sweep.turned] == [
+        "left.long",
+        "left.long",
+        "right.long",
+        "right.long",
+    ]
+    assert titles(view, found) == [("long", "works from 5mm to 20mm, one kind throughout")]
 
 
 @pytest.mark.parametrize(

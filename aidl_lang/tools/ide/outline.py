@@ -184,7 +184,6 @@ def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
 
 
 def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Joins adjacent ranges of lines."""
     start = end = -1
     for first, last in lines:
         if first > end + 1:
@@ -341,7 +340,6 @@ def _of_mention(view: View, mention: Mention) -> Colored:
 
 
 def _lines(colored: Colored) -> Iterator[Colored]:
-    """Yields a piece for each line, as editors want it."""
     start = colored.span.start
     for line in colored.span.text.split("\n"):
         if text := line.rstrip("\r"):

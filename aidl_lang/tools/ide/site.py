@@ -147,7 +147,6 @@ def _word_end(token: Token) -> int:
 
 
 def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:
-    """Returns the string or number that an offset lies in."""
     is_string = token.text[:1] in ("'", '"')
     if is_string and (offset < token.end or (token.kind == UNKNOWN and offset == token.end)):
         end = token.end - (token.kind == "STRING")
@@ -296,6 +295,5 @@ def closers(opened: Sequence[Token]) -> str:
 
 
 def _has_placeholder(module: ast.Module, start: int) -> bool:
-    """Tells whether a tree has the placeholder at an offset."""
     node = around(module, start + 1)[-1]
     return isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER

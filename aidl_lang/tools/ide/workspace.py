@@ -286,12 +286,7 @@ def run(
     Raises Cancelled where the run is given up (see `common.running`).
     """
     outcome = pipeline.compile(
-        view.source,
-        view.world,
-        params,
-        settings,
-        memory=memory,
-        checked=(view.program, view.found),
+        view.source, view.world, params, settings, memory=memory, checked=(view.program, view.found)
     )
     drawn = outcome if outcome.drawing is not None else last.drawn if last is not None else None
     return replace(view, outcome=outcome, drawn=drawn, params=params)

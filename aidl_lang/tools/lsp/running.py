@@ -295,12 +295,7 @@ class Runner:
                 self.renew(document)
 
     async def work(
-        self,
-        key: Hashable,
-        function: Callable[[], T],
-        is_unwanted: Callable[[], bool],
-        *,
-        first: bool = True,
+        self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool], *, first: bool = True
     ) -> T:
         """Returns the result of a function run in the solving thread, before waiting work or behind it. Only
         the newest request under a key is done: the others raise Cancelled, as does an unwanted one.

@@ -137,7 +137,6 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
 
 
 def _latest(things: Sequence[KnownName]) -> list[KnownName]:
-    """Returns the last few things of each kind, in order of declaration."""
     counts: Counter[str] = Counter()
     found = []
     for known in reversed(things):

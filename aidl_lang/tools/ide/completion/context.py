@@ -334,7 +334,6 @@ class Around:
                 return _of_place(node, above, path)
 
     def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        """Returns the types comparable with the other sides."""
         facts = [self.check.fact(o) for o in operands if o is not node]
         known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
         return _alike(known) if known is not None else Wanted()

@@ -189,10 +189,7 @@ class Pictures:
                 "status": outcome.status,
                 "degrees": outcome.model.degrees if outcome.model is not None else None,
                 "seconds": sum(outcome.timings.values()),
-                "problems": {
-                    "errors": severities.count("error"),
-                    "warnings": severities.count("warning"),
-                },
+                "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
             },
         )
 
