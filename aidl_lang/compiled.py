@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
-    from aidl_lang.solver.solution import StageReport
+    from aidl_lang.solver.problem import StageReport
 
 
 T = TypeVar("T")

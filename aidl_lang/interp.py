@@ -4,28 +4,25 @@ Running means: constants are computed, loops and branches taken, geometry made w
 arithmetic over unknowns kept as an expression. An error is reported and yields `NOTHING`, which everything it
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
-The work is done in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
-(expressions), `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers),
-`constraints` and `impose` (constraints), `placing` and `anchors` (what they move first).
+The work is done in `building/`: `structures` (files and roots, too), `statements`, `evaluate` (expressions),
+`overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers), `impose`
+(constraints), `anchors` (what they move first).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
 
 from aidl_lang.building.anchors import anchored
+from aidl_lang.building.attributes import settle_clips
 from aidl_lang.building.calls import call
-from aidl_lang.building.clipping import settle_clips
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Model, Structure
-from aidl_lang.building.modules import run_module
-from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits, Interpreter, Stop
 from aidl_lang.building.statements import EXECUTORS
-from aidl_lang.building.values import NOTHING, Namespace
+from aidl_lang.building.structures import run_module
 from aidl_lang.checking.allowing import Allowance
-from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
+from aidl_lang.checking.builtins import ROTATION
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.records import record
@@ -68,7 +65,7 @@ def interpret(
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
         with limited_to(limits.seconds):
-            root = run_module(it, _library_scope(program))
+            root = run_module(it)
             settle_clips(it)
             for copier in tuple(it.copiers):
                 copier.clip()
@@ -96,37 +93,3 @@ def nothing_built() -> Interpretation:
 
 def _nothing() -> Structure:
     return Structure("assembly", "model", None, None)
-
-
-def _library_scope(program: Program) -> Scope:
-    """Returns the outermost scope: built-in and library names. Library code sees no names of the program."""
-    library = program.library
-    scope = Scope(None)
-
-    @cache
-    def supply(name: str) -> list[Candidate]:
-        if name not in library.callables and name not in SIGNATURES:
-            return []
-        found = [Candidate(signature, None) for signature in SIGNATURES.get(name, ())]
-        return found + [Candidate(signature, scope) for signature in library.callables.get(name, ())]
-
-    scope.supply = supply
-    scope.aliases = dict(library.aliases)
-    scope.values = _Constants(library.constants, scope)
-    return scope
-
-
-class _Constants(dict[str, Binding]):
-    """The library's constants by name; a program reads few, so each is looked up when it is first read."""
-
-    def __init__(self, constants: Mapping[str, ast.Let], scope: Scope) -> None:
-        super().__init__(dict.fromkeys([*constants, *MATH], NOTHING))
-        self._constants, self._scope = constants, scope
-
-    def __getitem__(self, name: str) -> Binding:
-        if super().__getitem__(name) is NOTHING:
-            if name in MATH:
-                self[name] = Namespace({**{key: self[key] for key in self._constants}, "": self._scope})
-            else:
-                self[name] = LetBinding(self._constants[name].value, self._scope)
-        return super().__getitem__(name)

@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
-    from aidl_lang.solver.memory import Memory
-    from aidl_lang.solver.solution import Solution
+    from aidl_lang.solver.problem import Solution
+    from aidl_lang.solver.riding import Memory
 
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
@@ -92,7 +92,7 @@ class _Tries:
         if not (solving.explain and has_errors(found)):
             return found
         from aidl_lang.building.lower import lower
-        from aidl_lang.explaining.constants import NEVER, with_failing_constants, with_remedies
+        from aidl_lang.explaining.remedies import NEVER, with_failing_constants, with_remedies
         from aidl_lang.solver import solve
 
         is_decided = any(d.code == NEVER for d in found) or any(
@@ -308,7 +308,7 @@ def _elsewhere(
 
 
 def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
-    from aidl_lang.explaining.repetitions import follows
+    from aidl_lang.explaining.giving import follows
 
     return follows(lowered, solution, span)
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
+from aidl_lang.checking.calls import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.conditions import (
     check_condition,
     check_empty,
@@ -19,7 +20,6 @@ from aidl_lang.checking.conditions import (
     find_cycles,
 )
 from aidl_lang.checking.facts import Fact, of_symbol
-from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.members import compare

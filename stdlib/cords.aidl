@@ -5,7 +5,7 @@
 ///
 /// `start` and `end` may be points of any structure above, which it follows. It is the Bézier `way`, a parabola.
 ///
-/// Its middle is below the straight way, wherever that goes.
+/// With `sag: 0` it is straight, as a `wire` is.
 ///
 /// ```aidl
 /// assembly power_line {
@@ -71,8 +71,9 @@ shape coil(start: point, end: point, width: length, turns: integer = 8, lead: nu
     let up = turned(unit(end - start), 90deg) * (width / 2mm)
     fn quarter(x, y, i) = lerp(start, end, lead) + pitch * (i / 4 + loop_reach * x) + up * y
     fn place(i) = quarter([0, 1, 0, -1][i % 4], [-1, 0, 1, 0][i % 4], i)
-    fn way(i) = pitch * (1 / 12 + loop_handle * loop_reach * [1, 0, -1, 0][i % 4])
-        + up * (loop_handle * [0, 1, 0, -1][i % 4])
+    fn way(i) = pitch * (1 / 12 + loop_handle * loop_reach * [
+        1, 0, -1, 0
+    ][i % 4]) + up * (loop_handle * [0, 1, 0, -1][i % 4])
     let quarters = 4 * turns
     let last = quarters + 1
     for i in 0..quarters { knot[i] = place(i) }
@@ -83,7 +84,10 @@ shape coil(start: point, end: point, width: length, turns: integer = 8, lead: nu
         segment[i + 1] = bezier(knot[i], knot[i] + way(i), knot[i + 1] - way(i + 1), knot[i + 1])
     }
     segment[last] = bezier(
-        knot[quarters], knot[quarters] + (end - start) * (lead / 2), end - (end - start) * (lead / 2), end
+        knot[quarters],
+        knot[quarters] + (end - start) * (lead / 2),
+        end - (end - start) * (lead / 2),
+        end
     )
 }
 
@@ -107,7 +111,12 @@ let loop_handle = 0.5523
 /// }
 /// ```
 shape spring(
-    start: point, end: point, width: length, turns: integer = 6, lead: number = 0.1, round: bool = true
+    start: point,
+    end: point,
+    width: length,
+    turns: integer = 6,
+    lead: number = 0.1,
+    round: bool = true
 ) {
     assert turns >= 1, "a spring has at least one turn"
     assert 0 < lead < 0.5, "the leads of a spring are a share of its way, between 0 and 0.5"
@@ -154,7 +163,10 @@ shape spring(
 /// }
 /// ```
 shape chain(
-    start: point, end: point, links: integer = 9, width: length = norm(end - start) / max(1, links) / 2
+    start: point,
+    end: point,
+    links: integer = 9,
+    width: length = norm(end - start) / max(1, links) / 2
 ) {
     assert links >= 1, "a chain has at least one link"
     let up = turned(unit(end - start), 90deg) * (width / 2mm)

@@ -105,7 +105,8 @@ fn threads(
     margin: length = 0
 ) = hatching(of, pitch * cos(slope), angle: angle + slope, width: width, margin: margin)
 
-/// Bars across an outline, upright at angle 0, half as wide as their `pitch` if no `width` is given.
+/// Bars across an outline, half as wide as their `pitch` if no `width` is given. They run along `angle`, as the
+/// lines of `hatching` do: upright unless it is said.
 ///
 /// ```aidl
 /// solid vent {
@@ -113,8 +114,8 @@ fn threads(
 ///     hole slits { bars = ribs(body, pitch: 6, width: 2.5, margin: 5) }
 /// }
 /// ```
-fn ribs(of, pitch: length, width: length = pitch / 2, angle: angle = 0deg, margin: length = 0) =
-    hatching(of, pitch, angle: angle + 90deg, width: width, margin: margin)
+fn ribs(of, pitch: length, width: length = pitch / 2, angle: angle = 90deg, margin: length = 0) =
+    hatching(of, pitch, angle: angle, width: width, margin: margin)
 
 /// Slats that fill an outline from below: level bars at angle 0, each `width` wide, with a `gap` between them.
 ///

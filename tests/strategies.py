@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.words import KINDS
+from aidl_lang.syntax.tables import KINDS
 
 NOWHERE = Span(SourceFile("<made up>", ""), 0, 0)
 

@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.render import render, to_dict
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.explaining.failures import _follows
-from aidl_lang.solver.solution import Failure, GroupFailure
+from aidl_lang.solver.problem import Failure, GroupFailure
 from tests.documents import ROOT, Block, programs
 
 UNSOLVABLE = programs(ROOT / "tests" / "spec" / "conflicts.md")

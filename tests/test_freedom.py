@@ -260,8 +260,8 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
         ):
             continue
         missed = analysed.misses(motion, 0.5)
-        leaves = "a curve" in motion.words or "at first" in motion.words
-        assert (missed > 1e-5) == leaves, (motion, missed)
+        assert missed <= 1e-5 or "a curve" in motion.words or motion.words == "turn", (motion, missed)
+        assert missed > 1e-5 or "a curve" not in motion.words, (motion, missed)
 
 
 @tries(20)

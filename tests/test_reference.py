@@ -22,8 +22,7 @@ from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.words import KINDS
+from aidl_lang.syntax.tables import KINDS, load_tables
 from aidl_lang.tools.reference.collect import Entry, doc, reference
 from aidl_lang.tools.reference.pages import full_guide, guide
 from aidl_lang.tools.reference.signatures import exactness, held, parts, split_items
@@ -274,7 +273,7 @@ def test_forms_are_written_as_few() -> None:
     lines = guide().splitlines()
     for line in (
         "dome(…/bottom_center, width, height) →",
-        "kite(…/bottom_corner/top_corner, width, height, shoulder) → as rhombus",
+        "parallelogram(…, width, {height, shift | side, side_angle}) → edges corners",
         "arch(…/bottom_center, width, height, rise?) →",
         "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height,",
         "path(steps, from/start?, heading?, closed?)",

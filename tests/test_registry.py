@@ -11,7 +11,7 @@ from tests.documents import ROOT
 
 NEW = """
 import json
-from aidl_lang.checking import registry
+from aidl_lang.checking import types as registry
 
 registry.PRIMITIVES = registry.PRIMITIVES | {"bow": registry.Primitive(
     "bow",
@@ -24,7 +24,7 @@ registry.DECLARATIONS = (*registry.DECLARATIONS, "bow(start: point, end: point, 
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
-from aidl_lang.building.primitives import clockwise, number, view, xy
+from aidl_lang.building.curves import clockwise, number, view, xy
 
 def pieces(g, here):
     core = view(g, here)

@@ -25,9 +25,9 @@ from aidl_lang.common.world import DiskWorld, MemoryWorld
 from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import solve
+from aidl_lang.solver.problem import Status
 from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.solver.settings import Stages
-from aidl_lang.solver.solution import Status
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.pages import guide

@@ -174,7 +174,6 @@ def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
 
 
 def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:
-    """Yields the parties that a comparison could move."""
     mentioned = senses.mentioned(comparison)
     for every in dict.fromkeys(comparison.parties):
         if near := senses.near(comparison, mentioned & every):
@@ -220,7 +219,6 @@ def _placer(unknown: Unknown) -> Structure | None:
 
 
 def _felt(comparison: Comparison, evaluate: ex.Evaluator) -> bool:
-    """Tells whether a comparison changes when positions move."""
     left, right = comparison.left, comparison.right
     now, then = left.value - right.value, evaluate(left) - evaluate(right)
     return not abs(then - now) <= _FLAT * max(1.0, abs(left.value), abs(right.value))

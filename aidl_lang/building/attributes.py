@@ -1,24 +1,250 @@
-"""Attributes of structures and of geometry: their names, and their arguments."""
+"""Attributes of structures and geometry: names, arguments and, for `@clip` and `@behind`, effects."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from aidl_lang.building.clipping import StatedClip, state_clip
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.functions import color_of
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.scopes import Scope
-from aidl_lang.building.stacking import StatedOrder, state_order
-from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.values import Nothing, Num, TextVal, Value, each_of, holds
+from aidl_lang.building.state import Env, Interpreter, Reach, Scope
+from aidl_lang.building.values import Nothing, Num, TextVal, Value, each_of, holds, kind_of
 from aidl_lang.checking import units
-from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, NAMING, STACKING, WORDED
+from aidl_lang.checking.builtins import ATTRIBUTES, BEHIND, CLIP, IN_FRONT, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
+from aidl_lang.common.diagnostics import Label
 from aidl_lang.common.names import find
-from aidl_lang.common.prose import ticked, with_article
+from aidl_lang.common.prose import listed, ticked, with_article
+from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
+
+# --- What structures are clipped to, outlines or material: `@clip`, read when all geometry is there.
+
+
+@record()
+class StatedClip:
+    """A `@clip`, and the scope in which it is read."""
+
+    attribute: ast.Attribute
+    scope: Scope
+
+
+def settle_clips_in(it: Interpreter, parent: Structure) -> None:
+    """Clips the structures in one to its own outlines or itself, before boxes are asked for."""
+    for s in parent.children:
+        if (stated := it.clips.get(s)) is not None and _names_own(stated, parent):
+            _settle(it, s, stated)
+
+
+def _names_own(stated: StatedClip, parent: Structure) -> bool:
+    """Tells whether a clip names geometry that stands in a structure itself, or the structure."""
+    values = [argument.value for argument in stated.attribute.arguments]
+    if len(values) != 1 or not isinstance(name := values[0], ast.Name):
+        return False
+    scope = next((scope for scope in stated.scope.chain() if name.text in scope.values), None)
+    named = None if scope is None else scope.values[name.text]
+    is_outline = scope is not None and scope.container is parent and isinstance(named, Geometry)
+    return is_outline or named is parent
+
+
+def settle_clips(it: Interpreter) -> None:
+    """Gives structures what they are clipped to, if they have not; copies get theirs with the copies."""
+    for s, stated in it.clips.items():
+        if not s.clip and s.ground is None:
+            _settle(it, s, stated)
+
+
+def _settle(it: Interpreter, s: Structure, stated: StatedClip) -> None:
+    env = Env(stated.scope, s.parent or s, Reach.READ)
+    values = [evaluate(it, argument.value, env) for argument in stated.attribute.arguments]
+    if any(isinstance(value, Nothing) for value in values):
+        return
+    match values:
+        case [Structure(kind="solid") as solid] if s.kind == "drawing":
+            s.ground = solid
+        case _:
+            s.clip = tuple(_outline(it, s, stated, values))
+
+
+def _outline(
+    it: Interpreter, s: Structure, stated: StatedClip, values: Sequence[Value]
+) -> Iterator[Geometry]:
+    """Yields the geometry that `@clip` names; reports what is no outline."""
+    attribute = stated.attribute
+    found = list(each_of(values[0], Geometry)) if len(values) == 1 else []
+    if found and all(g.type != "point" and not g.is_nameless for g in found):
+        yield from found
+        return
+    hints = []
+    if len(values) == 1:
+        written = attribute.arguments[0].value.span.one_line
+        if isinstance(values[0], Structure):
+            if s.kind == "drawing":
+                hints.append("a drawing is also clipped to the material of a solid: `@clip(plate)`")
+            outline = next(iter(values[0].geometry), "outline")
+            if values[0].geometry or not hints:
+                hints.append(f"name the outline in it, as in `@{attribute.name.text}({written}.{outline})`")
+        elif found and all(g.type != "point" for g in found):
+            hints.append(f"give it a name that is not drawn: `construction outline = {written}`")
+        else:
+            hints.append(f"`{written}` is {kind_of(values[0])}")
+    message = f"`@{attribute.name.text}` takes the name of a closed outline, as in `@{CLIP}(window)`"
+    it.report("E0517", message, attribute, hints=hints)
+
+
+# --- The stated order of drawing: `@behind` and `@in_front`, read when all structures side by side are
+# there.
+
+
+@record()
+class StatedOrder:
+    """An attribute of order, its name, and the scope in which it is read."""
+
+    name: str
+    attribute: ast.Attribute
+    scope: Scope
+
+
+def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
+    """Keeps what is said of the order of a structure until all beside it are there."""
+    if s.parent is None:
+        message = f"`{s.name}` is the whole drawing: nothing is beside it"
+        hint = f"`{stated.attribute.span.one_line}` stands before a structure in `{s.name}`"
+        it.report("E0521", message, stated.attribute, hints=[hint])
+    else:
+        it.orders.setdefault(s, []).append(stated)
+
+
+def settle_order(it: Interpreter, parent: Structure) -> None:
+    """Gives the structures in one that was run the names of those that they are behind or in front of."""
+    stated: dict[Structure, dict[Structure, ast.Attribute]] = {}
+    for s in parent.children:
+        if s.source is not None:
+            _take_over(it, s, s.source, parent, stated)
+        if s in it.orders:
+            _read_order(it, s, parent, it.orders[s], stated)
+    if cycle := _cycle(stated):
+        _report_cycle(it, cycle, stated)
+
+
+def _read_order(
+    it: Interpreter,
+    s: Structure,
+    parent: Structure,
+    orders: list[StatedOrder],
+    stated: dict[Structure, dict[Structure, ast.Attribute]],
+) -> None:
+    names: dict[str, list[str]] = {}
+    for order in orders:
+        attribute = order.attribute
+        values = [evaluate(it, a.value, Env(order.scope, parent, Reach.READ)) for a in attribute.arguments]
+        if any(isinstance(value, Nothing) for value in values):
+            continue
+        others = [list(each_of(value, Structure)) for value in values]
+        if not others or not all(others):
+            taken = f"takes the names of structures beside it, as in `@{order.name}(wall)`"
+            it.report("E0517", f"`@{attribute.name.text}` {taken}", attribute)
+            continue
+        for other in (o for group in others for o in group if o is not s or len(group) == 1):
+            if other.parent is not parent or other is s:
+                _cannot_lie(it, s, other, parent, order)
+                continue
+            names.setdefault(order.name, []).append(other.name)
+            back, front = (s, other) if order.name == BEHIND else (other, s)
+            stated.setdefault(back, {})[front] = attribute
+    for name, found in names.items():
+        s.attributes[name] = tuple(map(TextVal, dict.fromkeys(found)))
+
+
+def _cannot_lie(
+    it: Interpreter, s: Structure, other: Structure, parent: Structure, order: StatedOrder
+) -> None:
+    hints = ["the order is stated between structures that stand side by side in one structure"]
+    if other is s:
+        why = f"`{s.name}` cannot be {_SIDES[order.name]} itself"
+        hints = ["name another structure beside it"]
+    elif s.is_within(other):
+        why = f"`{s.name}` is a part of `{other.name}`, and parts are drawn on the whole"
+    else:
+        why = f"`{other.name}` is not beside `{s.name}`"
+        beside = next((c for c in parent.children if other.is_within(c) and c is not s), None)
+        if other.is_within(s):
+            why = f"`{other.name}` is a part of `{s.name}`, and parts are drawn on the whole"
+        elif beside is not None:
+            hints = [f"all of `{beside.name}` is drawn together: `@{order.name}({beside.name})`"]
+    it.report("E0521", why, order.attribute, hints=hints)
+
+
+def _take_over(
+    it: Interpreter,
+    s: Structure,
+    source: Structure,
+    parent: Structure,
+    stated: dict[Structure, dict[Structure, ast.Attribute]],
+) -> None:
+    """Leaves to a copy what is said of its source, not of itself, and holds beside the copy, too."""
+    beside = {child.name: child for child in parent.children if child is not s}
+    own = {order.name for order in it.orders.get(s, ())}
+    for name in STACKING:
+        values = source.attributes.get(name, ()) if name not in own else ()
+        kept = tuple(v for v in values if isinstance(v, TextVal) and v.value in beside)
+        s.attributes.pop(name, None)
+        if not kept:
+            continue
+        s.attributes[name] = kept
+        attribute = _stated(it, source, name)
+        for value in kept:
+            back, front = (s, beside[value.value]) if name == BEHIND else (beside[value.value], s)
+            stated.setdefault(back, {})[front] = attribute
+
+
+def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
+    here: Structure | None = s
+    while here is not None:
+        for order in it.orders.get(here, ()):
+            if order.name == name:
+                return order.attribute
+        here = here.source
+    raise KeyError(name)
+
+
+def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:
+    """Returns structures each behind the next, and the last behind the first; none if there are none."""
+    done: set[Structure] = set()
+    for start in stated:
+        way: dict[Structure, Iterator[Structure]] = {} if start in done else {start: iter(stated[start])}
+        while way:
+            last = next(reversed(way))
+            following = next(way[last], None)
+            if following is None:
+                done.add(last)
+                del way[last]
+            elif following in way:
+                found = list(way)
+                return found[found.index(following) :]
+            elif following not in done:
+                way[following] = iter(stated.get(following, ()))
+    return []
+
+
+def _report_cycle(
+    it: Interpreter, cycle: list[Structure], stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]
+) -> None:
+    rest = [*cycle[1:], cycle[0]]
+    attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]
+    chain = ", which is behind ".join(f"`{s.name}`" for s in rest)
+    it.report(
+        "E0521",
+        f"`{cycle[0].name}` would be behind itself: it is behind {chain}",
+        attributes[0],
+        hints=[f"leave one of {listed(f'`{a.span.one_line}`' for a in attributes)} out"],
+        secondary=[Label(a.span, "and this") for a in attributes[1:]],
+    )
+
+
+_SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
+
 
 OWN_LOOKS = {
     "drawing": ("color", "stroke", "dash", "opacity", "shade"),
@@ -34,7 +260,8 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
         elif name == CLIP:
-            state_clip(it, s, StatedClip(attribute, scope))
+            it.clips[s] = StatedClip(attribute, scope)  # until all geometry is there; of two the later counts
+            s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in attribute.arguments)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 
@@ -113,7 +340,12 @@ EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "fade", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids without outline; a width of 0 says the same."""
-_WORDS = {"orientation": ORIENTATIONS, "edges": EDGES, "shade": SHADES, "stroke": (NO_OUTLINE.value,)}
+_WORDS = {
+    "orientation": ORIENTATIONS,
+    "edges": EDGES,
+    "shade": SHADES,
+    "stroke": (NO_OUTLINE.value,),
+}
 """The words of attributes."""
 
 
@@ -157,7 +389,6 @@ def _worded(words: Sequence[str], wanted: str) -> Callable[[list[Value]], str]:
 
 
 def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
-    """Tells whether the one value is one of some words, and corrects its spelling."""
     word = values[0] if len(values) == 1 else None
     meant = find(word.value, dict.fromkeys(words)) if isinstance(word, TextVal) else None
     if meant is not None:
@@ -179,15 +410,12 @@ def _depth(values: list[Value]) -> str:
     return "" if length[0] > 0 and all(0 < angle < 180 for angle in taper) else wanted
 
 
-def _elevation(values: list[Value]) -> str:
-    is_one = _one(values, units.LENGTH) is not None
-    return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+def _one_number(dimension: units.Dimension, fits: Callable[[float], bool], wanted: str) -> Callable[..., str]:
+    def rule(values: list[Value]) -> str:
+        found = _one(values, dimension)
+        return "" if found is not None and fits(found) else wanted
 
-
-def _quantity(values: list[Value]) -> str:
-    count = _one(values, units.PLAIN)
-    is_one = count is not None and count == int(count) and 1 <= count <= MOST
-    return "" if is_one else f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`"
+    return rule
 
 
 def _stroke(values: list[Value]) -> str:
@@ -211,18 +439,6 @@ def _dash(values: list[Value]) -> str:
     return "" if is_paired else "a gap for each dash, as in `@dash(6, 1.5, 1, 1.5)`"
 
 
-def _halo(values: list[Value]) -> str:
-    width = _one(values, units.LENGTH)
-    is_one = width is not None and 0 <= width <= WIDEST
-    return "" if is_one else f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
-
-
-def _opacity(values: list[Value]) -> str:
-    share = _one(values, units.PLAIN)
-    is_one = share is not None and 0 < share <= 1
-    return "" if is_one else "a share above 0, and up to 1, as in `@opacity(0.5)`"
-
-
 def _shade(values: list[Value]) -> str:
     kind, angles = values[:1], _numbers(values[1:], units.ANGLE)
     is_color = len(kind) == 1 and isinstance(kind[0], TextVal) and css_color([kind[0].value]) is not None
@@ -241,7 +457,7 @@ def _text(name: str) -> Callable[[list[Value]], str]:
     return rule
 
 
-def _detached(values: list[Value]) -> str:
+def _yes_or_no(values: list[Value]) -> str:
     return "" if not values or [type(v) for v in values] == [bool] else "nothing, or true or false"
 
 
@@ -260,18 +476,29 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "orientation": _worded(ORIENTATIONS, "one of `top`, `front` and `side`, as in `@orientation(front)`"),
     "thickness": _thickness,
     "depth": _depth,
-    "elevation": _elevation,
-    "quantity": _quantity,
+    "elevation": _one_number(
+        units.LENGTH, lambda _: True, "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+    ),
+    "quantity": _one_number(
+        units.PLAIN,
+        lambda n: n == int(n) and 1 <= n <= MOST,
+        f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`",
+    ),
     "layer": _text("layer"),
     "material": _text("material"),
     **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
     **{name: _text(name) for name in ("thread", "tolerance", "finish")},
-    "detached": _detached,
+    "detached": _yes_or_no,
+    "rigid": _yes_or_no,
     "stroke": _stroke,
     "dash": _dash,
-    "opacity": _opacity,
+    "opacity": _one_number(
+        units.PLAIN, lambda n: 0 < n <= 1, "a share above 0, and up to 1, as in `@opacity(0.5)`"
+    ),
     "shade": _shade,
     "edges": _worded(EDGES, "`seams` or `outline`, as in `@edges(seams)`"),
-    "halo": _halo,
+    "halo": _one_number(
+        units.LENGTH, lambda n: 0 <= n <= WIDEST, f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"
+    ),
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

@@ -12,29 +12,18 @@ from functools import cached_property
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
+from aidl_lang.building.curves import defining, view, xy
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.primitives import defining, view, xy
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
 from aidl_lang.common.records import record
 
 SIDES = ("left", "right", "top", "bottom")
 
 FIELDS = (
-    *SIDES,
-    "width",
-    "height",
-    "center",
-    "center_x",
-    "center_y",
-    "top_left",
-    "top_right",
-    "bottom_left",
-    "bottom_right",
-    "top_center",
-    "bottom_center",
-    "left_center",
-    "right_center",
+    *(*SIDES, "width", "height", "center", "center_x", "center_y"),
+    *("top_left", "top_right", "bottom_left", "bottom_right"),
+    *("top_center", "bottom_center", "left_center", "right_center"),
 )
 
 Source = Geometry | Structure | PointVal
@@ -233,9 +222,8 @@ def _structure(
         if not _lies_inside(primitive, whole, ignored):
             yield from _curve(primitive, here, side)
     for child in source.children:
-        is_clipped = child.ground is source or (
-            bool(child.clip) and all(_is_in(g, whole, ignored) for g in child.clip)
-        )
+        clips = child.clip
+        is_clipped = child.ground is source or (bool(clips) and all(_is_in(g, whole, ignored) for g in clips))
         if child.kind != "hole" and child not in ignored and not is_clipped:
             yield from _structure(child, whole, here, side, ignored)
 
@@ -257,26 +245,19 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
             covers = recipe.operands[:1]
         case "offset" if recipe.numbers["distance"].value <= 0:
             covers = recipe.operands
-    return any(
-        all(_is_in(g, whole, ignored) or _lies_inside(g, whole, ignored) for g in cover) for cover in covers
-    )
+    inside = whole, ignored
+    return any(all(_is_in(g, *inside) or _lies_inside(g, *inside) for g in cover) for cover in covers)
 
 
 def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
     """Tells whether a geometry is drawn in the box of a structure."""
-    at: object = g
-    while isinstance(at, Geometry):
-        if at.construction:
-            return False
-        at = at.container
-    here: Structure | None = g.owner
+    here = None if g.is_guide else g.owner
     while here is not None and here is not whole and here.kind != "hole" and here not in ignored:
         here = here.parent
     return here is whole
 
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
-    """Yields candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
         return _made(primitive, primitive.recipe, here, side)
     return curves.reach(primitive, here, side)
@@ -338,7 +319,10 @@ def _foreseen_side(measured: Measurement) -> Expression:
     assert outline.recipe is not None
     assert here is not None
     recipe, is_high = outline.recipe, side in ("right", "top")
-    extents = foreseen(*[_extent_of(operand, here, side) for operand in recipe.operands])
+    reached = (
+        (e for g in operand for e in _extremes(g, here, side, frozenset())) for operand in recipe.operands
+    )
+    extents = foreseen(*[_extreme_of(list(dict.fromkeys(each)), side) for each in reached])
     match recipe.kind:
         case "clip" | "intersect":
             return ex.apply("minimum" if is_high else "maximum", *extents)
@@ -349,11 +333,6 @@ def _foreseen_side(measured: Measurement) -> Expression:
         case _:
             return extents[0]
     return ex.apply("add" if is_high else "sub", extents[0], out)
-
-
-def _extent_of(operand: Iterable[Geometry], here: Structure, side: str) -> Expression:
-    found = dict.fromkeys(e for source in operand for e in _extremes(source, here, side, frozenset()))
-    return _extreme_of(list(found), side)
 
 
 def constrain_sources(outline: Geometry, here: Structure) -> str:

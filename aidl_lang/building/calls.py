@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from aidl_lang.building.arguments import arranged
-from aidl_lang.building.blocks import run_block
 from aidl_lang.building.boxes import box_of
-from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, owners_of
+from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, owners_of, run
 from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
-from aidl_lang.building.lists import run
-from aidl_lang.building.model import Condition, Geometry, all_parts, reach_of
+from aidl_lang.building.model import Condition, Geometry, Structure, all_parts, reach_of
+from aidl_lang.building.motion import ask_to_turn, is_of_directions
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
-from aidl_lang.building.placing import placing
-from aidl_lang.building.scopes import Candidate, LetBinding, Scope
-from aidl_lang.building.state import Arguments, Env, Interpreter, Reach
-from aidl_lang.building.turning import ask_to_turn, is_of_directions
+from aidl_lang.building.overloads import CallSite, arranged, candidates_of, no_overload, placing, site_of
+from aidl_lang.building.state import (
+    Ahead,
+    Arguments,
+    Candidate,
+    Env,
+    Interpreter,
+    LetBinding,
+    ParamBinding,
+    Reach,
+    Scope,
+)
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -36,6 +41,7 @@ from aidl_lang.building.values import (
     spliced,
 )
 from aidl_lang.checking.builtins import COPYING
+from aidl_lang.checking.library import signature
 from aidl_lang.checking.types import (
     ANY,
     Binding,
@@ -232,13 +238,14 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
     return converted if converted is not None else NOTHING
 
 
-# --- Constraint definitions ------------------------------------------------------------------------
-
-
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    _hoist_lets(scope, block)
+    scope.values |= {
+        s.name.text: LetBinding(s.value, scope)
+        for s in block.statements
+        if isinstance(s, ast.Let | ast.Assign)
+    }
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -274,15 +281,6 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         message = f"`{node.span.one_line}` says nothing: it relates two things or more"
         hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
         it.report("E0343", message, node, hints=[hint])
-
-
-def _hoist_lets(scope: Scope, block: ast.Block) -> None:
-    for statement in block.statements:
-        if isinstance(statement, ast.Let | ast.Assign):
-            scope.values[statement.name.text] = LetBinding(statement.value, scope)
-
-
-# --- Shapes --------------------------------------------------------------------------------------
 
 
 def _shape(
@@ -392,15 +390,82 @@ def _bind_inside(
             return ListVal(tuple(inner))
         case RecordVal(fields):
             return RecordVal(
-                {k: _bind_field(it, v, f"{name}.{k}", moved, geometry) for k, v in fields.items()}
+                {
+                    k: _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                    if isinstance(v, Num)
+                    else _bind_inside(it, v, f"{name}.{k}", moved, geometry)
+                    for k, v in fields.items()
+                }
             )
         case _:
             return value
 
 
-def _bind_field(
-    it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
-) -> Value:
-    if isinstance(value, Num):
-        return _bind_number(it, value, ANY, "", name, {}, geometry)
-    return _bind_inside(it, value, name, moved, geometry)
+# --- Bodies: the declarations that hold in the whole of one, and its statements one by one.
+
+
+def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
+    """Runs the statements of a body. Callables and constants are visible in the whole of it."""
+    hoist_callables(it, scope, statements)
+    hoist_values(scope, statements, here)
+    ahead = Ahead(statements, scope, here)
+    it.ahead.append(ahead)
+    try:
+        for ahead.next, statement in enumerate(statements, start=1):
+            execute(it, statement, scope, here)
+    finally:
+        it.ahead.pop()
+
+
+def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Statement]) -> None:
+    for node in statements:
+        match node:
+            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
+                _hoist(it, scope, node)
+            case ast.Structure(parameters=parameters) if parameters is not None:
+                _hoist(it, scope, node)
+            case ast.Alias(name=name, target=target):
+                scope.aliases[name.text] = target.text
+
+
+def _hoist(it: Interpreter, scope: Scope, node: ast.Callable) -> None:
+    if node not in it.signatures:
+        it.signatures[node] = signature(node)
+    scope.define(Candidate(it.signatures[node], scope))
+
+
+def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:
+    for node in statements:
+        match node:
+            case ast.Let():
+                scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
+            case ast.Param():
+                scope.values.setdefault(node.name.text, ParamBinding(node, scope, here))
+
+
+def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+    """Carries out a statement; definitions were hoisted and do nothing here."""
+    if (run := it.executors.get(type(node))) is None:
+        return
+    it.check_time(node)
+    try:
+        run(it, node, scope, here)
+    except RecursionError:
+        it.too_deep(node)
+
+
+def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
+    """Yields the names that a block gives to geometry and structures; if `indexed`, those with an index."""
+    for node in block.statements:
+        match node:
+            case ast.Assign() | ast.Structure(parameters=None):
+                if node.indices or not indexed:
+                    yield node.name.text
+            case ast.Var() if not indexed:
+                yield node.name.text
+            case ast.For(body=body):
+                yield from declared_names(body, indexed=indexed)
+            case ast.If(then=then, otherwise=otherwise):
+                for branch in (then, otherwise):
+                    if branch is not None:
+                        yield from declared_names(branch, indexed=indexed)

@@ -1,37 +1,46 @@
-"""Coercions of values to the kind that is expected, and checks of what may be read from where.
-
-Each returns None after reporting a value that does not fit, unless it says otherwise.
-"""
+"""Coercions of values to the kind that is expected, and the functions that make lists, records and texts."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building import primitives
 from aidl_lang.building.boxes import SIDES, Box
+from aidl_lang.building.curves import view, xy
 from aidl_lang.building.model import Geometry, Structure, common_ancestor
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
+    NOTHING,
     Array,
+    Exactness,
     ListVal,
     Nothing,
     Num,
     PointVal,
+    RangeVal,
     RecordVal,
+    TextVal,
     Value,
+    kind_of,
     length,
     members,
+    number,
     type_of,
 )
 from aidl_lang.checking import rules
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.names import find, nearest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+# --- Coercions of values to the kind that is expected, and checks of what may be read from where.
+#
+# Each returns None after reporting a value that does not fit, unless it says otherwise.
 
 
 def as_written(value: Value) -> Value:
@@ -41,6 +50,8 @@ def as_written(value: Value) -> Value:
             return _guessed(value)
         case PointVal(x, y):
             return PointVal(_guessed(x), _guessed(y))
+        case ListVal(items):
+            return ListVal(tuple(map(as_written, items)))
         case _:
             return value
 
@@ -90,7 +101,7 @@ def all_within(it: Interpreter, values: Iterable[Value], node: ast.Node, env: En
 
 def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:
     """Returns the numbers and points that define a primitive, in the frame of the structure that asks."""
-    core = primitives.view(geometry, env.here)
+    core = view(geometry, env.here)
     if may_read(it, geometry.bound_to, node, env):
         return core
     return {name: as_written(value) for name, value in core.items()}
@@ -124,11 +135,11 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
     stands for that side of the shape's box.
     """
     core = look(it, edge, node, env)
-    x, y = primitives.xy(core["start"])
+    x, y = xy(core["start"])
     axis = _axis(core)
     if isinstance(node, ast.Member) and node.name.text in SIDES and isinstance(edge.container, Geometry):
         side = node.name.text
-        as_drawn = _axis(primitives.view(edge, edge.owner))
+        as_drawn = _axis(view(edge, edge.owner))
         if not axis or as_drawn != ("x" if side in ("left", "right") else "y"):
             return length(Box((edge.container,), env.here).side(side))
     if axis:
@@ -141,7 +152,7 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
 
 def _axis(core: Mapping[str, Value]) -> str:
     """Returns the coordinate that is one along a whole edge, `x` or `y`; empty if it is slanted."""
-    (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
+    (x0, y0), (x1, y1) = xy(core["start"]), xy(core["end"])
     dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
     tolerance = 1e-9 * max(dx, dy, 1e-300)
     return "x" if dx <= tolerance < dy else "y" if dy <= tolerance < dx else ""
@@ -226,3 +237,111 @@ def _numbered(it: Interpreter, node: ast.Node) -> Fix | None:
     ]
     told = f"for {count}, {variable.text} in enumerate({shown(loop.iterable)})"
     return Fix(f"count the turns: `{told}`, and `[{count}]`", tuple(edits), is_sure=True)
+
+
+# --- Lists, ranges, records and texts: the functions that make and join them.
+
+
+def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
+    """Returns the numbers of a range in order; None after an error. An empty range is empty."""
+    parts = [n for n in (value.start, value.end, value.step) if n is not None]
+    known = [constant(it, n, node, "the ends of a range that is run through") for n in parts]
+    if None in known:
+        return None
+    start, end, step = [*(k for k in known if k is not None), 1.0][:3]
+    if step == 0:
+        it.report("E0504", "a range with a step of 0 never ends", node, hints=["count up or down: `step 5`"])
+        return None
+    turns = (end - start) / step
+    tolerance = min(1e-9 * max(1.0, abs(start / step), abs(end / step)), 0.01)
+    count = math.ceil(turns - tolerance) if value.exclusive else math.floor(turns + tolerance) + 1
+    if count > it.limits.items:
+        it.report("E0805", f"this range has {count} members; at most {it.limits.items} are allowed", node)
+        return None
+    status = min(max(n.status for n in parts), Exactness.NUMBER)
+    return [number(start + i * step, value.start.dimension, status) for i in range(max(count, 0))]
+
+
+def items_of(it: Interpreter, value: Value, node: ast.Node) -> Sequence[Value] | None:
+    """Returns the members of a list, an array or a range; None for anything else, or after an error."""
+    return run(it, value, node) if isinstance(value, RangeVal) else members(value)
+
+
+def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value:
+    """Returns a field of a record by its name, in any spelling that `find` accepts."""
+    key = find(name, value.fields)
+    if key is None:
+        like = nearest(name, value.fields)
+        known = first_few(ticked(value.fields), 12, "")
+        hint = f"did you mean `{like[0]}`?" if like else f"it has {known}" if known else "it is empty"
+        it.report("E0202", f"this record has no `{name}`", node, hints=[hint])
+        return NOTHING
+    return value.fields[key]
+
+
+def joined(left: Value, right: Value) -> Value | None:
+    """Returns `left + right` of two texts or two lists; None if they are neither."""
+    if isinstance(left, TextVal) and isinstance(right, TextVal):
+        return TextVal(left.value + right.value)
+    a, b = members(left), members(right)
+    return ListVal((*a, *b)) if a is not None and b is not None else None
+
+
+def as_text(value: Value) -> str | None:
+    """Returns a number, text or truth as a reader writes it: in mm and degrees, without a unit."""
+    match value:
+        case Num():
+            return f"{value.value:.10g}"
+        case TextVal(text):
+            return text
+        case bool():
+            return "true" if value else "false"
+        case _:
+            return None
+
+
+def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    value = a["value"]
+    if isinstance(value, Num) and constant(it, value, node, "a number that becomes a text") is None:
+        return NOTHING
+    text = as_text(value)
+    if text is None:
+        it.report("E0302", f"`str` writes numbers, texts and truth values, not {kind_of(value)}", node)
+        return NOTHING
+    return TextVal(text)
+
+
+def _range(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the numbers of a range as in Python: without the end, and one number alone is the end."""
+    start, end, step = a.get("start", number(0.0)), a["end"], a.get("step")
+    assert isinstance(start, Num)
+    assert isinstance(end, Num)
+    assert step is None or isinstance(step, Num)
+    items = run(it, RangeVal(start, end, exclusive=True, step=step), node)
+    return ListVal(tuple(items)) if items is not None else NOTHING
+
+
+def _enumerate(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    items = members(a["values"]) or ()
+    return ListVal(tuple(ListVal((number(float(i)), item)) for i, item in enumerate(items)))
+
+
+def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns pairs of members with the same place; reports lists of different lengths."""
+    lists = [members(value) or () for value in a.values()]
+    lengths = [len(items) for items in lists]
+    if len(set(lengths)) > 1:
+        told = " and ".join(str(n) for n in lengths)
+        it.report("E0304", f"`zip` pairs lists of one length, and these have {told} members", node)
+        return NOTHING
+    return ListVal(tuple(ListVal(pair) for pair in zip(*lists, strict=True)))
+
+
+FUNCTIONS: dict[str, Function] = {
+    "record": lambda it, a, node, env: RecordVal(a),
+    "str": _str,
+    "range": _range,
+    "enumerate": _enumerate,
+    "zip": _zip,
+    "reversed": lambda it, a, node, env: ListVal(tuple(reversed(members(a["values"]) or ()))),
+}

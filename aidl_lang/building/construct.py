@@ -1,33 +1,120 @@
-"""Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness).
-
-A number becomes an unknown, a constant or an expression by its status and by the place it is given to:
-positions are free first guesses, sizes are kept. Several literal points given to one constructor move as one:
-the first is the position, the differences to it are kept sizes.
-"""
+"""Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.arcs import ROUND, check_bare_points, differ
 from aidl_lang.building.boxes import SIDES
 from aidl_lang.building.conditions import all_of, compare_numbers
+from aidl_lang.building.curves import direction, distance, polar
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
-from aidl_lang.building.primitives import direction, distance, polar
-from aidl_lang.building.state import Arguments, Env, Interpreter
-from aidl_lang.building.tracing import trace_of
+from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
 from aidl_lang.checking.builtins import SIGNATURES
-from aidl_lang.checking.registry import PRIMITIVES
-from aidl_lang.checking.types import NumberType, PointType
+from aidl_lang.checking.types import PRIMITIVES, NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.drawings.drawing import Trace
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+# --- Arcs given by three points without names: centre, start and end, with a warning if they hardly can be.
+
+ROUND = 0.01
+"""The part of the larger one by which the distances of start and end from the centre may differ without a
+warning."""
+
+_CODE = "W0503"
+
+_BY_CENTER = ("center", "start", "end")
+_BY_MIDDLE = ("start", "mid", "end")
+
+_HINT = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`"
+
+
+def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, Value]) -> None:
+    """Warns of an arc whose unnamed first point is taken as its centre, if that is not as far from both."""
+    if any(a.name is not None and a.name.text == "center" for a in node.arguments):
+        return
+    a, b, c = (arguments.get(name) for name in _BY_CENTER)
+    if not (isinstance(a, PointVal) and isinstance(b, PointVal) and isinstance(c, PointVal)):
+        return
+    start, end, across = _apart(a, b), _apart(a, c), _apart(b, c)
+    if not differ(start, end) > ROUND:
+        return
+    if any(d.code == _CODE and d.span == it.place(node) for d in it.diagnostics):
+        return  # reported in an earlier turn of a loop
+    is_through = differ(start, across) <= differ(start, end)
+    is_plain = _is_plain(node)
+    meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
+    it.report(
+        _CODE,
+        f"the points of `{node.callee.text}` are centre, start and end, and here the start is {start:g} "
+        f"from the centre and the end {end:g}",
+        node,
+        hints=[f"or write `{_named(node, other)}` if that is meant" if is_plain else _HINT],
+        fix=_fix(node, meant) if is_plain else None,
+    )
+
+
+def _apart(a: PointVal, b: PointVal) -> float:
+    return math.hypot(b.x.value - a.x.value, b.y.value - a.y.value)
+
+
+def differ(a: float, b: float) -> float:
+    """Returns the part of the larger one by which two distances differ."""
+    return abs(a - b) / max(a, b) if max(a, b) > 0 else 0.0
+
+
+def _is_plain(node: ast.Call) -> bool:
+    """Tells whether the three points are the first arguments of the call, all without a name."""
+    points = node.arguments[:3]
+    return node.receiver is None and len(points) == 3 and all(p.name is None for p in points)
+
+
+def _named(node: ast.Call, names: tuple[str, ...]) -> str:
+    inside = ", ".join(f"{n}: {a.span.one_line}" for n, a in zip(names, node.arguments, strict=False))
+    return f"{node.callee.text}({inside})"
+
+
+def _fix(node: ast.Call, names: tuple[str, ...]) -> Fix:
+    places = [Span(a.span.source, a.span.start, a.span.start) for a in node.arguments[:3]]
+    edits = tuple(Edit(at, f"{name}: ") for at, name in zip(places, names, strict=True))
+    return Fix(f"name them `{names[0]}`, `{names[1]}` and `{names[2]}`", edits)
+
+
+# --- Drawings of other programs in a program: one geometry each, of which the parts are views.
+
+
+def trace_of(it: Interpreter, name: str) -> Trace:
+    """Returns the outlines under a name, of the drawing whose definitions call; ends building elsewhere."""
+    call = it.call_sites[-1]
+    if (drawing := it.program.resolution.drawings.get(call.span.source)) is None:
+        it.refuse(call, 'imports write it: `import "logo.svg" as logo` has the parts of a drawing')
+        raise Stop
+    return drawing.outlines.trace(name)
+
+
+def part(it: Interpreter, a: Mapping[str, Value], node: ast.Call, env: Env) -> Value:
+    """Returns some outlines of a drawing, to be measured and copied: they are drawn with the others."""
+    whole, name = a["of"], a["part"]
+    assert isinstance(whole, Geometry)
+    assert isinstance(name, TextVal)
+    outlines = trace_of(it, name.value)
+    return replace(whole, trace=outlines, name=name.value, container=whole, views={}, attributes={})
+
+
+# --- Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness).
+#
+# A number becomes an unknown, a constant or an expression by its status and by the place it is given to:
+# positions are free first guesses, sizes are kept. Several literal points given to one constructor move as
+# one: the first is the position, the differences to it are kept sizes.
 
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
@@ -106,7 +193,7 @@ def positions(
     anchors: dict[str, tuple[Num, Expression, str]] = {}
     before: tuple[PointVal, PointVal, str] | None = None
     for at, name in zip(points, names, strict=True):
-        if edges and literal(at) and before is not None and _apart(before[0], at):
+        if edges and literal(at) and before is not None and _differ(before[0], at):
             made = _beyond(it, before, at, holder, name, owner)
         else:
             x = _coordinate(it, "x", at.x, anchors, holder, name, owner)
@@ -127,7 +214,7 @@ def _is_first_guess(at: PointVal) -> bool:
     return {at.x.status, at.y.status} <= {Exactness.NUMBER, Exactness.PARAM}
 
 
-def _apart(a: PointVal, b: PointVal) -> bool:
+def _differ(a: PointVal, b: PointVal) -> bool:
     return a.x.value != b.x.value or a.y.value != b.y.value
 
 
@@ -151,7 +238,6 @@ def _beyond(
 
 
 def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
-    """Returns the distance and the direction from one literal point to another."""
     x, y = b.x.value - a.x.value, b.y.value - a.y.value
     return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
 
@@ -176,13 +262,9 @@ def _coordinate(
     offset = number.value - first.value
     if Exactness.PARAM in (number.status, first.status):
         return ex.add(base, ex.constant(offset))
-    kept = it.unknown(
-        offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True, since=since
-    )
+    field = f"{name}.d{axis}"
+    kept = it.unknown(offset, holder, field, owner=owner, dimension=LENGTH, kept=True, since=since)
     return ex.add(base, kept)
-
-
-# --- Primitives ----------------------------------------------------------------------------------
 
 
 def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -232,7 +314,7 @@ def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     end = None
     if "end" in a:
         start, end = _written(a, "start"), _written(a, "end")
-        if not (_is_literal(start) and _is_literal(end) and _apart(start, end)):
+        if not (_is_literal(start) and _is_literal(end) and _differ(start, end)):
             g.fields = _points(it, g, a, ("start", "end"))
             return
         a = dict(zip(("start", "length", "angle"), (start, *_way(start, end)), strict=True))
@@ -293,9 +375,8 @@ def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
     g.fields = _points(it, g, a, ("center",))
     radius = _size(it, g, a, "radius")
     ends = {n: _size(it, g, a, f"{n}_angle", ANGLE) for n in ("start", "end")}
-    g.fields |= {
-        n: polar(g.fields["center"], radius.expression, angle.expression) for n, angle in ends.items()
-    }
+    centre = g.fields["center"]
+    g.fields |= {n: polar(centre, radius.expression, angle.expression) for n, angle in ends.items()}
     g.fields |= {"radius": radius, "start_angle": ends["start"], "end_angle": ends["end"]}
 
 
@@ -352,9 +433,7 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
     (signature,) = SIGNATURES[kind]
     fields = [each for each in signature.parameters if each[0] in PRIMITIVES[kind].types]
     points = tuple(name for name, of, _ in fields if isinstance(of, PointType))
-    return points, tuple(
-        (name, of, is_optional) for name, of, is_optional in fields if isinstance(of, NumberType)
-    )
+    return points, tuple((name, of, may_lack) for name, of, may_lack in fields if isinstance(of, NumberType))
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:

@@ -7,13 +7,21 @@ from collections.abc import Callable
 from functools import partial
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building import lists
-from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, numeric, whole
+from aidl_lang.building.coerce import (
+    as_point,
+    as_written,
+    constant,
+    coordinate,
+    entry,
+    items_of,
+    joined,
+    numeric,
+    whole,
+)
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
-from aidl_lang.building.scopes import LetBinding, Scope
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Env, Interpreter, LetBinding, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -56,9 +64,6 @@ _UNBOUNDED = frozenset({ListVal, RecordVal, TextVal})
 """Values that grow without limit when they are joined with themselves."""
 
 
-# --- Literals ------------------------------------------------------------------------------------
-
-
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
     if (known := it.numbers.get(node)) is not None:
         return known
@@ -98,7 +103,6 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 def _of_turns(
     it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
-    """Returns a list of what is made in all turns, one after the other."""
     turns = iterate(it, node.iterable, env)
     if turns is None:
         return NOTHING
@@ -135,7 +139,7 @@ def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[V
 def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
     """Returns the values that a `for` runs through; None after an error."""
     value = evaluate(it, node, env)
-    items = lists.items_of(it, value, node)
+    items = items_of(it, value, node)
     if items is None and not isinstance(value, RangeVal | Nothing):
         it.misfit(rules.no_run(type_of(value)), node)
     return list(items) if items is not None else None
@@ -177,9 +181,6 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
     return False
 
 
-# --- Names and members ---------------------------------------------------------------------------
-
-
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     name = it.spelled(node)
     found = env.scope.find(name)
@@ -201,7 +202,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if isinstance(value, Nothing) or isinstance(index, Nothing):
         return NOTHING
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
-        return lists.entry(it, value, index.value, node.index)
+        return entry(it, value, index.value, node.index)
     items = members(value)
     if items is None:
         it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
@@ -219,9 +220,6 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if -len(items) <= position < len(items):
         return items[position]
     return no_index(it, node, list(range(len(items))), position)
-
-
-# --- Operators -----------------------------------------------------------------------------------
 
 
 def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
@@ -255,7 +253,7 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
         return arithmetic(it, node.operator, left, right, node)
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
-    if node.operator == "+" and (together := lists.joined(left, right)) is not None:
+    if node.operator == "+" and (together := joined(left, right)) is not None:
         return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
     if a is not None or b is not None:
@@ -330,7 +328,6 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
-    """Reports why an operation on constants has no value."""
     if op == "^" and a.value < 0 and not b.value.is_integer():
         return _no_value(it, node, "it takes the root of a negative number")
     divisor = {"/": b, "^": a}.get(op)
@@ -358,9 +355,8 @@ def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
     values = [evaluate(it, operand, env) for operand in node.operands]
     result: Value = True
     for i, operator in enumerate(node.operators):
-        pair = compare(
-            it, operator, values[i], values[i + 1], node, env, node.operands[i], node.operands[i + 1]
-        )
+        sides = node.operands[i : i + 2]
+        pair = compare(it, operator, values[i], values[i + 1], node, env, *sides)
         result = conjunction(it, "and", result, pair, node)
     return result
 

@@ -1,22 +1,24 @@
-"""The built-in functions: arithmetic that AIDL cannot express, marks of exactness, measurements."""
+"""The built-in functions: arithmetic that AIDL cannot express, marks of exactness, measurements, colours."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 
-from aidl_lang.building import colors, copies, lists, patterns, shapes, tracing
+from aidl_lang.building import coerce, copies, patterns
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
-from aidl_lang.building.coerce import as_point, as_written, constant, numeric
+from aidl_lang.building.coerce import as_point, as_written, constant, look, numeric
 from aidl_lang.building.conditions import compare_numbers
+from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.lettering import ink
-from aidl_lang.building.letters_along import lettered
 from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
-from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
+from aidl_lang.building.patterns import lettered
+from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -33,8 +35,131 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
+from aidl_lang.common.colors import css_color, rgb, similar_colors
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import find, nearest
+from aidl_lang.common.prose import did_you_mean
+from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+# --- Questions about shapes that the library cannot answer in AIDL: sizes, corners, a way to refuse.
+
+_NONE = ListVal(())
+
+
+def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the lengths among a compound shape's parameters, in their order; none for anything else."""
+    shape = a["of"]
+    if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
+        return _NONE
+    found = (shape.scope.values.get(name) for name in shape.arguments)
+    return ListVal(tuple(v for v in found if isinstance(v, Num) and v.dimension == LENGTH))
+
+
+def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the corners of a shape of straight edges, in order, if it is convex as written; none otherwise.
+
+    Corners that were given one by one may become something else while solving, so they do not count.
+    """
+    shape = a["of"]
+    if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
+        return _NONE
+    edges = [part for part in shape.primitives() if part.type != "point"]
+    given_one_by_one = any(isinstance(shape.scope.values.get(n), ListVal) for n in shape.arguments)
+    if given_one_by_one or any(edge.type != "line" for edge in edges):
+        return _NONE
+    starts, ends = ([look(it, edge, node, env)[name] for edge in edges] for name in ("start", "end"))
+    at = [_at(p) for p in starts]
+    closed = all(
+        math.dist(_at(p), q) < 1e-9 * math.dist(at[0], q) + 1e-9 for p, q in zip(ends, _next(at), strict=True)
+    )
+    return ListVal(tuple(starts)) if closed and _is_convex(at) else _NONE
+
+
+def _at(point: Value) -> tuple[float, float]:
+    assert isinstance(point, PointVal)
+    return point.x.value, point.y.value
+
+
+def _is_convex(corners: Sequence[tuple[float, float]]) -> bool:
+    """Tells whether all corners turn to the same side, and together once around."""
+    ways = [(q[0] - p[0], q[1] - p[1]) for p, q in zip(corners, _next(corners), strict=True)]
+    turns = [
+        math.atan2(v[0] * w[1] - v[1] * w[0], v[0] * w[0] + v[1] * w[1])
+        for v, w in zip(ways, _next(ways), strict=True)
+    ]
+    return len(turns) > 2 and abs(abs(sum(turns)) - math.tau) < 1e-6 and (min(turns) > 0 or max(turns) < 0)
+
+
+def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
+    return [*items[1:], *items[:1]]
+
+
+def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Reports that a definition of the library makes no sense of its arguments."""
+    why = a["why"]
+    assert isinstance(why, TextVal)
+    it.refuse(node, why.value)
+    return NOTHING
+
+
+# --- Colours while building: whether values are one, and the functions that AIDL's own are made of.
+
+
+def color_of(it: Interpreter, values: Sequence[Value], node: ast.Node) -> str | None:
+    """Returns the colour that values stand for, as SVG understands it; None after an error."""
+    plain: list[str | float] = []
+    for value in values:
+        if isinstance(value, Num):
+            known = constant(it, value, node, "a colour")
+            if known is None:
+                return None
+            plain.append(known)
+        else:
+            plain.append(_text(value))
+    color = css_color(plain)
+    if color is None:
+        _unknown(it, plain, node)
+    return color
+
+
+def _text(value: Value) -> str:
+    match value:
+        case TextVal(text):
+            return text
+        case bool():
+            return str(value).lower()
+        case _:
+            return kind_of(value)
+
+
+def _unknown(it: Interpreter, values: Sequence[str | float], node: ast.Node) -> None:
+    written = ", ".join(v if isinstance(v, str) else f"{v:g}" for v in values) or "nothing"
+    similar = similar_colors(written) if len(values) == 1 else []
+    hints = [*did_you_mean(similar), "a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
+    if written.startswith(("rgba(", "hsla(")) or re.fullmatch(r"#(?:[0-9a-fA-F]{4}){1,2}", written):
+        hints.append("what shows through a thing is told beside its colour: `@opacity(0.5)`")
+    fix = _respelt(it.place(node), written, similar[0]) if similar else None
+    it.report("E0525", f"`{written}` is no colour", node, hints=hints, fix=fix)
+
+
+def _respelt(span: Span | None, written: str, meant: str) -> Fix | None:
+    """Returns the fix that writes another name for the one word of a place; None if it is not there once."""
+    found = list(re.finditer(rf"(?<![\w-]){re.escape(written)}(?![\w-])", span.text)) if span else []
+    if span is None or len(found) != 1:
+        return None
+    place = Span(span.source, span.start + found[0].start(), span.start + found[0].end())
+    return Fix(f"write `{meant}`", (Edit(place, meant),))
+
+
+def _rgb(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    color = color_of(it, list(a.values()), node)
+    return TextVal(color) if color is not None else NOTHING
+
+
+def _channels(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    color = color_of(it, [a["color"]], node)
+    return ListVal(tuple(number(float(part), PLAIN) for part in rgb(color))) if color is not None else NOTHING
 
 
 def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
@@ -182,7 +307,7 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         case TextVal(text):
             return number(float(len(text)))
         case RangeVal():
-            items = lists.run(it, values, node)
+            items = coerce.run(it, values, node)
         case _:
             items = members(values)
             if items is None:
@@ -192,13 +317,10 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns a word, checked to be one of those that are allowed."""
     word = a["word"]
-    words = [w.value for w in members(a["words"]) or () if isinstance(w, TextVal)]
+    words = dict.fromkeys(w.value for w in members(a["words"]) or () if isinstance(w, TextVal))
     assert isinstance(word, TextVal)
-    meant = find(word.value, dict.fromkeys(words)) or find(
-        _SAME_WORD.get(word.value, ""), dict.fromkeys(words)
-    )
+    meant = find(word.value, words) or find(_SAME_WORD.get(word.value, ""), words)
     if meant is None:
         like = nearest(word.value, words)
         hints = [f'did you mean `"{like[0]}"`?'] if like else []
@@ -220,9 +342,7 @@ def _mark(status: Exactness) -> Function:
             case Num(expression, dimension, _):
                 return Num(expression, dimension, status)
             case PointVal(x, y):
-                return PointVal(
-                    Num(x.expression, x.dimension, status), Num(y.expression, y.dimension, status)
-                )
+                return PointVal(*(Num(c.expression, c.dimension, status) for c in (x, y)))
             case ListVal(items):
                 return ListVal(tuple(map(mark, items)))
             case _:
@@ -242,9 +362,7 @@ def _mark(status: Exactness) -> Function:
 
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the candidate nearest to a value as written, or on request one further off; the choice is part
-    of the report.
-    """
+    """Returns the candidate nearest to a value as written, or if asked one further off, which is reported."""
     value = _num(it, a, "value", node, env)
     candidates = _numbers(it, a, "candidates", node, env)
     if value is None or not candidates:
@@ -339,19 +457,22 @@ FUNCTIONS: dict[str, Function] = {
     "ceil": _rounded(math.ceil),
     "round": _rounded(lambda value: math.floor(value + 0.5)),
     "len": _len,
-    **lists.FUNCTIONS,
+    **coerce.FUNCTIONS,
     "choice": _choice,
-    **colors.FUNCTIONS,
+    "rgb": _rgb,
+    "channels": _channels,
     "ink": ink,
     "lettered": lettered,
-    "traced_part": tracing.part,
+    "traced_part": traced_part,
     "fixed": _mark(Exactness.FIXED),
     "guess": _mark(Exactness.GUESS),
     "written": lambda it, a, node, env: as_written(a["value"]),
     "nearest": _nearest,
     "where": _where,
     "shown": _shown,
-    **shapes.FUNCTIONS,
+    "sizes": _sizes,
+    "convex_corners": _convex_corners,
+    "refuse": _refuse,
     **OPERATIONS,
     **copies.FUNCTIONS,
     **patterns.FUNCTIONS,

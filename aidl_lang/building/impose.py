@@ -1,17 +1,17 @@
-"""The step from a condition that an author states to a constraint of the model."""
+"""The step from what an author states (constraints, preferences, assertions, dimensions) to the model."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.arithmetic import compared, differences, givens, sides
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
-from aidl_lang.building.by_hand import is_by_hand, record_dimension
-from aidl_lang.building.coerce import as_point
+from aidl_lang.building.calls import hoist_values
+from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
-from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.curves import defining
+from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
@@ -22,9 +22,8 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.primitives import defining
-from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.turning import ask_to_turn
+from aidl_lang.building.motion import ask_to_turn
+from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.values import (
     Array,
     ListVal,
@@ -38,12 +37,88 @@ from aidl_lang.building.values import (
     number,
     type_of,
 )
-from aidl_lang.building.wording import Read, Wording
+from aidl_lang.building.wording import Read, Wording, compared, differences, givens, rounding, sides
 from aidl_lang.checking import rules
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.materials import is_fit
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
+
+# --- Dimensions that the program asks for: `dimension(a, b, offset: 8)`.
+
+NAME = "dimension"
+OPTIONS = ("offset", "tolerance", "fit")
+LEVEL = frozenset({"left", "right", "center_x", "x"})
+UPRIGHT = frozenset({"bottom", "top", "center_y", "y"})
+
+_MEASURED_ALONE = frozenset({"line", "circle", "arc"})
+
+
+def is_by_hand(it: Interpreter, node: ast.Call) -> bool:
+    """Tells whether a call is that of the library's `dimension`."""
+    candidates = it.program.resolution.candidates.get(node, ())
+    return it.spelled(node.callee) == NAME and all(candidate.standard for candidate in candidates)
+
+
+def measured(node: ast.Call) -> list[ast.Expression]:
+    """Returns the things that a dimension measures, as they are written."""
+    receiver = [node.receiver] if node.receiver is not None else []
+    return [*receiver, *(a.value for a in node.arguments if a.name is None or a.name.text not in OPTIONS)]
+
+
+def options(node: ast.Call) -> dict[str, ast.Expression]:
+    return {a.name.text: a.value for a in node.arguments if a.name is not None and a.name.text in OPTIONS}
+
+
+def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
+    """Notes a dimension for the drawing; reports one that measures nothing."""
+    if isinstance(evaluate(it, node, env), Nothing):
+        return
+    things = measured(node)
+    values = [evaluate(it, thing, env) for thing in things]
+    reason = next(_reasons(it, things, values), "")
+    if reason:
+        hint = "as in `dimension(body.left, eye.center)`, `dimension(a.x, b.x)` or `dimension(rim)`"
+        it.report("E0590", f"this dimension measures nothing: {reason}", node, hints=[hint])
+        return
+    said = {name: evaluate(it, value, env) for name, value in options(node).items()}
+    fit, tolerance = said.get("fit"), said.get("tolerance")
+    if isinstance(fit, TextVal) and fit.value and not is_fit(fit.value):
+        hint = "holes are H6 to H11, F7, G7, K7, N7, P7 …; shafts h6 to h11, f7, g6, k6, n6, p6 …"
+        it.report("E0590", f"there is no fit `{fit.value}`", options(node)["fit"], hints=[hint])
+    elif isinstance(tolerance, Num) and not tolerance.value >= 0:
+        hint = "`tolerance: 0.1` is written as ±0.1"
+        it.report("E0590", "a tolerance is above 0", options(node)["tolerance"], hints=[hint])
+    else:
+        text, span, turn = it.said(node, env)
+        wording = Wording(node, it, env, evaluate)
+        it.by_hand.append(Constraint(env.here, (), text, span, None, turn, wording))
+
+
+def axis_of(node: ast.Expression, value: Value) -> int | None:
+    """Returns the axis along which something is a coordinate; None for a place in the plane."""
+    if isinstance(value, Num) and isinstance(node, ast.Member):
+        name = fold(node.name.text)
+        return next((k for k, names in enumerate((LEVEL, UPRIGHT)) if name in set(map(fold, names))), None)
+    return None
+
+
+def _reasons(it: Interpreter, things: list[ast.Expression], values: list[Value]) -> Iterator[str]:
+    for thing, value in zip(things, values, strict=True):
+        is_coordinate = axis_of(thing, value) is not None
+        if not is_coordinate and not isinstance(value, PointVal | Geometry | Structure | Box):
+            yield f"`{thing.span.one_line}` is no part of the drawing"
+    axes = [axis_of(thing, value) for thing, value in zip(things, values, strict=True)]
+    if len(set(axes) - {None}) > 1:
+        yield "one end is a place from left to right, the other one a place from bottom to top"
+    if len(things) == 1:
+        (value,) = values
+        if not isinstance(value, Geometry) or value.type not in _MEASURED_ALONE:
+            yield f"`{things[0].span.one_line}` alone is no line, circle or arc"
+
+
+# --- The step from a condition that an author states to a constraint of the model.
 
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
@@ -68,8 +143,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         case True:
             return
         case False:
-            if weight is None:
-                _never(it, node, env)
+            _never(it, node, env, weight)
         case Condition():
             _impose_condition(it, value, node, env, weight)
         case Geometry():
@@ -114,28 +188,29 @@ def _turn(env: Env) -> str:
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
-def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
+def _never(it: Interpreter, node: ast.Expression, env: Env, weight: float | None) -> None:
+    """Reports a condition, or a wish, over constants that is false."""
     if any(part in it.watched for part in ast.walk(node)):
         return  # reported as a breach of validity, and read with values as written
     shape = _library_shape(it, node, env)
     wording = Wording(node, it, env, _read)
-    if _refuses_measured(it, compared(wording), node):
+    found = compared(wording)
+    if _refuses_measured(it, found, node):
         return
     false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
     values = f", {both}" if both else ""
     places = () if shape is not None else givens(wording)
     change = "one of these, or what is stated" if places else "what it speaks of, or leave it out"
-    hints = [f"nothing in it moves: change {change}"]
-    if any(isinstance(part, ast.Member) for part in ast.walk(node)):
+    near = [h for c in found if c.relation == "==" for h in rounding(c.left.value, c.right.value)]
+    hints = near or [f"nothing in it moves: change {change}"]
+    wish = "" if weight is None else "the wish "
+    if not near and any(isinstance(part, ast.Member) for part in ast.walk(node)):
         hints.append("a size that shall move is written as a first guess, as in `radius: guess(5)`")
-    it.report(
-        "E0513",
-        f"`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}",
-        shape.span if shape is not None else node,
-        label="; ".join(false) or "false as written",
-        hints=hints,
-        secondary=places,
-    )
+    code = "E0513" if weight is None else "N0605"
+    message = f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}"
+    place = shape.span if shape is not None else node
+    label = "; ".join(false) or "false as written"
+    it.report(code, message, place, label=label, hints=hints, secondary=places)
 
 
 def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
@@ -187,7 +262,7 @@ def _impose_condition(
             _state_constants(it, node, env, _read)
             return
         if part is False:
-            _never(it, node, env)
+            _never(it, node, env, weight)
             return
         if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
             word = part.operator if isinstance(part, Condition) else part.relation
@@ -278,13 +353,11 @@ def _is_angle(node: ast.Node) -> bool:
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
     """Returns a geometry in the boxes of comparisons that is derived of some outside of their structure."""
     spoken_of = {s for c in comparisons for s in c.boxes}
-    return next(
-        (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
-    )
+    outside = (g for g in it.following if not g.bound_to.is_within(here))
+    return next((g for g in outside if spoken_of & _boxes_of(g)), None)
 
 
 def _boxes_of(g: Geometry) -> set[Structure]:
-    """Returns the structures whose boxes a geometry is in."""
     around: set[Structure] = set()
     structure = None if g.construction else g.owner
     while structure is not None:
@@ -357,9 +430,6 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
     it.assertions.append(Assertion(env.here, value, told, *said, shape, wording))
 
 
-# --- constrain fixed(x) ----------------------------------------------------------------------------
-
-
 def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
     """Returns the condition of `constrain fixed(x)`: x stays as written, in the frame of the holder."""
     arguments = [node.receiver] if node.receiver is not None else []
@@ -398,3 +468,56 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
                 yield from _numbers(it, item, node, env)
         case Box():
             yield from (Num(value.side(s), LENGTH) for s in SIDES)
+
+
+# --- Constraints, preferences and assertions, read when the structure that holds them is whole.
+
+
+def read_constraint(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+    match node:
+        case ast.Constrain(items=items):
+            _read_items(it, items.statements, scope, here)
+        case ast.ExpressionStatement(value=value):
+            impose(it, value, Env(scope, here, Reach.SUBTREE))
+        case ast.Prefer():
+            _prefer(it, node, scope, here)
+        case ast.Assert():
+            record_assertion(it, node, Env(scope, here, Reach.READ))
+
+
+def _prefer(it: Interpreter, node: ast.Prefer, scope: Scope, here: Structure) -> None:
+    env = Env(scope, here, Reach.SUBTREE)
+    weight = 1.0
+    if node.weight is not None:
+        found = numeric(it, evaluate(it, node.weight, env), node.weight, env)
+        if found is not None and found.expression.is_constant:
+            weight = found.value
+        if not weight > 0:
+            it.report("E0511", f"a weight must be more than 0, and this is {weight:g}", node.weight)
+            return
+    impose(it, node.value, env, weight)
+
+
+def _read_items(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
+    env = Env(scope, here, Reach.SUBTREE)
+    hoist_values(scope, statements, here)
+    for node in statements:
+        match node:
+            case ast.For():
+                for item in iterate(it, node.iterable, env) or ():
+                    it.count_turn(node)
+                    turn = turn_scope(it, scope, node.variables, item, node)
+                    _read_items(it, node.body.statements, turn, here)
+            case ast.If():
+                test = evaluate(it, node.test, env)
+                if not isinstance(test, Nothing):
+                    chosen = node.then if truth(it, test, node.test) else node.otherwise
+                    _read_items(it, chosen.statements if chosen else (), scope, here)
+            case ast.Equation():
+                it.report("N0501", "`=` inside `constrain` is read as `==`", node)
+                if node not in it.program.rejected:
+                    impose(it, node.meant, env)
+            case ast.Assign():
+                scope.values[node.name.text] = LetBinding(node.value, scope)
+            case _:
+                read_constraint(it, node, scope, here)

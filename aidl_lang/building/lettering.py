@@ -1,23 +1,105 @@
-"""Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` measures it.
-
-A text is a single primitive: its place, height and angle are solved for, its curves follow when the solution
-is read out. Dozens of letters then cost the solver no more than one circle.
-"""
+"""Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` measures it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 
-from aidl_lang.building import fonts
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Arguments, Env, Interpreter
 from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
-from aidl_lang.common.font_files import FontError
-from aidl_lang.common.lettering import Glyph
+from aidl_lang.common.font_files import SUFFIXES, FontError
+from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
+from aidl_lang.common.world import FileError, ReadFailure, relative_to
 from aidl_lang.syntax import ast
+
+# --- The font that a text names: one that ships with the package, or a file beside the program.
+#
+# Paths follow the rules of imports: relative to the file in which the text is written, and inside the
+# project.
+
+PLAIN_FONT, SINGLE_LINE = "DejaVu Sans", "single line"
+"""The names of the fonts that ship with the package."""
+
+
+class NoFontError(Exception):
+    """Raised for a font that there is not, with a diagnostic's code, message and hints."""
+
+    def __init__(self, code: str, message: str, *hints: str) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.hints = list(hints)
+
+
+def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
+    """Returns the font of this name, for the text that is being built. Raises NoFontError."""
+    if name == PLAIN_FONT:
+        return lettering.bold_font() if bold else lettering.plain_font()
+    if name == SINGLE_LINE:
+        if bold:
+            raise NoFontError(
+                "E0359",
+                "letters of single lines cannot be bold: they are as wide as the tool",
+                "leave out `bold`, or the font",
+            )
+        return lettering.single_line_font()
+    if PurePosixPath(name).suffix.lower() not in SUFFIXES:
+        raise NoFontError(
+            "E0359",
+            f'there is no font "{name}"',
+            'name a font file beside the program, as in `font: "Lobster.ttf"`',
+            "fonts of this machine are not looked through, as others have other ones",
+            f'`font: "{PLAIN_FONT}"` is what texts have unasked, `font: "{SINGLE_LINE}"` is for engraving',
+        )
+    if bold:
+        raise NoFontError(
+            "E0359",
+            f"`{name}` is one face, and cannot be made bold",
+            "name the file of its bold face, and leave out `bold`",
+        )
+    return _of_file(it, name)
+
+
+def broken(name: str, reason: FontError) -> NoFontError:
+    """Returns what to say of a font file that cannot be drawn with."""
+    again = "get the file anew, or save it anew as .ttf or .otf with a program for fonts"
+    return NoFontError("E0360", f"`{name}` cannot be drawn with: {reason}", again)
+
+
+def _of_file(it: Interpreter, name: str) -> Font:
+    world = it.program.resolution.world
+    if world is None:
+        raise NoFontError("E0359", f"`{name}` cannot be read: only this text is at hand")
+    try:
+        path = relative_to(name, _writer(it))
+        if path not in it.fonts:
+            it.fonts[path] = lettering.font_of(world.read_bytes(path))
+        return it.fonts[path]
+    except FileError as error:
+        hint = "paths are relative to the file that the text is written in"
+        if error.reason is ReadFailure.OUTSIDE:
+            hint = "copy it beside the program: only its own folder and those below it are read"
+        raise NoFontError("E0359", f"`{name}` cannot be read: {error.reason}", hint) from None
+    except FontError as reason:
+        raise broken(name, reason) from None
+
+
+def _writer(it: Interpreter) -> str:
+    authored = (node for node in reversed(it.call_sites) if node.span.source not in it.library_sources)
+    source = next(authored, it.program.main).span.source
+    if source is it.program.main.source:
+        return PurePosixPath(source.name.replace("\\", "/")).name
+    return source.name
+
+
+# --- Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` measures it.
+#
+# A text is a single primitive: its place, height and angle are solved for, its curves follow when the
+# solution is read out. Dozens of letters then cost the solver no more than one circle.
 
 
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
@@ -40,15 +122,15 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     assert isinstance(a["font"], TextVal)
     name = a["font"].value
     try:
-        font = fonts.font(it, name, bold=a["bold"] is True)
+        font = font_of(it, name, bold=a["bold"] is True)
         if unknown := lettering.unknown_characters(text.value, font):
             _report_unknown(it, unknown, node, name)
             return ()
         try:
             glyphs = lettering.typeset(text.value, align.value, apart, font)
         except FontError as reason:
-            raise fonts.broken(name, reason) from None
-    except fonts.NoFontError as lack:
+            raise broken(name, reason) from None
+    except NoFontError as lack:
         report_once(it, lack.code, lack.message, node, lack.hints)
         return ()
     if not glyphs:
@@ -67,13 +149,11 @@ _BRIDGE = 0.1
 
 
 def bridge(it: Interpreter, a: Arguments) -> Num | None:
-    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for no bridges, and after an
-    error, reported here.
-    """
+    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for none or an error."""
     stencil, node = a["stencil"], it.call_sites[-1]
     if stencil is False:
         return None
-    if a["font"] == TextVal(fonts.SINGLE_LINE):
+    if a["font"] == TextVal(SINGLE_LINE):
         what = "letters of single lines enclose nothing that a stencil could hold"
         report_once(it, "E0342", what, node, ["leave out `stencil`, or the font"])
         return None
@@ -96,10 +176,9 @@ def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints:
 
 def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node, font: str) -> None:
     names = first_few(list(map(lettering.described, unknown)), 5)
-    instead = [
-        f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
-    ]
-    if font != fonts.PLAIN:
+    others = {c: lettering.replacement(c) for c in unknown[:5]}
+    instead = [f"write `{other}` for `{c}`" for c, other in others.items() if other is not None]
+    if font != PLAIN_FONT:
         report_once(it, "E0350", f"`{font}` has no {names}", node, instead)
         return
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"

@@ -1,12 +1,11 @@
-"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
-
-The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
-frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
-"""
+"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+import operator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,14 +23,98 @@ from aidl_lang.building.model import (
     is_size,
     own_geometry,
 )
-from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.values import Num, PointVal
-from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
 from aidl_lang.solver.problem import constraint_arrays
+
+# --- Places of structures in the frame of the root, in numbers of any kind.
+#
+# `model.convert` does the same with expressions, from any frame to any other. The drawing is wanted in the
+# frame of the root: the numbers that are read off a solution, and those that the solver observes.
+
+N = TypeVar("N")
+
+
+class Arithmetic(Protocol[N]):
+    """The arithmetic of numbers of one kind."""
+
+    def add(self, a: N, b: N, /) -> N: ...
+
+    def sub(self, a: N, b: N, /) -> N: ...
+
+    def mul(self, a: N, b: N, /) -> N: ...
+
+    def neg(self, a: N, /) -> N: ...
+
+
+class _Floats:
+    """The arithmetic of plain numbers."""
+
+    add = staticmethod(operator.add)
+    sub = staticmethod(operator.sub)
+    mul = staticmethod(operator.mul)
+    neg = staticmethod(operator.neg)
+
+
+FLOATS: Arithmetic[float] = _Floats()
+
+
+class _Step(NamedTuple, Generic[N]):
+    """The frame of a structure in its parent's; `turn` is its cosine and sine, None if exactly level."""
+
+    x: N
+    y: N
+    turn: tuple[N, N] | None
+    mirrored: bool
+
+
+@record(frozen=False)
+class Placing(Generic[N]):
+    """A converter of points to the frame of the root; `number` evaluates, `arithmetic` goes on from there."""
+
+    number: Callable[[Expression], N]
+    arithmetic: Arithmetic[N]
+    _ways: dict[Structure, tuple[_Step[N], ...]] = field(default_factory=dict)
+
+    def __call__(self, x: N, y: N, owner: Structure) -> tuple[N, N]:
+        """Returns a point in the frame of `owner`, as the root sees it."""
+        way = self._ways.get(owner)
+        if way is None:
+            way = self._way(owner)
+        if not way:
+            return x, y
+        add, sub, mul = self.arithmetic.add, self.arithmetic.sub, self.arithmetic.mul
+        for step in way:
+            if step.mirrored:
+                x = self.arithmetic.neg(x)
+            if step.turn is not None:
+                c, s = step.turn
+                x, y = sub(mul(c, x), mul(s, y)), add(mul(s, x), mul(c, y))
+            x, y = add(step.x, x), add(step.y, y)
+        return x, y
+
+    def _way(self, s: Structure) -> tuple[_Step[N], ...]:
+        if (known := self._ways.get(s)) is None:
+            known = () if s.parent is None else (self._step(s), *self._way(s.parent))
+            self._ways[s] = known
+        return known
+
+    def _step(self, s: Structure) -> _Step[N]:
+        frame, number, turn = s.frame, self.number, None
+        if not frame.is_level:
+            cosine, sine = frame.cos_sin()
+            turn = number(cosine), number(sine)
+        return _Step(number(frame.x), number(frame.y), turn, frame.mirrored)
+
+
+# --- The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
+#
+# The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
+# a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
 
 _RADIAN = 180.0 / np.pi
 
@@ -129,6 +212,7 @@ class _Lowering:
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            sealed=np.array([self._sealed(u.owner) for u in found], dtype=np.intp),
             thing=_numbered(
                 (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
                 for u in found
@@ -201,14 +285,19 @@ class _Lowering:
             self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
         return self.standing[s]
 
+    def _sealed(self, s: Structure) -> int:
+        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none."""
+        around = chain(s)
+        rigid = (n for n, each in enumerate(around) if each.attributes.get("rigid", (False,)) != (False,))
+        return len(around) - 1 - next(rigid, len(around) - 1)
+
     def _is_rigid(self, s: Structure) -> bool:
         """Tells whether a structure can move and constraints around it name one thing of it at most: its
         place, a side of its box along x and one along y, a point that can move in it, a structure in it.
         """
         named = self.named_things.get(s, set())
-        along = (
-            {thing for thing in named if isinstance(thing, frozenset) and thing & axis} for axis in _SIDES
-        )
+        sides = {thing for thing in named if isinstance(thing, frozenset)}
+        along = ({side for side in sides if side & axis} for axis in _SIDES)
         inside = sum(thing is not None and not isinstance(thing, frozenset) for thing in named)
         movable = (any(u in self.numbers for u in ex.unknowns([at])) for at in (s.frame.x, s.frame.y))
         return inside + max(None in named, *map(len, along)) < 2 and all(movable)
@@ -236,7 +325,6 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        """Returns the number of an expression on the tape."""
         known, make, leaf = self.node_of, self.make, self._leaf
         if root in known:
             return known[root]
@@ -267,7 +355,6 @@ class _Lowering:
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 
     def _observed(self) -> Iterator[Expression]:
-        """Yields the expressions of the numbers that define the drawing."""
         for s, found in self.seen.items():
             for at in found:
                 yield from at
@@ -289,13 +376,12 @@ class _Lowering:
 
     def _constraint(self, constraint: Constraint) -> SolverConstraint:
         rows = tuple(self._row(c) for c in constraint.comparisons)
-        placed = frozenset(
-            self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
-        )
+        placed = {u for c in constraint.comparisons for u in c.placed}
         named = self.named[constraint] if constraint in self.named else self._named(constraint)
         whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
+        numbers = frozenset(self.numbers[u] for u in placed if u in self.numbers)
         return SolverConstraint(
-            self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
+            self.groups[constraint.holder], rows, numbers, constraint.weight, whole, inside
         )
 
     def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
@@ -319,24 +405,19 @@ class _Lowering:
     def _row(self, comparison: Comparison) -> Row:
         tape = self.tape
         left, right = self._node(comparison.left), self._node(comparison.right)
-        scale = self._magnitude(comparison.dimension)
+        length, angle = comparison.dimension or LENGTH
+        scale = float(self.size**length * _RADIAN**angle)  # of a typical residual, for its tolerance
         if comparison.relation == "==":
             difference = tape.sub(left, right)
             if comparison.dimension == ANGLE:
                 # Angles agree modulo a turn: the difference as a direction, smooth except at half a turn.
                 radians = tape.mul(difference, tape.constant(1 / _RADIAN))
-                difference = tape.mul(
-                    tape.atan2(tape.sin(radians), tape.cos(radians)), tape.constant(_RADIAN)
-                )
+                turn = tape.atan2(tape.sin(radians), tape.cos(radians))
+                difference = tape.mul(turn, tape.constant(_RADIAN))
             return Row(difference, Relation.EQUAL, scale)
         if comparison.relation in (">=", ">"):
             left, right = right, left
         return Row(tape.sub(left, right), Relation.AT_MOST, scale)
-
-    def _magnitude(self, dimension: MaybeDimension) -> float:
-        """Returns a typical value of a residual, by which its tolerance is measured."""
-        length, angle = dimension or LENGTH
-        return float(self.size**length * _RADIAN**angle)
 
     def _bounds(self) -> Iterator[Constraint]:
         """Yields the bounds that shapes demand of their numbers and that hold as written, as constraints: no
@@ -387,12 +468,13 @@ def _is_bound(part: Comparison) -> bool:
 
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
-    """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
-    drawings beside parts; but none that stands still, as its place was given in the frame of the root.
+    """Returns the children that belong to the drawing around them: all that lie in a part or in an assembly
+    within another, and in the root holes and drawings beside parts; but none that stands still, as its place
+    was given in the frame of the root.
     """
     frames = [(c, c.frame) for c in parent.children]
     children = [c for c, f in frames if parent.parent or not (f.x.is_constant and f.y.is_constant)]
-    if parent.plan or any(not geometry.construction for geometry in parent.own()):
+    if parent.plan or parent.parent or any(not geometry.construction for geometry in parent.own()):
         return children
     without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.cubics_along import Cubic, way
+from aidl_lang.building.along import Cubic, way
+from aidl_lang.building.curves import clockwise, number, sweep, view, xy
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.building.motion import Place
-from aidl_lang.building.primitives import clockwise, number, sweep, view, xy
 from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 
@@ -147,9 +147,6 @@ def _encloses(outline: Sequence[tuple[float, float]], spot: tuple[float, float])
         ax + (y - ay) / (by - ay) * (bx - ax) > x for (ax, ay), (bx, by) in pairs if (ay > y) != (by > y)
     )
     return sum(crossed) % 2 == 1
-
-
-# --- Pieces ----------------------------------------------------------------------------------------
 
 
 def _sum(*terms: tuple[float, Expression]) -> Expression:

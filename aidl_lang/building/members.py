@@ -5,25 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from aidl_lang.building import boxes, curves, primitives
+from aidl_lang.building import boxes, curves
 from aidl_lang.building.boxes import Box
-from aidl_lang.building.coerce import as_written, may_read
-from aidl_lang.building.lists import entry
-from aidl_lang.building.model import Condition, Geometry, Structure
+from aidl_lang.building.coerce import as_written, entry, may_read
+from aidl_lang.building.conditions import compare_numbers
+from aidl_lang.building.construct import positions, refuses_measure
+from aidl_lang.building.model import Condition, Constraint, Geometry, Structure, convert_point
+from aidl_lang.building.motion import unlock
 from aidl_lang.building.outlines import finish_size
 from aidl_lang.building.params import read_param
-from aidl_lang.building.scopes import (
-    Binding,
+from aidl_lang.building.state import (
     CopiedBinding,
+    Env,
+    Interpreter,
     LetBinding,
+    NameBinding,
     ParamBinding,
     PassedBinding,
+    Reach,
     Scope,
     VarBinding,
 )
-from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.templates import read_passed
-from aidl_lang.building.turning import unlock
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -39,30 +41,123 @@ from aidl_lang.building.values import (
     kind_of,
     members,
 )
+from aidl_lang.checking.binding import MEMBERS
 from aidl_lang.checking.builtins import FINISHES, ROTATION
-from aidl_lang.checking.registry import offered
-from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.types import offered
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.diagnostics import Edit, Fix, Label
 from aidl_lang.common.names import find, fold, nearest
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
 
+# --- Templates: the results of their calls, and their arguments inside.
+#
+# A number argument keeps its status; one that is literal is a single unknown inside the instance. A
+# reference becomes an unknown of every structure that uses it, tied by an equality that the instantiating
+# structure holds.
+
+
+def passed(
+    it: Interpreter, name: str, value: Value, instance: Structure, holder: Structure, node: ast.Node
+) -> Value | PassedBinding:
+    """Returns the binding of an instance's parameter."""
+    if (thing := _drawn(value)) is not None:
+        message = f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}"
+        hint = f"pass one of its points or sizes, or constrain `{instance.name}` from outside"
+        it.report("E0313", message, node, hints=[hint])
+    if isinstance(value, Num | PointVal) or (isinstance(value, ListVal) and _refers(value)):
+        return PassedBinding(name, value, instance, holder, node)
+    return value
+
+
+def _drawn(value: Value) -> Geometry | Structure | None:
+    """Returns a geometry or a structure that a value is, or holds; None if there is none."""
+    if isinstance(value, Geometry | Structure):
+        return value
+    held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()
+    return next((thing for item in held if (thing := _drawn(item)) is not None), None)
+
+
+def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
+    """Returns an argument as the structure that reads it has it."""
+    here = env.here if env.here.is_within(binding.instance) else binding.instance
+    if (known := binding.tied.get(here)) is None:
+        known = binding.tied[here] = _tie(it, binding, here)
+    return known
+
+
+def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
+    match binding.value:
+        case Num(status=Exactness.REFERENCE) as number:
+            refuses_measure(it, number, binding.node.span)
+            made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
+            own = Num(made, number.dimension, Exactness.REFERENCE)
+            _hold_equal(it, binding, [(own, number)])
+            return own
+        case Num(status=Exactness.NUMBER) as number if here is binding.instance:
+            made = it.unknown(
+                number.value, here, binding.name, owner=here, dimension=number.dimension, kept=True, cell=True
+            )
+            it.became(number, made, here, binding.name, number.dimension)
+            return Num(made, number.dimension, Exactness.NUMBER)
+        case PointVal() as point if here is not binding.instance and not _refers(point):
+            return point
+        case PointVal() as point:
+            own_point = _own_point(it, binding, point, here)
+            if _refers(point):
+                outside = convert_point(own_point, here, binding.holder)
+                pairs = [(outside.x, point.x), (outside.y, point.y)]
+                _hold_equal(it, binding, [p for p in pairs if p[1].status is Exactness.REFERENCE])
+            return own_point
+        case ListVal(items):
+            bindings = (replace(binding, name=f"{binding.name}[{i}]", value=v) for i, v in enumerate(items))
+            return ListVal(tuple(_tie(it, b, here) if _refers(b.value) else b.value for b in bindings))
+        case value:
+            return value
+
+
+def _refers(value: Value) -> bool:
+    match value:
+        case Num(status=status):
+            return status is Exactness.REFERENCE
+        case PointVal(x, y):
+            return _refers(x) or _refers(y)
+        case ListVal(items):
+            return any(map(_refers, items))
+        case _:
+            return False
+
+
+def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
+    """Makes a point of the instance where, in its frame, the argument is at the first guesses."""
+    if _refers(point):
+        numbers = as_written(point)
+        assert isinstance(numbers, PointVal)
+        at = as_written(convert_point(numbers, binding.holder, here))
+        assert isinstance(at, PointVal)
+        point = at
+    return positions(it, [point], here, [binding.name], here)[0]
+
+
+def _hold_equal(it: Interpreter, binding: PassedBinding, pairs: list[tuple[Num, Num]]) -> None:
+    conditions = [compare_numbers(it, "==", own, outer, binding.node) for own, outer in pairs]
+    comparisons = tuple(c for m in conditions if isinstance(m, Condition) for c in m.comparisons())
+    span = it.place(binding.node)
+    if comparisons and span is not None:
+        text = f"{binding.instance.name}.{binding.name} == {span.text}"
+        it.add_constraint(Constraint(binding.holder, comparisons, text, span))
+
 
 def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
     test = branch.test.span.one_line
-    it.report(
-        "E0514",
-        f"`{node.text}` was not built, because of `if {test}`",
-        node,
-        label="mentioned here",
-        hints=[f"mention it only where it is built: under the same `if {test}`"],
-        secondary=[Label(branch.test.span, "this branch was not taken")],
-    )
+    message = f"`{node.text}` was not built, because of `if {test}`"
+    hint = f"mention it only where it is built: under the same `if {test}`"
+    other = Label(branch.test.span, "this branch was not taken")
+    it.report("E0514", message, node, label="mentioned here", hints=[hint], secondary=[other])
     return NOTHING
 
 
-def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
+def read(it: Interpreter, binding: NameBinding, node: ast.Node, env: Env) -> Value:
     """Returns the value of a name for the expression that reads it."""
     reader = _READERS.get(type(binding))
     return binding if reader is None else reader(it, binding, node, env)  # type: ignore[return-value]
@@ -137,7 +232,6 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
 
 
 def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
-    """Returns a member; None if there is none of that name."""
     found: Value | None = None
     match value:
         case Nothing():
@@ -211,9 +305,9 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
     if (key := find(name, s.scope.values)) is not None:
         binding = s.scope.values[key]
         value = read(it, binding, node, env)
-        # Points kept as they are (`origin`, an argument) are in the structure's own frame.
-        is_own = isinstance(binding, PointVal | PassedBinding)
-        return primitives.translate(key, value, s, env.here) if is_own else value
+        # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
+        is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
+        return curves.translate(key, value, s, env.here) if is_own else value
     if fold(name) == ROTATION and s.parent is not None:
         return _rotation(it, s, s.parent, node, env)
     box = boxes.box_of(s, env.here)
@@ -221,8 +315,7 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
 
 
 def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
-    """Returns the turn of a structure; a constraint on it lets the structure turn."""
-    turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
+    turn = curves.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
     if not may_read(it, s, node, env):
         return as_written(turn)
     if env.reach is Reach.SUBTREE:
@@ -249,8 +342,8 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     """Returns a part, argument or let of a compound shape: read in its owner's frame, seen from here."""
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
-    value = primitives.translate(key, value, g.owner, env.here)
-    if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
+    value = curves.translate(key, value, g.owner, env.here)
+    if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
             return as_written(value)
         if env.reach is Reach.SUBTREE and isinstance(value, Num) and value.dimension == ANGLE:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
-from aidl_lang.checking.registry import fields_of
+from aidl_lang.checking.types import fields_of
 from aidl_lang.checking.units import MaybeDimension
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.lettering import Glyph, silhouette
@@ -84,7 +84,7 @@ class Frame:
 
 @record(frozen=False, eq=False)
 class Geometry:
-    """A primitive (see `checking.registry`) or a compound shape.
+    """A primitive (see `checking.types`) or a compound shape.
 
     fields     the numbers and points that define a primitive
     scope      names of a compound shape: its parts, arguments and lets (see scopes)
@@ -142,6 +142,11 @@ class Geometry:
     @property
     def is_nameless(self) -> bool:
         return self.name is None and (self.known_as is None or self.known_as.is_nameless)
+
+    @property
+    def is_guide(self) -> bool:
+        """True if it, or what it is a part of, is construction geometry."""
+        return self.construction or (isinstance(self.container, Geometry) and self.container.is_guide)
 
     @property
     def path(self) -> str:
@@ -400,9 +405,6 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
             if outward:
                 angle = ex.add(angle, frame.rotation)
     return angle
-
-
-# --- Conditions and constraints --------------------------------------------------------------------
 
 
 @record(eq=False)

@@ -19,8 +19,7 @@ from aidl_lang.building.model import (
     convert_point,
     reach_of,
 )
-from aidl_lang.building.scopes import Candidate
-from aidl_lang.building.state import Arguments, Env, Function, Interpreter
+from aidl_lang.building.state import Arguments, Candidate, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -60,9 +59,6 @@ _SYNONYMS = {
 }
 
 
-# --- Outlines made of others -------------------------------------------------------------------------
-
-
 def _outline(kind: str, *words: str) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         geometry = Geometry(kind, env.here, it.place(node))
@@ -75,8 +71,12 @@ def _outline(kind: str, *words: str) -> Function:
         if kind == "tiled":
             operands.append(_lattice(it, a, node, env))
         said = {name: _word(it, name, a.get(name), node) for name in words}
-        if None in said.values() or (len(operands) < 2 and kind in ("union", "intersect", "difference")):
-            return _too_few(it, kind, node) if None not in said.values() else NOTHING
+        if None in said.values():
+            return NOTHING
+        if len(operands) < 2 and kind in ("union", "intersect", "difference"):
+            word = node.callee.text
+            it.report("E0337", f"`{word}` takes two outlines or more", node, hints=[f"as in `{word}(a, b)`"])
+            return NOTHING
         if _negative(it, a, node):
             return NOTHING
         it.count_entity(node)
@@ -133,12 +133,6 @@ def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometr
     return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
 
 
-def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
-    name = node.callee.text
-    it.report("E0337", f"`{name}` takes two outlines or more", node, hints=[f"as in `{name}(a, b)`"])
-    return NOTHING
-
-
 def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> str | None:
     allowed = CORNER_WORDS[name]
     if value is None:
@@ -153,7 +147,6 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
 
 
 def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env) -> list[Geometry] | None:
-    """Returns the geometry in an argument; None after an error."""
     found: list[Geometry] = []
     for item in _flat(value):
         if isinstance(item, PointVal) and kind == "hull":
@@ -218,17 +211,12 @@ def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> li
 
 
 def remember(result: Value, name: str, arguments: Arguments) -> None:
-    """Notes the source of an outline that the library makes by an operation: the same exact geometry draws
-    it.
-    """
+    """Notes the source of an outline that the library makes by an operation: the same geometry draws it."""
     if name not in OUTLINES or not isinstance(result, Geometry) or result.recipe or result.name:
         return
     sources = tuple(v for v in arguments.values() if isinstance(v, Geometry))
     numbers = {n: v for n, v in arguments.items() if isinstance(v, Num)}
     result.recipe = Recipe(name, (sources,), numbers, {"corners": "sharp"})
-
-
-# --- Fillets and chamfers ----------------------------------------------------------------------------
 
 
 @record()

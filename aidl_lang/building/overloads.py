@@ -1,21 +1,157 @@
-"""The choice of a definition for a call, among the overloads of its name."""
+"""The choice of a definition for a call, and the roles of its arguments."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from aidl_lang.building.scopes import Candidate, Scope
-from aidl_lang.building.state import Interpreter
-from aidl_lang.building.values import Namespace, TextVal, Value, kind_of, type_of
+from aidl_lang.building.conditions import replace_placed, value_unknowns
+from aidl_lang.building.model import Condition
+from aidl_lang.building.state import Candidate, Env, Interpreter, Scope
+from aidl_lang.building.values import (
+    NOTHING,
+    ListVal,
+    Namespace,
+    Num,
+    PointVal,
+    TextVal,
+    Value,
+    kind_of,
+    members,
+    spliced,
+    type_of,
+)
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CONNECTING, CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
-from aidl_lang.checking.registry import PUBLIC
-from aidl_lang.checking.resolving.cuts import meant
+from aidl_lang.checking.resolving.imports import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.types import ANY, Binding, GivenArgument, Mismatch, Signature, Type, with_article
+from aidl_lang.checking.types import (
+    ANY,
+    PEERS,
+    PUBLIC,
+    ArgumentSource,
+    Binding,
+    BoxType,
+    GeometryType,
+    GivenArgument,
+    Mismatch,
+    PointType,
+    Signature,
+    StructureType,
+    Type,
+    with_article,
+)
+from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
+
+# --- Arguments arranged for a binding: a pair taken apart, two coordinates made one point.
+
+
+def arranged(
+    binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node]
+) -> tuple[Sequence[Value], Sequence[ast.Node]]:
+    """Returns the values that a binding refers to by index, and the text each comes from."""
+    if not binding.sources:
+        return values, nodes
+    return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]
+
+
+def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
+    value = values[source.index]
+    if source.other is not None:
+        x, y = value, values[source.other]
+        if isinstance(x, Num) and isinstance(y, Num):
+            return PointVal(_coordinate(x), _coordinate(y))
+        return NOTHING
+    match value:
+        case PointVal(x, y) if source.part is not None:
+            return (x, y)[source.part]
+        case ListVal(items) if source.part is not None:
+            return items[source.part]
+        case _:
+            return value
+
+
+def _coordinate(value: Num) -> Num:
+    return Num(value.expression, LENGTH, value.status)
+
+
+# --- The roles of a call's arguments: those it places and those it holds.
+#
+# A relation that puts one thing where another is (`above(a, b)`, `centered_in(a, b)`) holds the other. One
+# over equals holds nobody by its place: the parameter type `peer` says so of one thing, and `peers` of a
+# list, in the library as in a program. A list that is given as one counts as equals, too:
+# `align_left(slits)`.
+
+
+def placing(
+    condition: Value,
+    definition: ast.ConstraintDefinition,
+    binding: Binding,
+    values: Sequence[Value],
+    env: Env,
+) -> Value:
+    """Returns the condition of a call with the unknowns it places. The last positional argument is held on
+    the first try and those before it are placed; equals are parties of one rank. A definition that only calls
+    another leaves the choice to that one (`contains` holds its first), unless it gathered the arguments that
+    it passes on.
+    """
+    if not isinstance(condition, Condition):
+        return condition
+    equals = _equals(definition, binding, values)
+    if equals:
+        parties = tuple(frozenset(value_unknowns(value, env.here)) for value in equals)
+        every = frozenset().union(*parties)
+        return replace_placed(condition, every, () if _is_given_a_place(definition, binding) else parties)
+    positional = [values[i] for i in binding.positional]
+    if _delegates(definition) and not (binding.gathered and len(positional) > 1):
+        return condition
+    if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
+        positional.pop()  # the value that a measure is set to
+    flat = [item for value in positional for item in spliced(value)] if binding.gathered else positional
+    placed = flat[:-1] if len(flat) > 1 else flat
+    unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))
+    return replace_placed(condition, unknowns) if unknowns else condition
+
+
+def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
+    """Returns the things of one rank in a call, in the order of its arguments; none if it holds one."""
+    given = binding.arguments
+    declared = [
+        values[i]
+        for parameter in definition.parameters
+        if parameter.type is not None and fold(parameter.type.text) in PEERS
+        for i in given.get(parameter.name.text, ())
+    ]
+    if not declared and binding.signature.gathers and len(binding.positional) == 1:
+        (only,) = given.get(binding.signature.parameters[0][0], (None,))
+        declared = [values[only]] if only is not None and members(values[only]) is not None else []
+    return [item for value in declared for item in spliced(value)]
+
+
+def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) -> bool:
+    """Tells whether another thing decides the place of a list, as in `spread(list, inside: box)`: then all
+    are placed and there is no anchor among them.
+    """
+    related = {name for name, kind, _ in binding.taken if isinstance(kind, _PLACES)}
+    word = definition.parameters[0].type
+    return word is not None and fold(word.text) == "peers" and bool(related)
+
+
+_PLACES = BoxType | PointType | GeometryType | StructureType
+
+
+def _delegates(definition: ast.ConstraintDefinition) -> bool:
+    """Tells whether a definition consists of one call, which then decides."""
+    match definition.body.statements:
+        case (ast.ExpressionStatement(value=ast.Call()),):
+            return True
+        case _:
+            return False
+
+
+# --- The choice of a definition for a call, among the overloads of its name.
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
 _DRAWING = PATTERNS.union(PUBLIC)
@@ -40,7 +176,8 @@ class CallSite:
         self.signatures = signatures
         self.nodes = tuple(a.value for a in node.arguments)
         words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
-        self.doubtful = [i for i in words if _is_declared(names.get(self.nodes[i]))]
+        known = {i: names.get(self.nodes[i]) for i in words}
+        self.doubtful = [i for i, s in known.items() if s is not None and s.kind is not SymbolKind.WORD]
         self.written = tuple(
             (n, TextVal(n.span.text) if i in words and i not in self.doubtful else None)
             for i, n in enumerate(self.nodes)
@@ -85,10 +222,6 @@ class CallSite:
             if isinstance(other := self.meaning(worded), Binding):
                 return other, worded
         return chosen, values
-
-
-def _is_declared(symbol: Symbol | None) -> bool:
-    return symbol is not None and symbol.kind is not SymbolKind.WORD
 
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> CallSite:
@@ -142,10 +275,8 @@ def no_overload(
     if it.place(node) is not node.span:
         # An error in the library on a pair of things is reported at the author's call, in the author's words.
         things = [v for v in values if not isinstance(v, TextVal | bool)]
-        pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
-        known = dict.fromkeys(
-            " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds
-        )
+        pairs = [[of for _, of, _ in m.signature.parameters] for m in misses]
+        known = dict.fromkeys(" and ".join(map(with_article, of[:2])) for of in pairs if ANY not in of)
         hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
         it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
         return

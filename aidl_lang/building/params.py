@@ -8,8 +8,7 @@ import re
 from aidl_lang.building import expression as ex
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.model import Knob, Structure
-from aidl_lang.building.scopes import ParamBinding
-from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.state import Env, Interpreter, ParamBinding, Reach
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,

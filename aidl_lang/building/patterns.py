@@ -1,43 +1,51 @@
-"""`linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a curve.
-
-They are built in because they make structures, which no definition of the language can do. A template is
-instantiated once; the other members are copies over the same unknowns.
-"""
+"""Many of a thing, laid out by a pitch, a radius or a curve, and texts along curves."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from itertools import product
+from itertools import pairwise, product
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import FREE_KINDS, KINDS, Way, way_along
+from aidl_lang.building.along import FREE_KINDS, KINDS, Way, reading_way, way_along, within
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
+from aidl_lang.building.curves import defining, xy
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure
+from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
+from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
-from aidl_lang.building.primitives import defining, xy
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     Instantiation,
+    ListVal,
     Nothing,
     Num,
     Pattern,
     PointVal,
     StructureCopy,
+    TextVal,
     Value,
     kind_of,
+    length,
     number,
     point,
     spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common import lettering
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
+
+# --- `linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a
+# curve.
+#
+# They are built in because they make structures, which no definition of the language can do. A template is
+# instantiated once; the other members are copies over the same unknowns.
 
 Index = tuple[int, ...]
 
@@ -119,6 +127,11 @@ class _Call:
                     unknown.exact = True
         return NOWHERE
 
+    def is_without_place(self, centre: Place) -> bool:
+        """True for a shape without a name that lies around the origin: one that was given no place."""
+        is_nameless = isinstance(self.thing, Geometry) and self.thing.name is None
+        return is_nameless and not any(c.value for c in centre)
+
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
@@ -145,9 +158,6 @@ def _pattern(lay_out: Callable[[_Call], Value]) -> Function:
         return lay_out(_Call(it, a, node, env, settings))
 
     return function
-
-
-# --- Rows and grids ------------------------------------------------------------------------------
 
 
 def _linear_array(call: _Call) -> Value:
@@ -182,21 +192,24 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
             "leave one of them out",
         )
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
+    back = _total([(ex.constant(-1.0), span)])
     goes_on = call.has_place and "center" not in call.a and "start" not in call.a
     about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
+    first = back if goes_on and call.is_without_place(about) else NOWHERE
     if goes_on:
-        start = about
-    elif "center" in call.a:
-        start = _total([(ex.ONE, call.position("center")), (ex.constant(-1.0), span)])
-    else:
+        start = _total([(ex.ONE, about), (ex.ONE, first)])
+    elif "start" in call.a:
         start = call.position("start")
+    else:
+        start = _total([(ex.ONE, call.position("center")), (ex.ONE, back)])
     call.settings.fields.setdefault("start", point(*start))
     call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
 
     def motion(index: Index) -> Motion | None:
         away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
         if goes_on:
-            return Motion(to=away) if any(index) else None
+            moves = first is back or any(index)
+            return Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if moves else None
         return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
 
     return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))
@@ -209,17 +222,13 @@ def _total(parts: Iterable[tuple[Expression, Place]]) -> Place:
     return x, y
 
 
-# --- Circles -------------------------------------------------------------------------------------
-
-
 def _polar_array(call: _Call) -> Value:
     n = call.count("n")
     if n is None:
         return NOTHING
     if "radius" not in call.a and not call.has_place:
-        return call.wrong(
-            "a template is laid out on a circle, whose `radius` is not said", "as in `radius: 20`"
-        )
+        what = "a template is laid out on a circle, whose `radius` is not said"
+        return call.wrong(what, "as in `radius: 20`")
     center = call.position("center")
     start = call.size("start") if "start" in call.a else ex.ZERO
     step = _step(call, n)
@@ -251,46 +260,37 @@ def _step(call: _Call, n: int) -> Expression:
     return ex.div(call.size("sweep"), ex.constant(float(n if is_full else max(n - 1, 1))))
 
 
-# --- Along curves --------------------------------------------------------------------------------
-
-
 def _along(call: _Call) -> Value:
     way = _way(call)
+    off: list[Expression] = []
+    corners: list[Expression] = []
     if way is None:
         return NOTHING
-    inset = call.size("inset") if "inset" in call.a else ex.ZERO
-    length = way.length
-    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
-    if room.value <= 0:
-        return call.wrong(
-            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
-            "ends",
-            "make the `inset` less",
-        )
-    found = _steps(call, room, is_closed=way.is_closed)
-    if found is None:
+    if way.is_closed and "margin" in call.a:
+        margin = call.size("margin")
+        if (inner := within(way, margin)) is None:
+            return call.wrong(
+                "a `margin` is kept within lines, and arcs that go on from them without a corner",
+                "draw a `construction` path where the members are, and go along that",
+            )
+        way, corners, off = inner
+        if any(s.length.value < 1e-9 for s in way.stretches):
+            return call.wrong(f"nothing is left of this outline within {margin.value:g} mm", "make it less")
+    places = _on_corners(call, way, corners) if corners else _evenly(call, way)
+    if places is None:
         return NOTHING
-    n, step = found
-    if n * len(way.stretches) > _MOST_ALONG:
+    if len(places) * len(way.stretches) > _MOST_ALONG:
         call.it.report(
             "E0805",
-            f"{n} members along {len(way.stretches)} curves are too many: their product is at most "
+            f"{len(places)} members along {len(way.stretches)} curves are too many: their product is at most "
             f"{_MOST_ALONG}",
             call.node,
         )
         return NOTHING
-    first = inset
-    if not way.is_closed:
-        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
-        first = ex.add(inset, ex.half(left))
-    call.settings.fields.setdefault("pitch", Num(step, LENGTH))
     turns = call.a.get("turn") is not False
     about = call.centre()
 
-    off: list[Expression] = []
-
-    def motion(i: int) -> Motion:
-        place = ex.add(first, ex.mul(ex.constant(float(i)), step))
+    def motion(place: Expression) -> Motion:
         if way.is_free:
             to, heading, unmet = way.followed(place)
             off.extend(unmet)
@@ -298,10 +298,56 @@ def _along(call: _Call) -> Value:
             to, heading = way.at(place)
         return turned(heading, about, to) if turns else Motion(about, to)
 
-    made = call.laid_out(((i,), motion(i)) for i in range(n))
+    made = call.laid_out(((i,), motion(place)) for i, place in enumerate(places))
     if off := [e for e in off if not e.is_constant]:
         call.check_followed(off)
     return made
+
+
+def _evenly(call: _Call, way: Way) -> list[Expression] | None:
+    """Returns the ways to members that are as far apart everywhere."""
+    name = next((n for n in ("inset", "margin") if n in call.a), None)
+    inset = call.size(name) if name and not (way.is_closed and name == "margin") else ex.ZERO
+    length = way.length
+    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
+    if room.value <= 0:
+        call.wrong(
+            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
+            "ends",
+            "make the `inset` less",
+        )
+        return None
+    found = _steps(call, room, is_closed=way.is_closed)
+    if found is None:
+        return None
+    n, step = found
+    first = inset
+    if not way.is_closed:
+        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
+        first = ex.add(inset, ex.half(left))
+    call.settings.fields.setdefault("pitch", Num(step, LENGTH))
+    return [ex.add(first, ex.mul(ex.constant(float(i)), step)) for i in range(n)]
+
+
+def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Expression] | None:
+    """Returns the ways to members in all corners of a closed way, and evenly between each and the next."""
+    runs = [ex.sub(b, a) for a, b in pairwise([*corners, ex.add(corners[0], way.length)])]
+    found = _steps(call, way.length, is_closed=True)
+    if found is None:
+        return None
+    parts = [1 if "n" in call.a else max(1, round(run.value / found[1].value)) for run in runs]
+    if "n" in call.a and found[0] < len(runs):
+        call.wrong(f"{found[0]} members are fewer than the {len(runs)} corners", "write more, or no `margin`")
+        return None
+    while "n" in call.a and sum(parts) < found[0]:
+        sparse = max(range(len(runs)), key=lambda k: (round(runs[k].value / parts[k], 6), runs[k].value))
+        parts[sparse] += 1
+    places = [
+        ex.add(corner, ex.mul(ex.constant(k / part), run))
+        for corner, run, part in zip(corners, runs, parts, strict=True)
+        for k in range(part)
+    ]
+    return [p if p.value < way.length.value else ex.sub(p, way.length) for p in places]
 
 
 _MOST_ALONG = 20_000
@@ -321,14 +367,12 @@ def _way(call: _Call) -> Way | None:
         return None
     found = way_along(curves, call.env.here) if curves else None
     if found is None:
-        call.wrong(
-            "`along` follows one line, open or closed, and this is none or several", "name one of them"
-        )
+        what = "`along` follows one line, open or closed, and this is none or several"
+        call.wrong(what, "name one of them")
     return found
 
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
-    """Returns the number of members and the way from each to the next."""
     if "n" in call.a:
         n = call.count("n")
         if n is None:
@@ -354,3 +398,77 @@ FUNCTIONS = {
     "grid": _pattern(_grid),
     "polar_array": _pattern(_polar_array),
 }
+
+
+# --- Texts along curves: each character stands upright on the curve, by the middle of its ink.
+#
+# A character is a text of its own whose place and angle are expressions of the curve, so it stays on it
+# wherever the curve is solved to be.
+
+_UPRIGHT = TextVal("upright")
+"""The side of a curve that is not told."""
+
+
+def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
+    given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
+    curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
+    is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
+    inside = a["inside"]
+    if inside != _UPRIGHT and not isinstance(inside, bool):
+        what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
+        hint = "leave it out for the side on which it is upright"
+        report_once(it, "E0516", what, it.call_sites[-1], [hint])
+        return NOTHING
+    side = inside if isinstance(inside, bool) else None
+    way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
+    if way is None:
+        what = with_article(given[0].type) if len(given) == 1 else "no one curve"
+        report_once(
+            it,
+            "E0358",
+            f"a text follows a circle, or an open way of lines and arcs, and this is {what}",
+            it.call_sites[-1],
+            [
+                "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
+                "`construction way = arc(…)`"
+            ],
+        )
+        return NOTHING
+    glyphs, align = typeset(it, a), a["align"]
+    if not glyphs:
+        return NOTHING
+    assert isinstance(align, TextVal)
+    assert isinstance(a["height"], Num)
+    share = 0.5 if way.is_closed else lettering.ALIGNMENTS[align.value]
+    first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
+    height: Expression | None = None
+    reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)
+    for glyph in glyphs:
+        it.count_entity(node)
+        g = Geometry("glyphs", env.here, it.place(node), glyphs=(glyph,), reach=reach)
+        g.filled = is_filled(a, glyphs)
+        if height is None:
+            height = size(it, a["height"], g, "height").expression
+        middle = ex.mul(height, ex.constant((glyph.box[0] + glyph.box[2]) / 2))
+        (x, y), heading = way.at(ex.add(first, middle))
+        cos, sin = ex.cos(heading), ex.sin(heading)
+        start = point(ex.sub(x, ex.mul(middle, cos)), ex.sub(y, ex.mul(middle, sin)))
+        angle = Num(heading, ANGLE, Exactness.REFERENCE)
+        g.fields = {"start": start, "height": length(height), "angle": angle}
+        g.bridge = bridges
+        found.append(g)
+        if reach is not None:
+            it.following.append(g)
+    extent = max(glyph.box[2] for glyph in glyphs) - min(glyph.box[0] for glyph in glyphs)
+    assert height is not None
+    fits = Comparison("<=", ex.mul(height, ex.constant(extent)), way.length, LENGTH)
+    call = it.call_sites[-1]
+    place = it.place(call) or call.span
+    it.assertions.append(
+        Assertion(env.here, Condition("and", (fits,)), None, place.one_line, place, extent=extent)
+    )
+    whole = env.scope.declaring().container
+    if isinstance(whole, Geometry):
+        whole.reach = reach
+    return ListVal(tuple(found))

@@ -1,18 +1,17 @@
-"""The state of one run of a program, and the reach of its expressions."""
+"""The state of one run of a program, the scopes in which it finds names, and the reach of its expressions."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
-from aidl_lang.building.scopes import Scope
 from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, TextVal, Value
 from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
@@ -25,12 +24,166 @@ from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
-    from aidl_lang.building.clipping import StatedClip
-    from aidl_lang.building.derive import Copier
+    from aidl_lang.building.attributes import StatedClip, StatedOrder
+    from aidl_lang.building.copies import Copier
     from aidl_lang.building.overloads import CallSite
-    from aidl_lang.building.scopes import Candidate
-    from aidl_lang.building.stacking import StatedOrder
     from aidl_lang.common.lettering import Font
+
+
+# --- The scopes in which names are found while a program is built: a chain, each with values and callables
+# apart.
+#
+# A value that other code may read in its own frame, or before its line was reached, is kept as a binding and
+# evaluated when it is read.
+
+
+def indexed(name: str, indices: Sequence[int]) -> str:
+    """Returns the name of a member of an array: `dot[3]`."""
+    return name + "".join([f"[{i}]" for i in indices]) if indices else name
+
+
+@record(frozen=False, eq=False)
+class LetBinding:
+    """A name for an expression, evaluated where it is used.
+
+    known  the value, if it is the same everywhere
+    seen   the values for one frame and reach each
+    """
+
+    node: ast.Expression
+    scope: Scope
+    known: Value | None = None
+    seen: dict[object, Value] = field(default_factory=dict)
+    running: bool = False
+
+
+@record(frozen=False, eq=False)
+class ParamBinding:
+    """A knob, evaluated once with the value set from outside."""
+
+    node: ast.Param
+    scope: Scope
+    structure: Structure
+    known: Value | None = None
+    running: bool = False
+
+
+@record(frozen=False, eq=False)
+class VarBinding:
+    """An unknown declared with `var`."""
+
+    value: Value
+    unknown: Unknown
+
+
+@record(frozen=False, eq=False)
+class PassedBinding:
+    """An argument of a template: a number with its status, or a reference that each structure using it gets
+    as an unknown of its own, tied by an equality in `holder`.
+    """
+
+    name: str
+    value: Value
+    instance: Structure
+    holder: Structure
+    node: ast.Node
+    tied: dict[Structure, Value] = field(default_factory=dict)
+
+
+@record(frozen=False, eq=False)
+class CopiedBinding:
+    """A name in a copied shape: its value in the source, as `carry` moves it."""
+
+    name: str
+    binding: NameBinding
+    source: Geometry
+    carry: Callable[[str, Value, Structure], Value]
+
+
+CallEdit: TypeAlias = "Callable[[Binding, dict[str, Value]], dict[str, Value]]"
+NameBinding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding | CopiedBinding"
+
+
+@record(eq=False)
+class Candidate:
+    """A callable and the scope its body sees; `scope` is None for a built-in one."""
+
+    signature: Signature
+    scope: Scope | None
+
+
+@record(frozen=False, eq=False)
+class Scope:
+    """The names of one body while it is run.
+
+    container  the structure or compound shape whose members its declarations become, or None
+    turn       one turn of a `for`: its lets are its own, its other declarations go to the container
+    labels     loop variables of the turns around, for messages
+    unbuilt    names that an `if` did not build, and that `if`
+    """
+
+    parent: Scope | None
+    container: Structure | Geometry | None = None
+    turn: bool = False
+    labels: tuple[str, ...] = ()
+    values: dict[str, NameBinding] = field(default_factory=dict)
+    callables: dict[str, list[Candidate]] = field(default_factory=dict)
+    aliases: dict[str, str] = field(default_factory=dict)
+    unbuilt: dict[str, ast.If] = field(default_factory=dict)
+    supply: Callable[[str], Iterable[Candidate]] | None = None
+    """looks up callables that are kept elsewhere (the library's)"""
+    _candidates: dict[str, list[Candidate]] = field(default_factory=dict, repr=False)
+
+    def chain(self) -> Iterable[Scope]:
+        scope: Scope | None = self
+        while scope is not None:
+            yield scope
+            scope = scope.parent
+
+    def find(self, name: str) -> Scope | None:
+        """Returns the nearest scope that has a value of this name."""
+        scope: Scope | None = self
+        while scope is not None and name not in scope.values:
+            scope = scope.parent
+        return scope
+
+    def declaring(self) -> Scope:
+        """Returns the scope whose container gets the declarations made here."""
+        scope = self
+        while scope.turn and scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def define(self, candidate: Candidate) -> None:
+        """Makes a callable known in this scope, before any scope inside has been searched."""
+        of_name = self.callables.setdefault(candidate.signature.name, [])
+        if all(candidate.signature is not known.signature for known in of_name):
+            of_name.append(candidate)
+            self._candidates.clear()
+
+    def candidates(self, name: str) -> list[Candidate]:
+        """Returns all callables of a name, innermost first; aliases followed. The same list each time."""
+        scope = self
+        while scope.parent is not None and not (scope.callables or scope.aliases):
+            scope = scope.parent
+        if (known := scope._candidates.get(name)) is None:
+            known = scope._candidates[name] = scope._found(name)
+        return known
+
+    def _found(self, name: str) -> list[Candidate]:
+        found: list[Candidate] = []
+        seen: list[str] = []
+        key: str | None = name
+        while key is not None and key not in seen:
+            seen.append(key)
+            alias: str | None = None
+            for scope in self.chain():
+                found += scope.callables.get(key, ())
+                if scope.supply is not None:
+                    found += scope.supply(key)
+                alias = alias or scope.aliases.get(key)
+            key = alias
+        return found
 
 
 _LARGEST_GUESS = 1e12
@@ -128,9 +281,7 @@ class Interpreter:
     copiers: list[Copier] = field(default_factory=list)
     """the makers of the copies, in order"""
     ahead: list[Ahead] = field(default_factory=list)
-    edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(
-        default_factory=dict
-    )
+    edits: dict[ast.Call, CallEdit] = field(default_factory=dict)
     """calls that are run with their arguments changed"""
     edited: set[tuple[ast.Call, tuple[str, ...]]] = field(default_factory=set)
     """edits that were applied, and in which turns of the loops around"""
@@ -255,9 +406,7 @@ class Interpreter:
             self._stop(None, f"this program states more than {self.limits.constraints} constraints")
 
     def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
-        """Tells whether a call may be entered; `leave` ends it. A definition that ran too deep is refused
-        from then on.
-        """
+        """Tells whether a call may be entered; `leave` ends it. What ran too deep is refused from then on."""
         self.check_time(node)
         if definition in self.runaway:
             return False
@@ -304,11 +453,9 @@ class Interpreter:
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
-        made = Unknown(
-            guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied
-        )
-        self.unknowns.append(made)
-        return ex.unknown(made)
+        new = Unknown(guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied)
+        self.unknowns.append(new)
+        return ex.unknown(new)
 
     def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
         """Reports a first guess at which the solver could not begin. Returns another."""

@@ -6,20 +6,26 @@ import math
 from collections.abc import Mapping
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.assignment import Assignment
+from aidl_lang.building.assignment import Assignment, adopt, declare, give_name, index_values
 from aidl_lang.building.attributes import read_own_attributes
-from aidl_lang.building.blocks import declared_names, run_block
+from aidl_lang.building.calls import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import loose_point, refuses_measure
-from aidl_lang.building.declare import adopt, declare, give_name, index_values
-from aidl_lang.building.editing import GeometryPlacement, edited
-from aidl_lang.building.edits import check_edit, edits_on, is_edit
+from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.params import read_param
-from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
-from aidl_lang.building.state import Env, Executor, Interpreter, Reach
+from aidl_lang.building.state import (
+    Env,
+    Executor,
+    Interpreter,
+    LetBinding,
+    ParamBinding,
+    Reach,
+    Scope,
+    VarBinding,
+)
 from aidl_lang.building.structures import build_structure, place_of
 from aidl_lang.building.values import (
     NOTHING,
@@ -160,9 +166,8 @@ def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
     test = evaluate(it, node.test, Env(scope, here, Reach.OWN))
     if isinstance(test, Nothing):
         return
-    taken, left_out = (
-        (node.then, node.otherwise) if truth(it, test, node.test) else (node.otherwise, node.then)
-    )
+    both = (node.then, node.otherwise)
+    taken, left_out = both if truth(it, test, node.test) else both[::-1]
     if left_out is not None:
         scope.unbuilt |= dict.fromkeys(declared_names(left_out), node)
     if taken is not None:

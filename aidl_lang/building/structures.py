@@ -1,29 +1,39 @@
-"""Structures, in place and from templates, with their frames and, if they are empty, their boxes."""
+"""Structures, the root among them: in place and from templates, with frames and boxes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import PurePath
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.attributes import read_attributes
-from aidl_lang.building.blocks import run_block
-from aidl_lang.building.calls import default_of
-from aidl_lang.building.clipping import settle_clips_in
+from aidl_lang.building.attributes import read_attributes, settle_clips_in, settle_order
+from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
 from aidl_lang.building.coerce import as_point, numeric
-from aidl_lang.building.constraints import read_constraint
-from aidl_lang.building.construct import solvable
+from aidl_lang.building.construct import hidden_constraints, solvable
 from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.impose import read_constraint
+from aidl_lang.building.members import passed
 from aidl_lang.building.model import Frame, Geometry, Structure
-from aidl_lang.building.plain_cuts import tell_plain_cuts
-from aidl_lang.building.scopes import Scope, indexed
-from aidl_lang.building.stacking import settle_order
-from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.templates import passed
+from aidl_lang.building.params import read_param, report_unused
+from aidl_lang.building.state import (
+    Candidate,
+    Env,
+    Interpreter,
+    LetBinding,
+    NameBinding,
+    ParamBinding,
+    Reach,
+    Scope,
+    indexed,
+)
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
     Instantiation,
+    Namespace,
     Nothing,
     Num,
     PointVal,
@@ -32,11 +42,85 @@ from aidl_lang.building.values import (
     type_of,
 )
 from aidl_lang.checking import rules
-from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.builtins import CUTS, FINISHES, MATH, ROTATION, SIGNATURES
+from aidl_lang.checking.library import Library
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.drawings import WHOLE
+from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+# --- Ready-made cuts that are written in a hole: there they are circles, without depth or thread.
+
+_CODE = "W0504"
+_LOST = {
+    "depth": "nothing is sunk, and all of it is cut through",
+    "thread": "no drawing sheet tells of its thread",
+}
+"""By attribute of a cut, what is missing where its circle stands alone."""
+_PLACED_IN = ("solid", "assembly")
+"""Kinds of structures in which the name of a cut means a whole hole."""
+
+
+def tell_plain_cuts(it: Interpreter, hole: ast.Structure, scope: Scope, around: str) -> None:
+    """Tells of cuts in a hole that are deep or have a thread where they are placed in a solid. `around`
+    is the kind of the structure that the hole is in.
+    """
+    if hole.span.source in it.library_sources or any(a.name.text in _LOST for a in hole.attributes):
+        return
+    nodes = list(ast.walk(hole.body))
+    inner = [node.span for node in nodes if isinstance(node, ast.Structure)]
+    for statement in nodes:
+        if not isinstance(statement, ast.Assign) or any(map(statement.span.overlaps, inner)):
+            continue
+        for call in ast.walk(statement.value):
+            if not isinstance(call, ast.Call) or it.spelled(call.callee) not in CUTS:
+                continue
+            found = scope.candidates(it.spelled(call.callee))
+            templates = [c.signature.node for c in found if c.signature.standard]
+            placed = next((node for node in templates if isinstance(node, ast.Structure)), None)
+            if placed is not None and found[0].signature.standard:
+                _tell(it, call, hole, placed, _fix(hole, statement, placed) if around in _PLACED_IN else None)
+
+
+def _tell(
+    it: Interpreter, call: ast.Call, hole: ast.Structure, placed: ast.Structure, fix: Fix | None
+) -> None:
+    stated = (node.name.text for node in ast.walk(placed) if isinstance(node, ast.Attribute))
+    said = next((name for name in stated if name in _LOST), None)
+    if said is None or any(d.code == _CODE and d.span == call.span for d in it.diagnostics):
+        return
+    name = hole.name.text
+    hints = (
+        f"in the solid itself it is a whole one: `{name} = {call.callee.text}(…) at (x, y)`, without `hole`",
+        f"or say it of this hole: `@{said}(…) hole {name} {{ … }}`",
+    )
+    message = f"in a `hole`, `{call.callee.text}` is a bare circle: {_LOST[said]}"
+    it.report(_CODE, message, call, hints=hints, fix=fix)
+
+
+def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> Fix | None:
+    """Returns the edit that puts a cut in the place of a hole with nothing else in it; None if something else
+    may be lost, or what is in the hole is named elsewhere, as in `hole.rim`, and the cut has nothing of that
+    name.
+    """
+    source, inside, name = hole.span.source, hole.body.span.text, statement.name.text
+    members = {node.name.text for node in placed.body.statements if isinstance(node, ast.Assign)}
+    is_named = re.search(rf"\.\s*{re.escape(name)}\b", source.text) is not None and name not in members
+    is_alone = inside.strip("{;} \t\n") == statement.span.text.strip("; \t\n")
+    if is_named or not is_alone or not isinstance(statement.value, ast.Call):
+        return None
+    if hole.parameters is not None or hole.placement is not None or hole.attributes:
+        return None
+    head = Span(source, hole.name.span.start, hole.body.span.start).text.strip()
+    made = Span(source, statement.value.span.start, statement.span.end).text.rstrip("; \t\n")
+    title = f"make `{hole.name.text}` a whole one, in place of the hole"
+    return Fix(title, (Edit(hole.span, f"{head} = {made}"),), is_sure=True)
+
+
+# --- Structures, in place and from templates, with their frames and, if they are empty, their boxes.
 
 _PLAN = 10.0
 """Width and height at which the box of an empty structure starts, in mm."""
@@ -225,3 +309,108 @@ def _plan(it: Interpreter, s: Structure) -> None:
         assert isinstance(side.payload, ex.Unknown)
         side.payload.outline = True
     s.plan = (left, bottom, width, height)
+
+
+# --- The main module: its root structure, and what it imports.
+
+
+def run_module(it: Interpreter) -> Structure:
+    """Runs the main module. Returns its root, or an implicit assembly around the statements at file level."""
+    module = it.program.main
+    statements = module.statements
+    scope = _file_scope(it, module, _library_scope(it.program.library), {})
+    roots = [s for s in statements if isinstance(s, ast.Structure) and s.parameters is None]
+    loose = [s for s in statements if not isinstance(s, (*ast.DEFINITIONS, ast.Structure))]
+    if len(roots) == 1 and not loose:
+        it.root = root = Structure("assembly", "", None, None)
+        hoist_values(scope, statements, root)
+        for binding in list(scope.values.values()):
+            if isinstance(binding, ParamBinding):
+                read_param(it, binding, binding.node)
+        root = build_structure(it, roots[0], scope, None, ())
+    else:
+        name = re.sub(r"\W+", "_", PurePath(module.source.name).stem).strip("_") or "model"
+        it.root = root = Structure("assembly", name, None, module.span)
+        root.scope = scope
+        scope.container = root
+        own_names(scope, root)
+        run_block(it, statements, scope, root)
+        finish(it, root)
+        if not roots and not loose and not it.diagnostics:
+            hint = "a drawing needs a structure, as in `solid plate { … }`"
+            it.report("W0501", "this file draws nothing", None, hints=[hint])
+    report_unused(it)
+    for constraint in hidden_constraints(it):
+        it.add_constraint(constraint)
+    return root
+
+
+def _file_scope(
+    it: Interpreter, module: ast.Module, library: Scope, loading: dict[ast.Module, Scope]
+) -> Scope:
+    """Returns the scope of a file: its definitions and what it imports."""
+    if module in loading:
+        return loading[module]
+    scope = loading[module] = Scope(library)
+    hoist_callables(it, scope, module.statements)
+    for statement in module.statements:
+        if isinstance(statement, ast.Import) and (other := it.program.imports.get(statement)) is not None:
+            inner = _file_scope(it, other, library, loading)
+            hoist_values(inner, other.statements, Structure("assembly", "", None, None))
+            _bring_in(scope, inner, statement, is_drawing=other.source in it.program.resolution.drawings)
+    return scope
+
+
+def _bring_in(scope: Scope, inner: Scope, statement: ast.Import, *, is_drawing: bool) -> None:
+    if statement.alias is not None:
+        scope.values[statement.alias.text] = Namespace({**inner.values, "": inner})
+        if is_drawing:
+            scope.callables[statement.alias.text] = inner.callables[WHOLE]
+        return
+    wanted = {name.text for name in statement.names}
+
+    def is_wanted(name: str) -> bool:
+        return not wanted or name in wanted
+
+    for name, binding in inner.values.items():
+        if is_wanted(name):
+            scope.values.setdefault(name, binding)
+    for name, candidates in inner.callables.items():
+        if is_wanted(name):
+            scope.callables.setdefault(name, candidates)
+    for name, target in inner.aliases.items():
+        if is_wanted(name):
+            scope.aliases.setdefault(name, target)
+
+
+def _library_scope(library: Library) -> Scope:
+    """Returns the outermost scope: built-in and library names. Library code sees no names of the program."""
+    scope = Scope(None)
+
+    @cache
+    def supply(name: str) -> list[Candidate]:
+        if name not in library.callables and name not in SIGNATURES:
+            return []
+        found = [Candidate(signature, None) for signature in SIGNATURES.get(name, ())]
+        return found + [Candidate(signature, scope) for signature in library.callables.get(name, ())]
+
+    scope.supply = supply
+    scope.aliases = dict(library.aliases)
+    scope.values = _Constants(library.constants, scope)
+    return scope
+
+
+class _Constants(dict[str, NameBinding]):
+    """The library's constants by name; a program reads few, so each is looked up when it is first read."""
+
+    def __init__(self, constants: Mapping[str, ast.Let], scope: Scope) -> None:
+        super().__init__(dict.fromkeys([*constants, *MATH], NOTHING))
+        self._constants, self._scope = constants, scope
+
+    def __getitem__(self, name: str) -> NameBinding:
+        if super().__getitem__(name) is NOTHING:
+            if name in MATH:
+                self[name] = Namespace({**{key: self[key] for key in self._constants}, "": self._scope})
+            else:
+                self[name] = LetBinding(self._constants[name].value, self._scope)
+        return super().__getitem__(name)

@@ -38,9 +38,7 @@ T = TypeVar("T")
 
 
 class Exactness(IntEnum):
-    """The exactness that a number is meant to have, weakest first; it travels with the value (the exactness
-    table).
-    """
+    """The exactness that a number is meant to have, weakest first; it travels with the value."""
 
     GUESS = 0
     NUMBER = 1
@@ -64,10 +62,8 @@ class Num:
 
     @property
     def is_whole(self) -> bool:
-        value = self.expression.value
-        return (
-            self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
-        )
+        value = self.expression.value  # maybe not a number
+        return self.dimension in (None, PLAIN) and abs(value) < 1e15 and value == int(value)
 
 
 @record(slots=True)
@@ -287,7 +283,6 @@ def type_of(value: Value) -> Type:
 
 @cache
 def _types() -> Mapping[type, Callable[[Any], Type]]:
-    """Returns functions that make the type of a value, by its class."""
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.model import Condition, Geometry, Structure
 

@@ -56,23 +56,22 @@ def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], li
     modules = list(modules)
     for statement, attribute in _attributes(modules):
         if not attribute.arguments:
-            wrong.append(_without_code(attribute))
+            hint = 'write the codes of the notes and warnings: `@allow("N0602", "W0705")`'
+            wrong.append(Diagnostic("E0216", "`@allow` names no code", attribute.span, hints=(hint,)))
         for argument in attribute.arguments:
             value = argument.value
             code = value.value if isinstance(value, ast.String) else value.span.text
             if code in resources.codes() and not code.startswith("E"):
                 is_alone = len(attribute.arguments) == 1
                 may_come = code in _LATER or not (code.startswith(_OF_TEXT) or _is_still(modules))
-                allowed.append(
-                    Allowance(code, statement.span, value.span, attribute.span, is_alone, may_come)
-                )
+                places = statement.span, value.span, attribute.span
+                allowed.append(Allowance(code, *places, is_alone, may_come))
             else:
                 wrong.append(_unknown(code, value.span))
     return tuple(allowed), wrong
 
 
 def _is_still(modules: Iterable[ast.Module]) -> bool:
-    """Tells whether a program has no params."""
     return not any(isinstance(node, ast.Param) for module in modules for node in ast.walk(module))
 
 
@@ -88,30 +87,17 @@ def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.A
                         yield node, attribute
 
 
-def _without_code(attribute: ast.Attribute) -> Diagnostic:
-    return Diagnostic(
-        "E0216",
-        "`@allow` names no code",
-        attribute.span,
-        hints=('write the codes of the notes and warnings: `@allow("N0602", "W0705")`',),
-    )
-
-
 def _unknown(code: str, place: Span) -> Diagnostic:
-    """Returns what is wrong with a code that cannot be allowed."""
     if code in resources.codes():
         message = f"`{code}` is an error, and only notes and warnings can be allowed"
         return Diagnostic("E0216", message, place, hints=(f"mend it: `aidl explain {code}` tells how",))
     codes = resources.codes()
     alike = [c for c in (code.upper(), *resources.near(code.upper())) if c in codes and c[0] != "E"]
     near = sorted(alike, key=lambda c: c[0] != code[:1].upper())[:1]
-    return Diagnostic(
-        "E0216",
-        f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else ""),
-        place,
-        hints=() if near else ("codes stand in brackets in front of a message: `note[N0602]: …`",),
-        fix=Fix(f"write `{near[0]}`", (Edit(place, f'"{near[0]}"'),)) if near else None,
-    )
+    message = f"there is no note or warning `{code}`" + (f"; did you mean `{near[0]}`?" if near else "")
+    hints = () if near else ("codes stand in brackets in front of a message: `note[N0602]: …`",)
+    fix = Fix(f"write `{near[0]}`", (Edit(place, f'"{near[0]}"'),)) if near else None
+    return Diagnostic("E0216", message, place, hints=hints, fix=fix)
 
 
 def audible(found: Iterable[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:
@@ -125,10 +111,7 @@ def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diag
     """
     return [
         Diagnostic(
-            IDLE,
-            f"`@allow` silences nothing: there is no `{each.code}` here",
-            each.place,
-            fix=_without(each),
+            IDLE, f"`@allow` silences nothing: there is no `{each.code}` here", each.place, fix=_without(each)
         )
         for each in allowed
         if not each.may_come and not any(each.covers(d) for d in found)
@@ -136,7 +119,6 @@ def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diag
 
 
 def _without(allowed: Allowance) -> Fix | None:
-    """Returns the fix that removes an attribute of one code."""
     if not allowed.is_alone:
         return None
     text, end = allowed.attribute.source.text, allowed.attribute.end

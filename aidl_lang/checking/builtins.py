@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from aidl_lang.checking.registry import DECLARATIONS, PRIMITIVES
-from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.types import (
     ANY,
+    DECLARATIONS,
     PARAMETER_TYPES,
+    PRIMITIVES,
     BoxType,
     GeometryType,
     ListType,
@@ -71,30 +72,17 @@ STRUCTURE: Mapping[str, Type] = {
 
 PATTERN: Mapping[str, Mapping[str, Type]] = {
     "linear_array": _fields("center start", "pitch", "angle"),
-    "along": _fields("", "pitch inset"),
+    "along": _fields("", "pitch inset margin"),
     "grid": _fields("center start", "pitch pitch_x pitch_y"),
     "polar_array": _fields("center", "radius", "start sweep"),
 }
 """Fields of a pattern, beside its members."""
 
 OUTLINE = frozenset(
-    [
-        "corner",
-        "corners",
-        "segment",
-        "segments",
-        "edge",
-        "edges",
-        "point",
-        "points",
-        "fillet",
-        "chamfer",
-        "outline",
-        "parts",
-        "source",
-        "member",
-        "members",
-    ]
+    (
+        *("corner", "corners", "segment", "segments", "edge", "edges", "point", "points", "fillet"),
+        *("chamfer", "outline", "parts", "source", "member", "members"),
+    )
 )
 """Names that operations give to shapes beside those of their definitions; only the builder knows which."""
 
@@ -207,8 +195,8 @@ linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start:
 linear_array(x, n: integer, by: point, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
 grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
-along(x, curve, n: integer, inset: length?, turn: bool?)
-along(x, curve, pitch: length, inset: length?, turn: bool?)
+along(x, curve, n: integer, inset: length?, turn: bool?, margin: length?)
+along(x, curve, pitch: length, inset: length?, turn: bool?, margin: length?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
@@ -276,7 +264,12 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": "along"}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset({"coil", "spring", "chain", "cord", "hose", "hose_way", "ray_lines"})
+CONNECTING = frozenset(
+    (
+        *("ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire"),
+        *("hose", "hose_way", "ray_lines"),
+    )
+)
 """Curves of the library that follow two points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
@@ -298,19 +291,8 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
-    *(
-        "detached",
-        "note",
-        "stroke",
-        "dash",
-        "opacity",
-        "shade",
-        "edges",
-        "halo",
-        "behind",
-        "in_front",
-        "clip",
-    ),
+    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo"),
+    *("behind", "in_front", "clip"),
     *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""

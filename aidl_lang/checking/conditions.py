@@ -48,15 +48,16 @@ def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]
     """
     uses = infer.resolution.uses
     return {
-        symbol: [(uses[name], name) for node in symbol.nodes for name in _names(node) if name in uses]
+        symbol: [
+            (uses[name], name)
+            for node in symbol.nodes
+            if isinstance(node, ast.Let | ast.Assign | ast.Param)
+            for name in ast.walk(node.value)
+            if isinstance(name, ast.Name) and name in uses
+        ]
         for symbol in infer.resolution.symbols
         if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM) and not symbol.is_array
     }
-
-
-def _names(node: ast.Node) -> Iterator[ast.Name]:
-    if isinstance(node, ast.Let | ast.Assign | ast.Param):
-        yield from (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
 
 
 def _report(infer: Inference, circle: list[Symbol], name: ast.Name) -> None:
@@ -162,24 +163,17 @@ _OPERATIONS = EDITS | FINISHES
 
 def check_operation(infer: Inference, node: ast.Expression) -> bool:
     """Checks the arguments of an operation on geometry. Returns whether the statement is one."""
-    if not isinstance(node, ast.Call):
-        return False
-    if _called(infer, node) not in _OPERATIONS:
+    if not isinstance(node, ast.Call) or infer.called(node) not in _OPERATIONS:
         return False
     infer.fact(node)
     return True
 
 
-def _called(infer: Inference, node: ast.Call) -> str:
-    return infer.resolution.canonical.get(node.callee, node.callee.text)
-
-
 def operation(infer: Inference, node: ast.Expression) -> str | None:
     """Returns the name of the operation that an expression calls; None for anything else."""
-    is_condition = isinstance(infer.fact(node).type, TruthType)
-    if not isinstance(node, ast.Call) or is_condition:
+    if not isinstance(node, ast.Call) or isinstance(infer.fact(node).type, TruthType):
         return None
-    return name if (name := _called(infer, node)) in _OPERATIONS else None
+    return name if (name := infer.called(node)) in _OPERATIONS else None
 
 
 def check_empty(infer: Inference, node: ast.Constrain) -> None:
@@ -213,9 +207,7 @@ def check_item(infer: Inference, node: ast.Expression) -> None:
 
 
 def _turned(infer: Inference, node: ast.Expression) -> str | None:
-    """Returns the equation that `rotate(r, 30)` among constraints is meant to be; None for what has no
-    angle.
-    """
+    """Returns the equation that `rotate(r, 30)` among constraints means; None for what has no angle."""
     given = arguments(infer, node) if isinstance(node, ast.Call) else []
     if len(given) not in (2, 3):
         return None
@@ -240,7 +232,7 @@ def check_condition(infer: Inference, node: ast.Expression, may_make: bool = Tru
         _check_logic(infer, node)
         return
     if isinstance(node, ast.Call):
-        if _called(infer, node) == "fixed":
+        if infer.called(node) == "fixed":
             return  # holds a thing where it was written
         scope = infer.resolution.scopes[infer.homes[-1]]
         if made_by(node, scope) is not SymbolKind.LET:
@@ -258,14 +250,10 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
     name = f"{kind}_{number}"
     start = Span(node.span.source, node.span.start, node.span.start)
     remedy = "give it a name" if may_make else "make it outside `constrain`"
-    infer.report(
-        "E0323",
-        f"this `{kind}` has no name, so nothing could refer to it",
-        node,
-        label="made and lost",
-        hints=[f"{remedy}: `{name} = {shown(node)}`"],
-        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None,
-    )
+    message = f"this `{kind}` has no name, so nothing could refer to it"
+    hint = f"{remedy}: `{name} = {shown(node)}`"
+    fix = Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None
+    infer.report("E0323", message, node, label="made and lost", hints=[hint], fix=fix)
 
 
 def _check_logic(infer: Inference, node: ast.Expression) -> None:
@@ -286,16 +274,10 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
                 Fix("constrain the first of them", (Edit(node.span, left.span.text),)),
             )
         case ast.Unary(operator="not", operand=operand) if infer.fact(node).reads:
-            _cannot(
-                infer,
-                node,
-                "not",
-                f"constrain what shall hold instead; `assert not {shown(operand)}` checks it",
-            )
+            hint = f"constrain what shall hold instead; `assert not {shown(operand)}` checks it"
+            _cannot(infer, node, "not", hint)
         case ast.Comparison(operators=operators) if "!=" in operators and infer.fact(node).reads:
             _cannot(infer, node, "!=", "say on which side, with `<=` or `>=` and a distance, or `assert` it")
-        case _:
-            pass
 
 
 def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:

@@ -327,7 +327,6 @@ _ONE_AT_A_TIME = threading.Lock()  # an inference serves one thread
 
 @lru_cache(maxsize=1024)
 def _alone(library: Library, definition: ast.Node) -> Inference:
-    """Returns an inference for one definition: for it, the library is the program."""
     from aidl_lang.checking.infer import Inference  # it imports this module
     from aidl_lang.checking.resolve import resolve
 

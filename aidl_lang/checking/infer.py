@@ -68,9 +68,7 @@ class Inference:
         secondary: Sequence[Label] = (),
         fix: Fix | None = None,
     ) -> Fact:
-        """Reports a mistake in a program (the library has its own tests). Returns the fact of an unknown
-        result.
-        """
+        """Reports a mistake in a program (the library has tests). Returns the fact of an unknown result."""
         if not self.is_standard(node) and self._errors <= MOST_ERRORS:
             found = Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
             self.diagnostics.append(found)
@@ -84,6 +82,10 @@ class Inference:
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
 
+    def called(self, node: ast.Call) -> str:
+        """Returns the name that a call calls, with aliases resolved."""
+        return self.resolution.canonical.get(node.callee, node.callee.text)
+
     def wants(self, node: ast.Expression, what: str, *allowed: type[Type]) -> Fact:
         """Returns the fact of an expression; reports one that is of none of the types allowed."""
         fact = self.fact(node)
@@ -92,9 +94,7 @@ class Inference:
         return self.misfit(rules.needed(what, fact.type), node)
 
     def known(self, node: ast.Expression, what: str) -> bool:
-        """Reports an expression whose value the solver finds, but which is needed while building. Returns
-        whether it is known.
-        """
+        """Reports an expression needed while building and not known by then. Returns whether it is."""
         if not self.fact(node).reads:
             return True
         self.misfit(rules.unknown_yet(what, shown(node)), node)
@@ -222,7 +222,9 @@ class Inference:
         if isinstance(node.otherwise, ast.Call) and node.otherwise.callee.text == "refuse":
             return then
         if isinstance(then.type, NumberType) and isinstance(otherwise.type, NumberType):
-            return Fact(_loose_number(then.type, otherwise.type), then.reads | otherwise.reads)
+            (one, other), reads = (then.type, otherwise.type), then.reads | otherwise.reads
+            is_alike = one.dimension == other.dimension
+            return Fact(NumberType(one.dimension, one.whole or other.whole) if is_alike else ANY, reads)
         return joined(then, otherwise)
 
     def _index(self, node: ast.Index) -> Fact:
@@ -232,9 +234,10 @@ class Inference:
             return Fact(ANY, fact.reads)
         if isinstance(fact.type, AnyType) and isinstance(self.fact(node.index).type, TextType):
             return Fact(ANY, fact.reads)
-        if isinstance(node.value, ast.Index) and fact.type is ANY and "[" not in _between(node):
+        between = node.span.source.text[node.value.span.end : node.index.span.start]
+        if isinstance(node.value, ast.Index) and fact.type is ANY and "[" not in between:
             return Fact(ANY, fact.reads)  # the rest of `[a, b]`, of which `a` was reported
-        if not isinstance(fact.type, ListType | AnyType) and _begins_line(node):
+        if not isinstance(fact.type, ListType | AnyType) and "\n" in between.partition("[")[0]:
             return self.misfit(rules.list_on_a_line(shown(node.value), fact.type), node)
         self.whole(node.index, "an index")
         match fact.type:
@@ -333,23 +336,5 @@ def _loose(kind: Type) -> Type:
     return NumberType(kind.dimension, whole=kind.dimension is None) if isinstance(kind, NumberType) else kind
 
 
-def _loose_number(x: NumberType, y: NumberType) -> Type:
-    """Returns the common type of two numbers."""
-    if x.dimension == y.dimension:
-        return NumberType(x.dimension, x.whole or y.whole)
-    return ANY
-
-
-def _begins_line(node: ast.Index) -> bool:
-    """Tells whether the `[` of an index stands on a line of its own."""
-    return "\n" in _between(node).partition("[")[0]
-
-
-def _between(node: ast.Index) -> str:
-    """Returns the text between a value and its index."""
-    return node.span.source.text[node.value.span.end : node.index.span.start]
-
-
 def _at(node: ast.Node) -> Span:
-    """Returns the empty span before a node."""
     return Span(node.span.source, node.span.start, node.span.start)

@@ -74,7 +74,6 @@ def _files() -> list[Path]:
 
 
 def _inputs() -> list[Path]:
-    """Returns the files that the data depends on."""
     here = Path(__file__).parents[1]
     code = [here / name for name in ("checking/library.py", "common/source.py", "parser.py")]
     code += sorted((here / "syntax").glob("*.py"))
@@ -165,8 +164,6 @@ def _collect(
                     aliases[name.text] = target.text
                 case ast.Let(name):
                     constants[name.text] = node
-                case _:
-                    pass
     return definitions, aliases, constants
 
 
@@ -179,9 +176,6 @@ def _parse(sources: Sequence[SourceFile]) -> tuple[tuple[ast.Module, ...], tuple
 
     parsed = [parse(source) for source in sources]
     return tuple(p.module for p in parsed), tuple(d for p in parsed for d in p.diagnostics)
-
-
-# --- The library as data -------------------------------------------------------------------------
 
 
 def built() -> bytes:

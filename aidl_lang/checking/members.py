@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins, rules, units
+from aidl_lang.checking.binding import FIELDS, MEMBERS
 from aidl_lang.checking.facts import (
     NOTHING_READ,
     UNKNOWN,
@@ -21,7 +22,6 @@ from aidl_lang.checking.facts import (
 from aidl_lang.checking.resolving.complaints import renamed, respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.rules import a, in_box, shown
-from aidl_lang.checking.synonyms import FIELDS, MEMBERS
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -128,9 +128,8 @@ def _arithmetic(
         if x.dimension in (None, units.PLAIN):
             return Fact(NumberType(x.dimension), reads)
         return Fact(ANY, reads)
-    if (x.dimension is None) != (y.dimension is None) and not _is_plain(
-        node.left if x.dimension is None else node.right
-    ):
+    unclear = node.left if x.dimension is None else node.right
+    if (x.dimension is None) != (y.dimension is None) and not _is_plain(unclear):
         return Fact(ANY, reads)  # a bare param may be a length or a plain number, which only building shows
     combine = units.multiply if op == "*" else units.divide
     return Fact(NumberType(combine(x.dimension, y.dimension), op == "*" and x.whole and y.whole), reads)
@@ -151,9 +150,8 @@ def compare(
     if x.is_any or y.is_any:
         return
     if is_number(x.type) and is_number(y.type):
-        check.same_dimension(
-            check.numeric(left), check.numeric(right), node, f"`{operator}` does not compare"
-        )
+        what = f"`{operator}` does not compare"
+        check.same_dimension(check.numeric(left), check.numeric(right), node, what)
         return
     if is_point(x.type) and is_point(y.type):
         if operator not in ("==", "!="):
@@ -171,10 +169,8 @@ def compare(
 
 
 def membership(check: Inference, node: ast.Membership) -> Fact:
-    value, container = (
-        check.fact(node.value),
-        check.wants(node.container, "a range or a list", RangeType, ListType),
-    )
+    value = check.fact(node.value)
+    container = check.wants(node.container, "a range or a list", RangeType, ListType)
     if isinstance(node.container, ast.Range) and isinstance(container.type, RangeType):
         compare(check, ">=", node.value, node.container.start, node)
         if not isinstance(node.container.end, ast.Number):
@@ -256,12 +252,9 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     if key is None:
         if len(within := _holding(check, scope, node.name.text)) == 1:
             path, at = f"{within[0]}.{node.name.text}", node.name.span
-            return check.report(
-                "E0202",
-                f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`",
-                node.name,
-                fix=Fix(f"write `{path}`", (Edit(at, path),), is_sure=True),
-            )
+            message = f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`"
+            fix = Fix(f"write `{path}`", (Edit(at, path),), is_sure=True)
+            return check.report("E0202", message, node.name, fix=fix)
         return _field(check, base, node, builtins.STRUCTURE, list(scope.values))
     symbol = scope.values[key]
     _means(check, node, symbol)
@@ -281,9 +274,8 @@ def _holding(check: Inference, scope: SymbolScope, name: str) -> list[str]:
         return []
     if builtins.is_box_name(name) or fold(name) in FIELDS:
         return []
-    inner = (
-        (key, symbol.node) for key, symbol in scope.values.items() if isinstance(symbol.node, ast.Structure)
-    )
+    nodes = ((key, symbol.node) for key, symbol in scope.values.items())
+    inner = ((key, node) for key, node in nodes if isinstance(node, ast.Structure))
     return [key for key, node in inner if name in check.resolution.scope_of(node).values]
 
 
@@ -352,34 +344,22 @@ def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
 
 
 def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[str]) -> Fact | None:
-    """Reports `plate.area`, which is a function here, and `c.x` of something with a width. None for other
-    names.
-    """
+    """Reports `plate.area`, a function here, and `c.x` of something with a width. None for other names."""
     name, of = node.name.text, node.value.span.text
     if fold(name) in ("area", "perimeter", "circumference"):
         function = "area" if fold(name) == "area" else "perimeter"
-        return check.report(
-            "E0206",
-            f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`",
-            node.name,
-            fix=Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),), is_sure=True),
-        )
+        message = f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`"
+        fix = Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),), is_sure=True)
+        return check.report("E0206", message, node.name, fix=fix)
     if fold(name) in ("x", "y") and "center" in known and "width" in known:
         side = "left" if fold(name) == "x" else "bottom"
-        return check.report(
-            "E0202",
-            f"`{shown(node.value)}` has no `{name}`: it has a centre and sides",
-            node.name,
-            hints=[f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"],
-            fix=Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),)),
-        )
+        message = f"`{shown(node.value)}` has no `{name}`: it has a centre and sides"
+        hint = f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"
+        fix = Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),))
+        return check.report("E0202", message, node.name, hints=[hint], fix=fix)
     if "rotation" in known and fold(name) in ("angle", "orientation", "tilt", "theta", "rotate"):
-        return check.report(
-            "E0202",
-            f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`",
-            node.name,
-            fix=renamed(node.name, "rotation"),
-        )
+        message = f"`{shown(node.value)}` has no `{name}`: how a structure is turned is its `rotation`"
+        return check.report("E0202", message, node.name, fix=renamed(node.name, "rotation"))
     return None
 
 
@@ -391,11 +371,7 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
     members = f"its members are {first_few(ticked(dict.fromkeys(known)), 8, '')}, …"
     if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
         like, members = [], "its corners are `a`, `b` and `c`, in the order in which they were given"
-    return check.report(
-        "E0202",
-        f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else ""),
-        node.name,
-        label=f"not a member of {what}",
-        hints=() if like else (members,) if known else (),
-        fix=respell(node.name, like),
-    )
+    message = f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else "")
+    label = f"not a member of {what}"
+    hints = () if like else (members,) if known else ()
+    return check.report("E0202", message, node.name, label=label, hints=hints, fix=respell(node.name, like))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.checking.binding import in_order, select
+from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
+from aidl_lang.checking.calls import two_sizes
 from aidl_lang.checking.facts import body_of, is_number, is_point
-from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
 from aidl_lang.checking.rules import shown
-from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
     Binding,
     GeometryType,
@@ -33,13 +32,15 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
 
+Misses: TypeAlias = Sequence[Mismatch]
+
 
 def no_overload(
     check: Inference,
     node: ast.Call,
     nodes: Sequence[ast.Expression],
     given: Sequence[GivenArgument],
-    misses: Sequence[Mismatch],
+    misses: Misses,
 ) -> None:
     if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
         message, fix = called_field(node)
@@ -64,15 +65,11 @@ def no_overload(
     )
 
 
-def _centre(
-    at: ast.Node, given: Sequence[GivenArgument], misses: Sequence[Mismatch], closest: Mismatch
-) -> Fix | None:
+def _centre(at: ast.Node, given: Sequence[GivenArgument], misses: Misses, closest: Mismatch) -> Fix | None:
     """Returns the fix that names the centre of a shape where a point is wanted, if the call fits with it."""
-    if (
-        closest.kinds is None
-        or closest.argument is None
-        or not isinstance(at, ast.Name | ast.Member | ast.Index)
-    ):
+    if closest.kinds is None or closest.argument is None:
+        return None
+    if not isinstance(at, ast.Name | ast.Member | ast.Index):
         return None
     wanted, kind = closest.kinds
     points = [*given]
@@ -94,7 +91,7 @@ def _between_ends(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressi
         rest = nodes[1:]
     else:
         return []
-    match check.resolution.canonical.get(node.callee, node.callee.text):
+    match check.called(node):
         case "angle" if all(is_number(check.fact(each).type) for each in rest[:1]) and len(rest) < 2:
             way = shown(rest[0]) if rest else "angle"
             return [f"to direct one point from another: `{end} == {start} + polar(length, {way})`"]
@@ -126,9 +123,7 @@ def example_of(signature: Signature) -> str | None:
 
 
 def _closeness(miss: Mismatch, given: Sequence[GivenArgument]) -> tuple[int, int, int, int, int]:
-    """Returns how near a candidate comes: named arguments it knows, best by these names, then what is
-    missing.
-    """
+    """Returns how near a candidate comes: named arguments it knows, best by name, then what is missing."""
     names = [g.name for g in given if g.name is not None]
     known = sum(1 for name in names if _knows(miss.signature, name))
     same = sum(1 for name in names if fold(name) in miss.signature.by_fold)
@@ -145,31 +140,21 @@ def _knows(signature: Signature, word: str) -> bool:
     return any(fold(m) in known for m in meanings) or all(p in known for p in pair)
 
 
-def _ambiguous(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
-    """Reports a word, or an argument by its place, that may mean several parameters. Returns whether there is
-    one.
-    """
+def _ambiguous(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+    """Reports a word or a place that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
         return False
     argument = node.arguments[miss.argument - (len(given) - len(node.arguments))]
     word = argument.name or argument.value
     names = " or ".join(ticked(miss.meanings))
-    check.report(
-        "E0344",
-        f"`{shown(word)}` of `{node.callee.text}` could mean {names}",
-        word,
-        label="say which",
-        hints=[f"write `{name}: {shown(argument.value)}`" for name in miss.meanings],
-    )
+    message = f"`{shown(word)}` of `{node.callee.text}` could mean {names}"
+    hints = [f"write `{name}: {shown(argument.value)}`" for name in miss.meanings]
+    check.report("E0344", message, word, label="say which", hints=hints)
     return True
 
 
-def _filled_twice(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
+def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     """Reports arguments without a name that stand for parameters which are named as well: `rectangle(20, 10,
     bottom_center: p)`. Returns whether they would fit by name.
     """
@@ -195,11 +180,9 @@ def _filled_twice(
 
 
 def _loose_coordinates(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
-    """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether there are
-    any.
-    """
+    """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether it did."""
     if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
         return False
     if not all(isinstance(g.type, NumberType) for g in given):
@@ -227,24 +210,16 @@ def _loose_coordinates(
             ]
             texts[i], texts[i + 1] = f"({texts[i]}", f"{texts[i + 1]})"
         call = f"{node.callee.text}({', '.join(texts)})"
-        check.report(
-            "E0346",
-            f"a point is written in parentheses: `{call}`",
-            node.callee,
-            label="takes points, and these are single numbers",
-            hints=_called_as([miss.signature]),
-            fix=Fix("put the coordinates in parentheses", tuple(edits), is_sure=True),
-        )
+        message = f"a point is written in parentheses: `{call}`"
+        label = "takes points, and these are single numbers"
+        fix = Fix("put the coordinates in parentheses", tuple(edits), is_sure=True)
+        check.report("E0346", message, node.callee, label=label, hints=_called_as([miss.signature]), fix=fix)
         return True
     return False
 
 
-def _pair_for_one(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
-    """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether there are
-    any.
-    """
+def _pair_for_one(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+    """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether it did."""
     pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
     if len(given) != len(node.arguments) or len(pairs) != 1:
         return False
@@ -257,14 +232,10 @@ def _pair_for_one(
     takes_two = not is_said and any(sizes <= m.signature.by_fold.keys() for m in misses)
     takes_one = any("size" in m.signature.by_fold for m in misses)
     if takes_two and argument.name is None:
-        check.report(
-            "E0345",
-            f"the first argument of `{node.callee.text}` is its centre; sizes are named: `size: {text}`",
-            argument.value,
-            label="read as a point",
-            hints=_called_as([m.signature for m in misses][:1]),
-            fix=Fix("name it `size`", (Edit(span, "size: "),), is_sure=len(given) == 1),
-        )
+        message = f"the first argument of `{node.callee.text}` is its centre; sizes are named: `size: {text}`"
+        hints = _called_as([m.signature for m in misses][:1])
+        fix = Fix("name it `size`", (Edit(span, "size: "),), is_sure=len(given) == 1)
+        check.report("E0345", message, argument.value, label="read as a point", hints=hints, fix=fix)
     elif takes_one:
         two_sizes(check, node, argument)
     return takes_one or (takes_two and argument.name is None)
@@ -278,10 +249,7 @@ def _may_be_size(argument: ast.Argument) -> bool:
     return argument.name is None or fold(argument.name.text) in ("size", "s", "dimensions", "dims")
 
 
-def _half_or_double(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
-    """Reports a diameter in place of a radius, or the reverse. Returns whether there is one."""
+def _half_or_double(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
     for argument in node.arguments:
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
@@ -296,45 +264,32 @@ def _half_or_double(
             text = text if isinstance(argument.value, ast.Number | ast.Name | ast.Member) else f"({text})"
             value = f"{text} / 2" if wanted == "radius" else f"2 * {text}"
             span = Span(node.span.source, argument.name.span.start, argument.value.span.end)
-            check.report(
-                "E0324",
-                f"`{node.callee.text}` takes a `{wanted}`, not a {other}",
-                argument.name,
-                fix=Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True),
-            )
+            message = f"`{node.callee.text}` takes a `{wanted}`, not a {other}"
+            fix = Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True)
+            check.report("E0324", message, argument.name, fix=fix)
             return True
     return False
 
 
-def _not_together(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
-) -> bool:
-    """Reports named arguments that some overloads know, but none all of them. Returns whether there are
-    any.
-    """
+def _not_together(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+    """Reports named arguments that some overloads know, but none all of them. Returns whether it did."""
     written = [a.name for a in node.arguments if a.name is not None]
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
         return False
     name = node.callee.text
-    check.report(
-        "E0311",
-        f"`{name}` does not take {' and '.join(ticked(n.text for n in written))} together",
-        written[-1],
-        label=f"in this call of `{name}`",
-        hints=_called_as([m.signature for m in misses[:5]]),
-    )
+    message = f"`{name}` does not take {' and '.join(ticked(n.text for n in written))} together"
+    hints = _called_as([m.signature for m in misses[:5]])
+    check.report("E0311", message, written[-1], label=f"in this call of `{name}`", hints=hints)
     return True
 
 
 def _meanings(word: str, names: Sequence[str]) -> list[str]:
-    """Returns the parameters that a synonym may stand for."""
     return [meaning for meaning in PARAMETERS[word] if meaning in names]
 
 
 def _unknown_parameter(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
-    """Reports argument names that no overload knows. Returns whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     free = [name for name in names if fold(name) not in taken]
@@ -378,10 +333,8 @@ def _placed_within(check: Inference, node: ast.Call, identifier: ast.Identifier)
     if k > 0:
         gone = Span(node.span.source, node.arguments[k - 1].span.end, argument.span.end)
     else:
-        after = node.arguments[1:2]
-        gone = Span(
-            node.span.source, argument.span.start, after[0].span.start if after else argument.span.end
-        )
+        end = node.arguments[1].span.start if len(node.arguments) > 1 else argument.span.end
+        gone = Span(node.span.source, argument.span.start, end)
     end = node.span.end
     behind = Span(node.span.source, end, end)
     is_free = not text[end:].lstrip().startswith(("at ", "at("))

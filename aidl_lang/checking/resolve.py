@@ -24,9 +24,15 @@ from aidl_lang.checking.builtins import ATTRIBUTES, WORDED, is_word
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.complaints import ATTRIBUTES_MEANT, without_idle
-from aidl_lang.checking.resolving.cuts import hole_calls, meant, with_placed_cuts
 from aidl_lang.checking.resolving.declare import Declarer, is_definition, made_by
-from aidl_lang.checking.resolving.imports import ImportedModules, load_imports, with_inner_imports
+from aidl_lang.checking.resolving.imports import (
+    ImportedModules,
+    hole_calls,
+    load_imports,
+    meant,
+    with_inner_imports,
+    with_placed_cuts,
+)
 from aidl_lang.checking.resolving.symbols import (
     UNKNOWNS,
     Resolution,
@@ -47,9 +53,7 @@ if TYPE_CHECKING:
 
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
-    """Finds the meaning of every name in a file and in the files it imports. Never raises for what they
-    say.
-    """
+    """Finds the meaning of all names in a file and in those it imports. Never raises for what they say."""
     module, misplaced = with_inner_imports(with_placed_cuts(module))
     loaded = load_imports(module, world)
     main, notes = without_idle(module, loaded.modules)
@@ -153,9 +157,8 @@ class Resolver:
         if isinstance(node, ast.Structure):
             if node.parameters is not None:
                 self._attributes(node.attributes, inner)  # a template's may be its parameters
-            inner.own_name = Symbol(
-                node.name.text, SymbolKind.STRUCTURE, node, scope.owner, [node.name], [node]
-            )
+            kind, name = SymbolKind.STRUCTURE, node.name
+            inner.own_name = Symbol(name.text, kind, node, scope.owner, [name], [node])
         before, self.is_ordered = self.is_ordered, True
         if isinstance(node, ast.FunctionDefinition):
             self.expression(node.value, inner)
@@ -293,13 +296,10 @@ class Resolver:
             for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():
                 value = argument.value
                 # `@orientation(front)`, even if a part has that name
-                is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))
+                symbol = scope.value(value.text) if isinstance(value, ast.Name) else None
+                is_bare = isinstance(value, ast.Name) and (symbol is None or symbol.kind in UNKNOWNS)
                 if not (is_bare and word_meant(other or name, WORDED)):
                     self._unordered(scope, value)
-
-    @staticmethod
-    def _is_constant(symbol: Symbol | None) -> bool:
-        return symbol is not None and symbol.kind not in UNKNOWNS
 
     # --- Expressions ---------------------------------------------------------------------------
 
@@ -330,7 +330,6 @@ class Resolver:
                     self.expression(child, scope)
 
     def _argument_block(self, block: ast.ArgumentBlock, scope: SymbolScope) -> None:
-        """Resolves a block among arguments. The names in it are its own."""
         inner = SymbolScope(block, scope, scope.homes)
         self.resolution.scopes[block] = inner
         lets = [item for item in block.items if isinstance(item, ast.Let)]

@@ -89,9 +89,7 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
             "write its geometry and constraints straight into the first structure, under names of their own",
         ),
         Construct.LOOSE: Restriction(
-            "E0403",
-            f"{_ONE}, and this stands outside `{{name}}`",
-            "write it inside `{name}`",
+            "E0403", f"{_ONE}, and this stands outside `{{name}}`", "write it inside `{name}`"
         ),
         Construct.TEMPLATE: Restriction(
             "E0404",
@@ -137,7 +135,7 @@ FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
             "E0986",
             "`paper` has what the paper on AIDL describes, and `{name}` came later",
             "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain",
-        ),
+        )
     },
 }
 
@@ -227,7 +225,6 @@ class _Walker:
                 stack += ast.children(node)
 
     def _states(self, node: ast.Node) -> bool:
-        """Reports a statement of constraints as a whole. Returns whether it is one."""
         match node:
             case ast.Constrain() | ast.Prefer():
                 return self._report(Construct.CONSTRAINT, node.span)
@@ -239,13 +236,11 @@ class _Walker:
                 return False
 
     def _constrains(self, value: ast.Expression) -> bool:
-        """Tells whether a bare expression is a constraint; a call that no overload fits is judged by its
-        name.
-        """
+        """Tells whether a bare expression is a constraint; a call that fits no overload is judged by name."""
         kind = self._type(value)
         if not isinstance(value, ast.Call):
             return isinstance(kind, TruthType)
-        name = self.infer.resolution.canonical.get(value.callee, value.callee.text)
+        name = self.infer.called(value)
         if name in EDITS | FINISHES:
             return False
         may_be = isinstance(kind, AnyType) and self._may_call(value, ast.ConstraintDefinition)
@@ -270,21 +265,18 @@ class _Walker:
                     Fix("make it a `let`", (Edit(word, "let"),), is_sure=True),
                 )
             case ast.Call(callee=callee):
-                if isinstance(self._type(node), StructureType) and self._may_call(node, ast.Structure):
+                kind = self._type(node)
+                if isinstance(kind, StructureType) and self._may_call(node, ast.Structure):
                     self._report(Construct.TEMPLATE, callee.span, callee.text)
-                elif isinstance(self._type(node), TruthType) and self._may_call(
-                    node, ast.ConstraintDefinition
-                ):
+                elif isinstance(kind, TruthType) and self._may_call(node, ast.ConstraintDefinition):
                     self._report(Construct.RELATION, callee.span, callee.text)
                 self._smooth(node)
-            case _:
-                pass
 
     def _beyond(self, node: ast.Node) -> None:
         """Reports what the paper on AIDL has not: calls of the library, attributes, wishes, assertions."""
         match node:
             case ast.Call(callee=callee):
-                name = self.infer.resolution.canonical.get(callee, callee.text)
+                name = self.infer.called(node)
                 candidates = self.infer.resolution.candidates.get(node, ())
                 is_ours = name in SIGNATURES or any(s.standard for s in candidates)
                 if is_ours and name not in PAPER_NAMES and all(s.standard for s in candidates):
@@ -294,8 +286,6 @@ class _Walker:
             case ast.Prefer() | ast.Assert():
                 word = "prefer" if isinstance(node, ast.Prefer) else "assert"
                 self._report(Construct.BEYOND, node.span, word)
-            case _:
-                pass
 
     def _smooth(self, call: ast.Call) -> None:
         """Reports `smooth: true` on a step of a path, which lets the solver turn it."""
@@ -315,7 +305,6 @@ class _Walker:
         return any(s.kind is kind for s in self.infer.resolution.candidates.get(node, ()))
 
     def _report(self, construct: Construct, span: Span, name: str = "", fix: Fix | None = None) -> bool:
-        """Reports a construct that the variant lacks; false if it has it."""
         if (rule := self.rules.get(construct)) is not None:
             message, hint = (text.replace("{name}", name) for text in (rule.message, rule.hint))
             self.diagnostics.append(Diagnostic(rule.code, message, span, hints=(hint,), fix=fix))

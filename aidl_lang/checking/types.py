@@ -1,27 +1,157 @@
-"""Types, the rules by which a parameter accepts them, and the choice among overloads.
-
-One choice serves the checker, which knows types only, and the interpreter, which takes the types of values.
-"""
+"""Types, the rules by which a parameter accepts them, the choice among overloads, and all primitives."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property, lru_cache
 from typing import TypeAlias
 
-from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension, describe
 from aidl_lang.common import prose
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
+# --- The registry of primitives: a record of each kind of point, curve and text that is built in.
+#
+# The calls of a kind, its fields and their types, which of them are sizes and which turn with the things
+# around, the fields that are shown of one and a sample for trying it: all this is read from here, and
+# written nowhere else. The formulas of a kind stand in `building.curves`.
+
+
+@record()
+class Primitive:
+    """A kind of primitive.
+
+    calls    the parameters of each of its constructors, as in `builtins`
+    fields   its fields: `name: point`, `length` (that may be negative), `size` (that may not), `angle`,
+             `direction` (an angle that turns with the things around), `KIND[]` for a list
+    unlisted fields that messages and completion do not offer, as another says the same
+    chief    the fields to show of one that is pointed at; all if it is empty
+    sample   the text of one at `({x}, {y})`; "" for a kind that the library alone uses
+    """
+
+    kind: str
+    calls: tuple[str, ...]
+    fields: str
+    unlisted: str = ""
+    chief: str = ""
+    sample: str = ""
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The fields that are offered."""
+        return tuple(name for name, _ in _items(self.fields))
+
+    @cached_property
+    def types(self) -> Mapping[str, str]:
+        """The word for the type of each field, unlisted ones included."""
+        return dict([*_items(self.fields), *_items(self.unlisted)])
+
+    @cached_property
+    def shown(self) -> tuple[str, ...]:
+        """The fields to show of one."""
+        return tuple(self.chief.split()) or self.names
+
+
+def _items(fields: str) -> Iterator[tuple[str, str]]:
+    for item in filter(None, fields.split(", ")):
+        name, _, word = item.partition(": ")
+        yield name, word
+
+
+_RECORDS = (
+    Primitive(
+        "point",
+        calls=("x: length, y: length", "at: point"),
+        fields="x: length, y: length",
+        unlisted="at: point, center: point",
+        chief="at",
+        sample="({x}, {y})",
+    ),
+    Primitive(
+        "line",
+        calls=("start: point, end: point", "start: point?, length: length, angle: angle"),
+        fields="start: point, end: point, midpoint: point, length: size, angle: direction, dx: length, "
+        "dy: length",
+        unlisted="center: point",
+        chief="start end length angle",
+        sample="line(({x}, {y}), ({x} + 12, {y} + 3))",
+    ),
+    Primitive(
+        "arc",
+        calls=(
+            "center: point, start: point, end: point, clockwise: bool?",
+            "start: point, end: point, radius: length, large: bool?, clockwise: bool?",
+            "center: point?, radius: length, start_angle: angle, end_angle: angle, clockwise: bool?",
+        ),
+        fields="center: point, start: point, end: point, midpoint: point, radius: size, diameter: size, "
+        "start_angle: direction, end_angle: direction, sweep: angle, length: size",
+        chief="center radius start end sweep",
+        sample="arc(center: ({x}, {y}), radius: 8, start_angle: 20deg, end_angle: 130deg)",
+    ),
+    Primitive(
+        "circle",
+        calls=("center: point?, radius: length", "center: point?, diameter: length"),
+        fields="center: point, radius: size, diameter: size",
+        chief="center radius",
+        sample="circle(center: ({x}, {y}), radius: 6)",
+    ),
+    Primitive(
+        "ellipse",
+        calls=("center: point?, rx: length, ry: length, angle: turn?",),
+        fields="center: point, rx: size, ry: size, angle: direction",
+        sample="ellipse(center: ({x}, {y}), rx: 9, ry: 5)",
+    ),
+    Primitive(
+        "bezier",
+        calls=("p0: point, p1: point, p2: point, p3: point",),
+        fields="p0: point, p1: point, p2: point, p3: point, start: point, end: point",
+        sample="bezier(({x}, {y}), ({x} + 4, {y} + 6), ({x} + 8, {y} - 2), ({x} + 12, {y} + 3))",
+    ),
+    Primitive(
+        "glyphs",
+        calls=(
+            "text: text, start: point, height: length, angle: angle, align: text, line_spacing: number, "
+            "outline: bool, bold: bool, font: text, stencil",
+        ),
+        fields="start: point, height: size, angle: direction, glyph: glyphs[]",
+        chief="start height angle",
+    ),
+    Primitive(
+        "traced",
+        calls=("part: text, start: point, unit: length, angle: angle, filled: bool",),
+        fields="start: point, unit: size, angle: direction",
+    ),
+)
+
+PRIMITIVES: Mapping[str, Primitive] = {each.kind: each for each in _RECORDS}
+
+PUBLIC = tuple(kind for kind, each in PRIMITIVES.items() if each.sample)
+"""The kinds that programs write."""
+
+DECLARATIONS = tuple(f"{kind}({call})" for kind, each in PRIMITIVES.items() for call in each.calls)
+
+
+def fields_of(word: str) -> frozenset[str]:
+    """Returns the names of all fields of a type, by its word."""
+    return frozenset(n for each in PRIMITIVES.values() for n, of in each.types.items() if of == word)
+
+
+def offered(kind: str) -> tuple[str, ...]:
+    """Returns the fields to offer for a kind of primitive; none for a kind that is none."""
+    return PRIMITIVES[kind].names if kind in PRIMITIVES else ()
+
+
+# --- Types, the rules by which a parameter accepts them, and the choice among overloads.
+#
+# One choice serves the checker, which knows types only, and the interpreter, which takes the types of
+# values.
+
 
 @record()
 class AnyType:
-    """The type of a value unknown before the program is built: accepted everywhere, checked again when values
-    are there.
-    """
+    """The type of a value unknown before building: accepted everywhere, checked again when it is there."""
 
     def __str__(self) -> str:
         return "anything"
@@ -83,9 +213,7 @@ class ListType:
 
 @record()
 class GeometryType:
-    """The type of geometry: `kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or ""
-    for any.
-    """
+    """The type of geometry: `kind` is a primitive (`line`, `arc`, …), the name of a shape, or "" for any."""
 
     kind: str
 
@@ -175,9 +303,7 @@ def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
 
 
 def accepts(wanted: Type, given: Type) -> int | None:
-    """Returns how far `given` is from the wanted type: 0 exact, more for a conversion, None if it does not
-    fit.
-    """
+    """Returns how far `given` is from the type: 0 exact, more for a conversion, None if it does not fit."""
     if isinstance(wanted, AnyType):
         return 4
     if isinstance(given, AnyType):
@@ -241,6 +367,13 @@ class GivenArgument:
 
     name: str | None
     type: Type
+
+
+def given_to(call: ast.Call, kinds: Sequence[Type]) -> list[GivenArgument]:
+    """Returns the arguments of a call, of these types; what comes before them, as a receiver, has no name."""
+    names = [a.name.text if a.name else None for a in call.arguments]
+    names = [*[None] * (len(kinds) - len(names)), *names]
+    return [GivenArgument(name, kind) for name, kind in zip(names, kinds, strict=True)]
 
 
 @record(eq=False)
@@ -414,9 +547,7 @@ def _fitted(
     gathered: str | None,
     positional: tuple[int, ...],
 ) -> Binding | Mismatch:
-    """Returns the binding with its distance from the wanted types, or the parameter that gets nothing that
-    fits.
-    """
+    """Returns the binding with its distance from the types, or the parameter that gets nothing that fits."""
     distance, turned, defaulted = (_GATHERED if gathered is not None else 0), 0, 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:

@@ -107,9 +107,7 @@ _LENGTH = re.compile(r"(?P<number>[\d.]+)\s*(?P<unit>[a-z]*)")
 
 
 def size(text: str) -> tuple[float, float]:
-    """Parses width and height in mm: of a paper by its name, or as in `600x400`, `60x40cm`. Raises
-    ValueError.
-    """
+    """Parses width and height in mm: a paper's name, or as in `600x400`, `60x40cm`. Raises ValueError."""
     wanted = text.strip().lower()
     if wanted in PAPERS:
         return PAPERS[wanted]
@@ -132,7 +130,6 @@ def length(text: str) -> float:
 
 
 def _millimetres(number: str, unit: str) -> float:
-    """Returns millimetres; NaN for an invalid length."""
     factor, dimension = UNITS.get(unit or "mm", (math.nan, LENGTH))
     try:
         return float(number) * factor if dimension == LENGTH else math.nan

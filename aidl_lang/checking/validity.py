@@ -24,12 +24,12 @@ from aidl_lang.checking.types import (
     ANY,
     Binding,
     GeometryType,
-    GivenArgument,
     ListType,
     NumberType,
     PointType,
     StructureType,
     Type,
+    given_to,
 )
 from aidl_lang.checking.violations import FarReference, StatementSite, Violation, member_path
 from aidl_lang.syntax import ast
@@ -43,9 +43,7 @@ def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
 
 
 class _Walker:
-    """Collects the breaches in the bodies of structures; the body of a definition is judged where it is
-    called.
-    """
+    """Collects the breaches in the bodies of structures; a definition's body is judged where it is called."""
 
     def __init__(self, infer: Inference) -> None:
         self.infer = infer
@@ -65,9 +63,8 @@ class _Walker:
                 self._assign(node, site)
                 self._placement(node, site)
             case ast.Var(name, value):
-                target = FarReference(
-                    value, (name.text,), is_point=is_point(self.infer.fact(value).type), is_size=False
-                )
+                made_point = is_point(self.infer.fact(value).type)
+                target = FarReference(value, (name.text,), is_point=made_point, is_size=False)
                 self._geometry([target], value, site)
             case ast.For(body=body):
                 self.block(body.statements, site)
@@ -82,8 +79,6 @@ class _Walker:
                     self._constraint(node, items.statements[0], site)
             case ast.ExpressionStatement() | ast.Prefer() | ast.Equation():
                 self._constraint(node, node, site)
-            case _:
-                pass
 
     # --- Rule 1 --------------------------------------------------------------------------------
 
@@ -112,7 +107,7 @@ class _Walker:
     def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: StatementSite) -> None:
         """Checks the arguments of a constructor; those of a template may reach anywhere."""
         fact = self.infer.fact(call)
-        name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
+        name = self.infer.called(call)
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
             return
         reach = name in DERIVING | PATTERNS
@@ -120,17 +115,14 @@ class _Walker:
         derives = (name in DERIVING and not is_point(fact.type)) or connects
         path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
-            is_thing = self._is_thing(node)
-            is_made = isinstance(node, ast.Call) and self._makes_geometry(
-                self.infer.fact(node), node.callee.text
-            )
+            found = self.infer.fact(node)
+            is_thing = not isinstance(found.type, NumberType | PointType)  # to copy, or a line
+            is_made = isinstance(node, ast.Call) and self._makes_geometry(found, node.callee.text)
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
             follows = name in FOLLOWED and self._parameter(call, index)[0] == FOLLOWED[name]
-            if (derives or follows or (reach and is_thing)) and _may_derive(
-                self.infer.fact(node), site.homes
-            ):
+            if (derives or follows or (reach and is_thing)) and _may_derive(found, site.homes):
                 self._order(node, site)
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)
@@ -143,9 +135,8 @@ class _Walker:
             symbol = self.infer.resolution.uses.get(part)
             if symbol is None or symbol.node is None or symbol.kind not in UNKNOWNS or symbol.is_array:
                 continue
-            is_own = (
-                isinstance(part, ast.Name) and symbol.scope is not None and symbol.scope.homes == site.homes
-            )
+            homes = symbol.scope.homes if symbol.scope is not None else None
+            is_own = isinstance(part, ast.Name) and homes == site.homes
             made = symbol.node.span
             last = made.start if isinstance(symbol.node, ast.Structure) else made.end
             if not is_own and part.span.source is made.source and part.span.start < last:
@@ -154,12 +145,6 @@ class _Walker:
 
     def _makes_geometry(self, fact: Fact, name: str) -> bool:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
-
-    def _is_thing(self, node: ast.Expression) -> bool:
-        """Tells whether an expression may be a thing to copy, or a line to mirror about: no number, no
-        coordinates.
-        """
-        return not isinstance(self.infer.fact(node).type, NumberType | PointType)
 
     def _targets(
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
@@ -184,9 +169,7 @@ class _Walker:
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
-        """Returns a point as target, or the one coordinate of it that reads too far, so that the other stays
-        as it is.
-        """
+        """Returns a point as target, or the one coordinate that reads too far: the other stays as it is."""
         if self._reads(node.x) and self._reads(node.y):
             return [FarReference(node, path, is_point=True)]
         return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]
@@ -196,10 +179,7 @@ class _Walker:
         if there is doubt.
         """
         nodes = arguments(self.infer, call)
-        names = [None] * (len(nodes) - len(call.arguments)) + [
-            a.name.text if a.name else None for a in call.arguments
-        ]
-        given = [GivenArgument(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
+        given = given_to(call, [self.infer.fact(node).type for node in nodes])
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
         if not isinstance(chosen, Binding):
             return None, ANY

@@ -52,9 +52,7 @@ class StatementSite:
 
 
 class Relocation:
-    """A move of expressions from a site to an ancestor of its structure, behind the statement that holds the
-    site.
-    """
+    """A move of expressions from a site to an ancestor of its structure, behind the site's statement."""
 
     def __init__(self, site: StatementSite, ancestor: ast.Node, infer: Inference) -> None:
         self.site = site
@@ -72,9 +70,7 @@ class Relocation:
         return all(isinstance(n, ast.Structure) and n.parameters is None for n in self.between)
 
     def path(self, to: ast.Node | None = None) -> str:
-        """Returns the path from the ancestor to the site's structure, or to one around it; empty for
-        itself.
-        """
+        """Returns the path from the ancestor to the site's structure or one around it; empty for itself."""
         steps: list[str] = []
         for node in self.between:
             assert isinstance(node, ast.Structure)
@@ -100,9 +96,7 @@ class Relocation:
         return text
 
     def expression(self, node: ast.Node) -> str | None:
-        """Returns the text of an expression for the ancestor; None if the ancestor cannot name everything in
-        it.
-        """
+        """Returns the text of an expression for the ancestor; None if that cannot name all in it."""
         edits: list[tuple[int, int, str]] = []
         resolution = self.infer.resolution
         for part in ast.walk(node):
@@ -135,8 +129,6 @@ class Relocation:
                 here = any(s is symbol.node for s, _ in self.site.trail)
                 inside = any(n is symbol.node for n in ast.walk(whole))
                 return node.text if here or inside else None
-            case _:
-                pass
         if symbol.scope is None:
             return self._own_name(node, symbol)
         home = symbol.scope.homes[-1]
@@ -265,10 +257,9 @@ class Violation:
         return min(holders, key=self.site.homes.index)
 
     def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
-        """Returns the diagnostic of the breach. `written`: the values of `nodes` at the first guesses, if
-        known.
-        """
-        home, culprit = _name(self.site.home), self._culprit()
+        """Returns the diagnostic. `written`: the values of `nodes` at the first guesses, if known."""
+        home = _name(self.site.home)
+        culprit = next(self._far(self.target.node), self.target.node)  # the name with all its members
         owner = self._owner(culprit)
         subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"
         ancestor = self.ancestor
@@ -301,10 +292,6 @@ class Violation:
     @property
     def _stated(self) -> str:
         return "a constraint" if self._operation is None else f"a `{self._operation}`"
-
-    def _culprit(self) -> ast.Node:
-        """Returns the name that leads too far, with all its members."""
-        return next(self._far(self.target.node), self.target.node)
 
     def _owner(self, culprit: ast.Node) -> str:
         fact = self.infer.facts.get(culprit)
@@ -455,7 +442,6 @@ def _name(node: ast.Node) -> str:
 
 
 def _root(node: ast.Node) -> ast.Node:
-    """Returns the name that a path begins with."""
     while isinstance(node, ast.Member | ast.Index):
         node = node.value
     return node

@@ -12,9 +12,9 @@ from functools import cached_property
 
 from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Constraint
+from aidl_lang.building.model import Comparison, Constraint, Structure, chain
 from aidl_lang.building.values import Num
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.wording import Wording, rounding
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import listed, short
@@ -23,7 +23,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, RemedySearch, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Trials
-from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
+from aidl_lang.solver.problem import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
@@ -126,9 +126,7 @@ class _StatedMember:
 
 
 class Explanation:
-    """The reason why a group could not be solved, and remedies, which may be those of an `earlier`
-    explanation.
-    """
+    """Why a group could not be solved, and remedies, which may be those of an `earlier` explanation."""
 
     def __init__(
         self,
@@ -163,10 +161,8 @@ class Explanation:
             return Diagnostic(code, headline, secondary=tuple(labels))
         chief = self._chief
         labels = [*self._givens(), *self._labels(chief), *labels]
-        hints = tuple(self._hints())
-        return Diagnostic(
-            code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix
-        )
+        span, hints = chief.stated.span, tuple(self._hints())
+        return Diagnostic(code, headline, span, self._claim(chief), tuple(labels), hints, self._fix)
 
     @cached_property
     def conflict(self) -> Conflict:
@@ -192,9 +188,7 @@ class Explanation:
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _size(self, index: int) -> Unknown:
-        """Returns the size that a constraint which nobody wrote keeps from vanishing: `least - size <= 0` or
-        `-size <= 0`.
-        """
+        """Returns the size that an unwritten constraint, `least - size <= 0`, keeps from vanishing."""
         problem = self.lowered.problem
         operands = problem.tape.operand_lists
         *_, size = operands[problem.constraints[index].rows[0].expression]
@@ -204,9 +198,7 @@ class Explanation:
 
     @cached_property
     def _remedies(self) -> list[Remedy]:
-        """The remedies: numbers that would fit in the parties, one for each place, and in place of exact
-        ones.
-        """
+        """Numbers that would fit in the parties, one for each place, and in place of exact ones."""
         if not self.is_proven:
             return []
         searches = list(self._searches())
@@ -246,9 +238,8 @@ class Explanation:
     @staticmethod
     def _dials(party: _StatedMember) -> list[Dial]:
         """Returns the numbers of a statement that may be changed: factors are no measures."""
-        return (
-            [] if party.node is None else [dial for dial in written_numbers(party.node) if not dial.is_factor]
-        )
+        dials = [] if party.node is None else written_numbers(party.node)
+        return [dial for dial in dials if not dial.is_factor]
 
     def _remedy_of(self, party: _StatedMember) -> Remedy | None:
         span = party.stated.span
@@ -303,9 +294,7 @@ class Explanation:
         return found.dial.is_exact or all(any(s.overlaps(place) for s in spans) for spans in proven)
 
     def _once(self, found: Remedy) -> Fix:
-        """Returns the fix, or the one that leaves the statement out if the changed statement would repeat
-        another party.
-        """
+        """Returns the fix; one that leaves the statement out if, changed, it would repeat another party."""
         for party in self.parties:
             span = party.stated.span
             if party.node is None or not span.overlaps(found.dial.place):
@@ -320,9 +309,7 @@ class Explanation:
         return found.fix
 
     def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
-        """Returns the sort key of remedies, cheapest first: numbers in other failures too come first, as one
-        cause has several.
-        """
+        """Returns the sort key of remedies, cheapest first: before all, numbers in other failures, too."""
         shared = self._shares(found.dial.place)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
@@ -332,7 +319,6 @@ class Explanation:
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     def _is_like(self, found: Remedy, cheaper: Remedy) -> bool:
-        """Tells whether a remedy is hardly dearer than a cheaper one."""
         *kind, share, _ = self._dearness(found)
         *least, lesser, _ = self._dearness(cheaper)
         return kind == least and share <= _LIKE * lesser
@@ -349,9 +335,7 @@ class Explanation:
 
     @cached_property
     def _chief(self) -> _StatedMember:
-        """The party that the message is about: the one that the fix changes, else the last that has a
-        remedy.
-        """
+        """The party that the message is about: that which the fix changes, else the last with a remedy."""
         if not self.is_proven:
             return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
         places = [edit.span for edit in self._fix.edits] if self._fix else []
@@ -384,9 +368,7 @@ class Explanation:
                 return "E0603", f"the time for solving ran out before {names} held"
 
     def _claim(self, chief: _StatedMember) -> str:
-        """Returns the label of the party that the message is about: what would fit, or what is wrong with
-        it.
-        """
+        """Returns the label of the party that the message is about: what would fit, or what is wrong."""
         if (would_fit := self._would_fit(chief)) != "":
             return would_fit
         off = chief.member.off
@@ -404,14 +386,11 @@ class Explanation:
             return ""
         assert party.node is not None
         times = self.times[party.stated.span]
-        return found.would_fit(len(written_numbers(party.node))) + (
-            f", all {times} times" if times > 1 else ""
-        )
+        told = found.would_fit(len(written_numbers(party.node)))
+        return f"{told}, all {times} times" if times > 1 else told
 
     def _labels(self, chief: _StatedMember) -> Iterator[Label]:
-        """Yields labels at the other places, each once; if there are too many, first those at which something
-        would fit.
-        """
+        """Yields labels at the other places, each once; of too many those at which something would fit."""
         text = "conflicts with this" if self.is_proven else "takes part"
         spans = [span for span in self.turns if span != chief.stated.span]
         fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
@@ -419,10 +398,15 @@ class Explanation:
             yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
-        """Yields labels at the exact numbers that have a remedy."""
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
+        named = (n for party in self.parties for c in party.stated.comparisons for n in _structures(c))
+        for s in dict.fromkeys(around for each in named for around in chain(each)):
+            if s.attributes.get("rigid", (False,)) != (False,) and s.span is not None:
+                head = s.span.text.partition("{")[0].rstrip()
+                place = Span(s.span.source, s.span.start, s.span.start + len(head))
+                yield Label(place, "`@rigid`: nothing in it moves against it")
 
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
@@ -434,17 +418,15 @@ class Explanation:
             yield f"{told} not sought to the end, for want of time"
         gaps = dict(self.failure.gaps)
         parties = sorted(self.parties, key=lambda party: party is not self._chief)
-        yield from itertools.islice(
-            filter(None, (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)), 1
-        )
+        apart = (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)
+        yield from next(filter(None, apart), ())
         match self.failure.reason:
             case Failure.OVERDETERMINED:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = listed(
-                        [self.lowered.unknowns[i].description for i in self.failure.moving], NAMED
-                    )
+                    unknowns = self.lowered.unknowns
+                    moving = listed([unknowns[i].description for i in self.failure.moving], NAMED)
                     yield f"{listed(held, NAMED)} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"
@@ -452,21 +434,26 @@ class Explanation:
                 yield "what concerns one part only is solved faster if that part states it"
 
 
-def _apart(party: _StatedMember, gap: float) -> str:
-    """Returns a sentence on the difference of the sides of `a == b` where the other parties hold; "" for any
-    other statement.
-    """
+def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
+    """Returns hints on the difference of the sides of `a == b` where the other parties hold; else none."""
     node, stated = party.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
-        return ""
+        return ()
     (comparison,) = stated.comparisons
     sides = [party.value(operand) for operand in node.operands]
     written = [comparison.left.value, comparison.right.value]  # how it is lowered may have turned them round
     if comparison.dimension == ANGLE or [s and s.value for s in sides] != written or written[0] == written[1]:
-        return ""
+        return ()
     left, right = (operand.span.one_line for operand in node.operands)
     more = "more" if gap > 0.0 else "less"
-    return f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`"
+    if near := rounding(written[1] + gap, written[1]):
+        return near
+    return (f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`",)
+
+
+def _structures(comparison: Comparison) -> Iterator[Structure]:
+    yield from comparison.boxes
+    yield from (u.owner for u in unknowns([comparison.left, comparison.right]))
 
 
 def _name(parties: Sequence[_StatedMember]) -> str:

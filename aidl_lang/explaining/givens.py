@@ -70,9 +70,8 @@ def written_numbers(node: ast.Expression) -> list[Dial]:
             case ast.Number() | ast.Unary(operator="-", operand=ast.Number()) as literal:
                 found.append(_dial(literal))
             case ast.Binary() as operation:
-                found += _among(
-                    (operation.right, operation.left), Sign.NOT_NEGATIVE, stack, operation.operator
-                )
+                sides = operation.right, operation.left
+                found += _among(sides, Sign.NOT_NEGATIVE, stack, operation.operator)
             case ast.Index(value=inner):
                 stack.append(inner)
             case ast.Comparison(operands=operands):

@@ -8,13 +8,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang.building.arithmetic import differences, givens
 from aidl_lang.building.boxes import SIDES, constrain_sources
 from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.wording import Wording, differences, givens, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
@@ -28,7 +27,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
-from aidl_lang.solver.solution import Solution, Status
+from aidl_lang.solver.problem import Solution, Status
 
 if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Explanation
@@ -48,9 +47,7 @@ def solution_notes(
     given: Sequence[GaveWay],
     failures: Sequence[Explanation],
 ) -> list[Diagnostic]:
-    """Returns failures as errors; for a model that solved, notes on what gave way and on redundant
-    constraints.
-    """
+    """Returns failures as errors; for a model that solved, notes on what gave way and what is redundant."""
     found = [failure.diagnostic for failure in failures]
     if solution.status is not Status.SOLVED:
         return found
@@ -61,14 +58,13 @@ def solution_notes(
     found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
-        from aidl_lang.explaining.repetitions import repetition_notes
+        from aidl_lang.explaining.giving import repetition_notes
 
         found += repetition_notes(lowered, solution, freedom)
     return found
 
 
 def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
-    """Yields a note for each wish that is not met."""
     for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
         if stated is None or stated.weight is None or is_met:
             continue
@@ -86,15 +82,10 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
         )
 
 
-# --- Assertions ----------------------------------------------------------------------------------
-
-
 def assertion_notes(
     model: Model, solved: SolvedModel, drawing: Drawing, evaluator: Evaluator, *, solved_fully: bool
 ) -> list[Diagnostic]:
-    """Returns a diagnostic for each assertion that does not hold on the solved model; none if it did not
-    solve.
-    """
+    """Returns a diagnostic for each assertion that does not hold; none for a model that did not solve."""
     if not solved_fully:
         return []
     evaluator.measure = measure = _Measure(solved.root, drawing)
@@ -103,9 +94,7 @@ def assertion_notes(
 
 
 def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
-    """Returns a diagnostic for an assertion that does not hold at the values of the evaluator, with the
-    numbers; None if it holds.
-    """
+    """Returns a diagnostic, with numbers, for an assertion that does not hold at some values; else None."""
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
     if assertion.is_followed:
@@ -122,26 +111,20 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
             return None
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
     places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
-    return Diagnostic(
-        "E0604",
-        f"assertion failed: {message}{where}",
-        assertion.span,
-        "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
-        places,
-        (_hint(assertion, false, places),),
-        _stated(assertion),
-    )
+    near = [h for c in false if c.relation == "==" for h in rounding(evaluate(c.left), evaluate(c.right))]
+    span = assertion.span
+    label = "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written"
+    hints = tuple(near) or (_hint(assertion, false, places),)
+    fix = _stated(assertion)
+    return Diagnostic("E0604", f"assertion failed: {message}{where}", span, label, places, hints, fix)
 
 
 def _lost_way(assertion: Assertion) -> Diagnostic:
     """Returns the diagnostic for a pattern along a curve that came out in another form."""
-    return Diagnostic(
-        "E0608",
-        f"the members of `{assertion.text}` are not at equal ways: the curve was solved to another form",
-        assertion.span,
-        "laid out along the curve as it was written",
-        hints=("write the points of the curve near to where the constraints bring them",),
-    )
+    message = f"the members of `{assertion.text}` are not at equal ways: the curve was solved to another form"
+    label = "laid out along the curve as it was written"
+    hint = "write the points of the curve near to where the constraints bring them"
+    return Diagnostic("E0608", message, assertion.span, label, hints=(hint,))
 
 
 def _too_long(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
@@ -198,9 +181,7 @@ def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) ->
 
 
 def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
-    """Returns a hint on an assertion that does not hold; it proposes nothing that would be an error in its
-    turn.
-    """
+    """Returns a hint on an assertion that does not hold; it proposes nothing that would be an error."""
     if assertion.shape:
         return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
     if not false and isinstance(assertion.condition, bool):
@@ -292,9 +273,7 @@ class _Measure:
         return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
 
     def _side(self, payload: Measurement) -> float:
-        """Returns a side of the box of an outline that was worked out after solving, in the frame of a
-        structure.
-        """
+        """Returns a side of the box of an outline worked out after solving, in the frame of a structure."""
         assert payload.here is not None
         curves = self._curves(payload.of[0].path)
         frames, here = [], self.root
@@ -319,9 +298,7 @@ class _Measure:
         return [c for g in found for c in replace(g, construction=False).curves()]
 
     def _region(self, thing: Structure | Geometry) -> Region:
-        """Returns the region that a structure covers in the drawing, or that a geometry would cover as a
-        solid of its own.
-        """
+        """Returns what a structure covers in the drawing, or what a geometry would cover as a solid."""
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
         return region_alone(self.root, thing.path)

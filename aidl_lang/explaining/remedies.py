@@ -1,29 +1,33 @@
-"""Numbers that would make constraints hold which conflict, and the edits that write them.
-
-A number of the text is turned a little and the program built again; from how much nearer that brings the
-constraints follows where the number would have to be. It is told only if the program, with just what is
-printed in its place, then solves and nothing gives way.
-"""
+"""Numbers that would make constraints hold which conflict, and the edits that write them."""
 
 from __future__ import annotations
 
 import itertools
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
-from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.building.wording import Wording
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.givens import Dial
-from aidl_lang.explaining.trials import Trials
-from aidl_lang.solver.solution import GroupFailure
+from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
+from aidl_lang.explaining.trials import Trials, mends
+from aidl_lang.solver import Solution
+from aidl_lang.solver.problem import Failure, GroupFailure, Member
+
+# --- Numbers that would make constraints hold which conflict, and the edits that write them.
+#
+# A number of the text is turned a little and the program built again; from how much nearer that brings the
+# constraints follows where the number would have to be. It is told only if the program, with just what is
+# printed in its place, then solves and nothing gives way.
 
 _NUDGE = 1e-3
 """Relative change of a number by which its influence is measured."""
@@ -90,17 +94,13 @@ class Remedy:
     flat_at: str = ""
 
     def would_fit(self, numbers: int = 1) -> str:
-        """Returns the words of a message; they name the number if several `numbers` are written at its
-        place.
-        """
+        """Returns the words of a message; they name the number if its place has several `numbers`."""
         instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
         return f"{self.shown}{instead} would fit"
 
 
 def dear(dial: Dial, share: float, plain: bool) -> float:
-    """Returns the cost of changing a number by a `share` of itself; `plain` if the new number has few
-    digits.
-    """
+    """Returns the cost of changing a number by a `share` of itself; `plain` if the new one has few digits."""
     return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
 
 
@@ -152,9 +152,7 @@ class RemedySearch:
 
     @cached_property
     def reach(self) -> float:
-        """The relative change of the number that its influence predicts, times its cost; infinite if nothing
-        is predicted.
-        """
+        """The relative change of the number that its influence predicts, times its cost; or infinite."""
         value = self.dial.value
         if self.is_late:
             return np.inf
@@ -188,9 +186,7 @@ class RemedySearch:
 
     @cached_property
     def _even_target(self) -> float | None:
-        """The value at which the violation would vanish if it fell linearly with the number; None if
-        unknown.
-        """
+        """The value at which the violation would vanish if it fell linearly with it; None if unknown."""
         value = self.dial.value
         if not (off := self._lack(value)):
             return None
@@ -215,7 +211,6 @@ class RemedySearch:
         return _NUDGE * max(abs(self.dial.value), 1.0)
 
     def _pinned(self) -> _Written | None:
-        """Returns a number that fits where the other members hold; None if there is none."""
         if self._member is None or self._pinned_target is None:
             return None
         target = self._rounded(self._pinned_target)
@@ -225,7 +220,6 @@ class RemedySearch:
         return 0.0 if abs(target) <= _VANISHES * max(abs(self.dial.value), 1.0) else target
 
     def _may_be(self, target: float) -> bool:
-        """Tells whether the author can have meant a number."""
         value = self.dial.value
         return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
 
@@ -329,9 +323,7 @@ class RemedySearch:
         return written if written and self._is_sharp(written, step) else None
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
-        """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;
-        else `written`.
-        """
+        """Returns the short number at a `target`, found going `onward`, if it is an end; else `written`."""
         limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
         near = 0.1 * _NUDGE * max(abs(target), 1.0)
         limit = next((limit for limit in limits if abs(limit.value - target) <= near), written)
@@ -363,9 +355,7 @@ class RemedySearch:
         return self.trials.lack(self._at(value), self.failure)
 
     def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
-        """Returns the first spelling of a number that fits. If one fails for other reasons than its digits,
-        no other is tried.
-        """
+        """Returns the first spelling of a number that fits; no other if digits are not the reason."""
         for written in spelled:
             if self._fits(written):
                 return written
@@ -405,9 +395,8 @@ class RemedySearch:
             if abs(whole / divisor - target) <= _NEAR * max(1.0, abs(target)):
                 text = f"{short(whole)}{self.dial.unit} / {divisor}"
                 about = f"{target:.4g}{self.dial.unit}"
-                yield _Written(
-                    target, f"({text})" if self.dial.is_factor else text, f"exactly {text} (about {about})"
-                )
+                written = f"({text})" if self.dial.is_factor else text
+                yield _Written(target, written, f"exactly {text} (about {about})")
                 return
 
     def _plain(self, value: float) -> _Written:
@@ -429,17 +418,12 @@ def _neat(target: float, onward: float, slack: float) -> float:
     return target
 
 
-# --- Other edits -----------------------------------------------------------------------------------
-
-
 _ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(constrain\s*)?\Z", re.IGNORECASE)
 """`@allow(…)` right before what a constraint states, and all between them."""
 
 
 def left_out(constraint: Constraint) -> Fix | None:
-    """Removes a statement that has a line for itself, or stands between semicolons, with the `@allow(…)` that
-    is said of it.
-    """
+    """Removes a statement that stands alone on a line or between semicolons, with `@allow(…)` said of it."""
     span, text = constraint.span, constraint.span.source.text
     allowing = _ALLOWING.search(text, 0, span.start)
     if allowing is not None:
@@ -465,3 +449,84 @@ def wished(constraint: Constraint) -> Fix:
     if before.endswith("constrain"):
         return Fix("make it a wish", (Edit(Span(span.source, len(before) - 9, len(before)), "prefer"),))
     return Fix("make it a wish", (Edit(replace(span, end=span.start), "prefer "),))
+
+
+# --- Numbers that would fit where a condition over constants does not hold (E0513, E0604).
+#
+# Such a condition is put to the solver like any other, as a conflict of one statement; what is told of
+# conflicts, numbers that were tried as they are printed, can then be told of it.
+
+NEVER, _ASSERTED = "E0513", "E0604"
+_CODES = frozenset({NEVER, _ASSERTED})
+_MOST = 0.5
+"""Greatest relative change of a number that is offered as a fix: a greater one is mentioned only."""
+_PLACES = 5
+"""The most places that a message shows beside its own."""
+
+
+def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
+    """Returns the solution of a problem that states constants, each that does not hold being a failure."""
+    found = []
+    for index, stated in enumerate(lowered.stated):
+        sides = (side for part in stated.comparisons for side in (part.left, part.right)) if stated else ()
+        if stated and not solution.satisfied[index] and all(side.is_constant for side in sides):
+            group, member = int(lowered.problem.holder[index]), Member(index, solution.residuals[index])
+            found.append(GroupFailure(group, Failure.CONTRADICTORY, (member,), minimal=True, within=(index,)))
+    return replace(solution, failures=tuple(found))
+
+
+def with_remedies(
+    found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
+) -> list[Diagnostic]:
+    """Returns findings about a program, those on constants with what would fit instead; `everything` are all
+    findings about it. The trials are those of the program that states constants, with the solution made by
+    `with_failing_constants`.
+    """
+    failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
+    for failure in trials.solution.failures:
+        stated = trials.lowered.stated[failure.conflict[0]]
+        if stated is not None:
+            failures.setdefault(stated.span, (stated, failure))
+    return [
+        _answered(d, *failures[d.span], everything, trials)
+        if d.code in _CODES and d.fix is None and d.span in failures
+        else d
+        for d in found
+    ]
+
+
+def _answered(
+    d: Diagnostic, stated: Constraint, failure: GroupFailure, everything: Sequence[Diagnostic], trials: Trials
+) -> Diagnostic:
+    """Returns a finding with numbers that fit where its values are given, and the least change of these as
+    the fix. If there are none, names a number that fits in a constraint; an `assert` is not up for change.
+    """
+    wording = stated.wording
+    if not isinstance(wording, Wording) or wording.node.span != stated.span:
+        return d
+
+    def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
+        searches = (RemedySearch(dial, failure, trials, dial.place) for dial in dials if not dial.is_factor)
+        return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
+
+    uses = wording.it.program.resolution.uses
+    given = sorted(fitting(exact_numbers([wording.node], uses)), key=lambda each: (each.counts, each.share))
+    if given:
+        labels = d.secondary
+        for each in given:
+            labels = _with(labels, each)
+        fix = given[0].fix if given[0].share <= _MOST else None
+        return replace(d, secondary=labels[:_PLACES], fix=fix)
+    dials = written_numbers(wording.node) if d.code == NEVER else []
+    if (own := next(fitting(dials), None)) is None:
+        return d
+    return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))
+
+
+def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
+    """Returns the labels, with what would fit in place of a number added to one of them or as a new one."""
+    place, text = found.dial.place, found.would_fit()
+    for index, label in enumerate(labels):
+        if found.dial.name and label.span.overlaps(place):
+            return *labels[:index], replace(label, text=f"{label.text}; {text}"), *labels[index + 1 :]
+    return *labels, Label(place, f"exact; {text}")

@@ -24,8 +24,8 @@ from aidl_lang.explaining.trials import Trials
 from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.solution import Failure
-from aidl_lang.solver.suspects import nearby_solution
+from aidl_lang.solver.problem import Failure
+from aidl_lang.solver.refuting import nearby_solution
 from aidl_lang.syntax import ast
 
 _MOST = 64
@@ -43,9 +43,7 @@ _LOOK = "look whether this is how it is meant"
 
 @record()
 class Rereading:
-    """A program that solved with some ambiguous calls read differently; `calls` are their places and
-    readings.
-    """
+    """A program that solved with ambiguous calls read differently; `calls` are their places and readings."""
 
     built: Interpretation
     lowered: Lowered
@@ -91,7 +89,6 @@ def reread(
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
-    """Returns the numbers of the readings that have a share in some constraints."""
     spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
     return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
 
@@ -123,9 +120,6 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
                 assert stage.concession is not None
                 found.update(stage.concession.constraints)
     return found
-
-
-# --- What is said of it ----------------------------------------------------------------------------
 
 
 def elsewhere_notes(

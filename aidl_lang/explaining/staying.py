@@ -175,7 +175,8 @@ def _lost_form(
     for way, lengths in ways.items():
         changed = [u for u in lengths if u in moved]
         has_form = way.type in _FORMED and sum(not u.angular for u in lengths) > 1  # two points adapt
-        turned = next((u for u in changed if u.field == "end.angle" and _is_back(after[u] - before[u])), None)
+        turns = {u: math.radians(after[u] - before[u]) for u in changed if u.field == "end.angle"}
+        turned = next((u for u, turn in turns.items() if math.cos(turn) < -_STILL), None)
         if way.name is None or not (turned or has_form) or not changed:
             continue
         unknowns = source_unknowns(way, way.owner)
@@ -224,13 +225,7 @@ def _lost_form(
         )
 
 
-def _is_back(turn: float) -> bool:
-    """Tells whether a turn in degrees leads more back than on."""
-    return math.cos(math.radians(turn)) < -_STILL
-
-
 def _members_in(constraint: Constraint) -> Iterator[str]:
-    """Yields the names of the members that a constraint speaks of."""
     if isinstance(constraint.wording, Wording):
         for node in ast.walk(constraint.wording.node):
             if isinstance(node, ast.Member):
@@ -302,7 +297,7 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
 
 def _fits(structure: Structure, lowered: Lowered) -> bool:
     """Tells whether a place is found for a structure as a whole, with all other positions free."""
-    from aidl_lang.solver.suspects import nearby_solution
+    from aidl_lang.solver.refuting import nearby_solution
 
     problem = lowered.problem
     start = {
@@ -315,7 +310,6 @@ def _fits(structure: Structure, lowered: Lowered) -> bool:
 
 
 def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> float:
-    """Returns the larger extent of some coordinates along an axis."""
     spans = []
     for axis in ("x", "y"):
         along = [written[u] for u in unknowns if u.field.rpartition(".")[2] == axis]

@@ -17,8 +17,8 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.solution import GroupFailure
-from aidl_lang.solver.suspects import equations, nearby_solution, residual, shortfall
+from aidl_lang.solver.problem import GroupFailure
+from aidl_lang.solver.refuting import equations, nearby_solution, residual, shortfall
 
 # Each remedy is tried here, as it is printed, before a message offers it.
 
@@ -69,9 +69,7 @@ class Trials:
     _places: dict[tuple[tuple[int, ...], int], dict[int, float] | None] = field(
         default_factory=dict, repr=False
     )
-    """Values at which the constraints of a failure hold without one of them, which may be in several
-    failures.
-    """
+    """Values at which the constraints of a failure hold without one of them (in several failures, too)."""
 
     @cached_property
     def _clock(self) -> Clock:
@@ -94,7 +92,7 @@ class Trials:
 
     def lack(self, edits: Sequence[Edit], failure: GroupFailure) -> float | None:
         """Returns the violation of the constraints of a failure with no kept size changed, after the edits
-        (see `solver.suspects`); None if the program then has errors or is another one.
+        (see `solver.refuting`); None if the program then has errors or is another one.
         """
         found = self._counterpart(edits, failure)
         if found is None:
@@ -110,15 +108,12 @@ class Trials:
         return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
-        """Returns the constraints of a failure and those that took part in the search, without those of other
-        failures.
-        """
+        """Returns the constraints that took part in the search, without those of other failures."""
         others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
         return [i for i in failure.within if hard[i] and i not in others]
 
     def _others(self, failure: GroupFailure) -> set[int]:
-        """Returns the constraints that only other failures are about."""
         others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
         return others.difference(failure.conflict)
 
@@ -166,9 +161,7 @@ class Trials:
         return self._places[key]
 
     def _free(self, failure: GroupFailure) -> dict[int, float]:
-        """Returns the unknowns that may move if nothing is to give way, with their values where the search
-        came nearest.
-        """
+        """Returns the unknowns that may move if nothing gives way, with their values at the nearest place."""
         unknowns = self.lowered.unknowns
         return {
             u: value
@@ -218,9 +211,7 @@ class Trials:
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
-        """Tells whether edits that resolve a failure leave no errors, such as another failure or a failing
-        assertion.
-        """
+        """Tells whether edits that resolve a failure leave no errors, such as another failure."""
         return not has_errors(self.diagnostics(edits))
 
     def idles(self, edits: Sequence[Edit]) -> bool:
@@ -271,9 +262,7 @@ def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
 
 
 def _by_text(one: Lowered, other: Lowered) -> dict[int, int]:
-    """Returns the numbers of the constraints in another problem, some of which were left out, by those that
-    read the same.
-    """
+    """Returns the numbers of the constraints in another problem by those that read the same."""
     found = {(c.text, c.label, c.holder.path): i for i, c in enumerate(other.stated) if c is not None}
     keys = ((i, (c.text, c.label, c.holder.path)) for i, c in enumerate(one.stated) if c is not None)
     return {i: found[key] for i, key in keys if key in found}
@@ -309,7 +298,6 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
 
 
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
-    """Returns the paths of what gave way unasked."""
     moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
     gave = {u for stage in solution.stages if stage.concession is not None for u in stage.concession.unknowns}
     return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}
@@ -334,9 +322,7 @@ def verified(
 
 
 def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Trials) -> bool:
-    """Tells whether a program with the findings `before` no longer has `found` after a fix, and nothing
-    worse.
-    """
+    """Tells whether a program with the findings `before` lacks `found` after a fix, with nothing worse."""
     if trials.is_over or not trials.can_edit(fix.edits) or found.code in _SAID:
         return found.code in _SAID and trials.can_edit(fix.edits)
     after = trials.diagnostics(fix.edits)

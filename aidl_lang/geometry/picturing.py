@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
-    from aidl_lang.solver.solution import Solution
+    from aidl_lang.solver.problem import Solution
 
 _HEAVY = "most of its curves are made here"
 

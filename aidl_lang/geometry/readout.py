@@ -8,13 +8,11 @@ from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.curves import pieces
+from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import FLOATS, Lowered, Placing
 from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure, own_geometry
-from aidl_lang.building.primitives import clockwise, number, translate, xy
-from aidl_lang.building.root_frame import FLOATS, Placing
-from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.drawing_time import blaming
@@ -44,7 +42,7 @@ from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
 from aidl_lang.geometry.tracing import parts_of
 from aidl_lang.solver.analysis import Freedom
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
 
 _FULL_TURN = 2 * math.pi
@@ -330,7 +328,7 @@ class _Reader:
             return self._values({name: g.scope.values[name] for name in g.arguments}, g.owner)
         return self._values(g.recipe.numbers if g.recipe and g.is_drawn_later else g.fields, g.owner)
 
-    def _values(self, values: Mapping[str, Binding], owner: Structure) -> Values:
+    def _values(self, values: Mapping[str, NameBinding], owner: Structure) -> Values:
         """Returns the numbers and points among values of `owner`."""
         found: Values = {}
         for name, value in values.items():

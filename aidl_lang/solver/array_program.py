@@ -106,9 +106,7 @@ class ArrayProgram:
         return values[self.roots]
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix:
-        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
-        factors.
-        """
+        """Returns the (r, k) partial derivatives where `residuals` was evaluated last, by these factors."""
         entries = self.entries() * row_factors[self.entry_rows] * column_factors[self.indices]
         rows, columns = self.shape
         if rows * columns <= DENSE:
@@ -127,9 +125,7 @@ class ArrayProgram:
         return np.repeat(np.arange(len(self.roots)), np.diff(self.indptr))
 
     def entries(self) -> Floats:
-        """Returns the partial derivatives in the order of the pattern, where `residuals` was last
-        evaluated.
-        """
+        """Returns the partial derivatives in the order of the pattern, where `residuals` was last found."""
         values, slopes = self._values, self._slopes
         stride = len(values)
         with np.errstate(all="ignore"):
@@ -225,9 +221,7 @@ class Schedule:
 
 @record()
 class _Layout:
-    """The layout of a sweep: its steps; rows and nodes of the pairs above the unknowns; row and unknown of
-    each entry.
-    """
+    """A sweep: its steps; rows and nodes of the pairs above the unknowns; row and unknown of each entry."""
 
     steps: list[Step]
     rows: Ints
@@ -269,9 +263,7 @@ class ArrayFreezing:
         self._slopes = np.ones(4 * len(self._values) + 1)
 
     def branches(self, roots: Ints) -> list[tuple[int, int]]:
-        """Returns the branching nodes below these nodes (r,) through active branches, and the choice made at
-        each.
-        """
+        """Returns the branching nodes below these (r,) through active branches, and the choice at each."""
         below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
         below[roots] = True
         added = np.arange(len(self._schedule.tape), len(self._values))
@@ -351,9 +343,7 @@ class ArrayFreezing:
     # -- programs
 
     def pattern(self, roots: Ints) -> tuple[Ints, Ints]:
-        """Returns row and unknown (e,) of each entry of the Jacobian of these nodes (r,), each of which
-        varies.
-        """
+        """Returns row and unknown (e,) of each entry of the Jacobian of these nodes (r,), which vary."""
         layout = self._lay_out(roots)
         return layout.row, layout.unknown
 
@@ -392,9 +382,7 @@ class ArrayFreezing:
         return _batches(self._ops, self._operands, self._levels, nodes)
 
     def _lay_out(self, roots: Ints) -> _Layout:
-        """Returns the layout of the pairs of a row and a node below it that varies; remembers that of the
-        last roots.
-        """
+        """Returns the layout of the pairs of a row and a node below it that varies; keeps the last one."""
         if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
             self._laid_out = roots, self._find_pairs(roots)
         return self._laid_out[1]
@@ -467,7 +455,6 @@ class _Pending:
 
 
 def _table(ops: Iterable[int]) -> Bools:
-    """Tells whether each code of an operation is among `ops`."""
     found = np.zeros(64, dtype=np.bool_)
     found[list(ops)] = True
     return found

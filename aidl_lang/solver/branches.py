@@ -72,9 +72,7 @@ class Verdict:
 
 
 def violation_of(row: Row, values: Valuation) -> float:
-    """Returns the violation of a row at the current values, in the row's units; infinite if it has no
-    value.
-    """
+    """Returns the violation of a row at the current values, in its units; infinite if it has no value."""
     value = values.nodes[row.expression]
     violation = max(value, 0.0) if row.relation is Relation.AT_MOST else abs(value)
     return violation if violation == violation else np.inf
@@ -154,15 +152,12 @@ class _Attempt:
             base = self._current()
 
     def _active(self) -> tuple[Branch, ...]:
-        """Returns the branches active at the current values."""
         return self.freezer.freeze([self.task.rows[i].expression for i in self.considered]).branches
 
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]
     ) -> tuple[Verdict, tuple[Branch, ...], bool]:
-        """Solves with the branches active at `base`; returns these branches too, and whether the result lies
-        in others.
-        """
+        """Solves with the branches active at `base`; returns these, and whether the result lies in others."""
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
         choice = self.freezer.choice(flipped)
@@ -288,13 +283,9 @@ class _Attempt:
         origin: dict[int, float],
         restarts: int,
     ) -> End:
-        rows = [
-            self.task.rows[self.considered[i]] if i < len(self.considered) else None for i in program.rows
-        ]
-        softness = [
-            self.task.softness[self.considered[i]] if row else 0.0
-            for i, row in zip(program.rows, rows, strict=True)
-        ]
+        asked, count = self.considered, len(self.considered)
+        rows = [self.task.rows[asked[i]] if i < count else None for i in program.rows]
+        softness = [self.task.softness[asked[i]] if i < count else 0.0 for i in program.rows]
         metric, columns = self.metric, program.columns
         scale = metric.scale[columns]
         anchor = np.array([origin[unknown] for unknown in program.columns])
@@ -312,12 +303,7 @@ class _Attempt:
         z = np.zeros(system.size)
         z[: len(scale)] = (np.array([start[unknown] for unknown in program.columns]) - anchor) / scale
         outcome = newton.solve(
-            system,
-            TIGHTER * self.settings.tolerance,
-            self.settings.iterations,
-            self.clock,
-            z,
-            restarts,
+            system, TIGHTER * self.settings.tolerance, self.settings.iterations, self.clock, z, restarts
         )
         if outcome.contradiction is not None:
             taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()

@@ -23,10 +23,8 @@ from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.problem import Problem, Relation, Settings
-from aidl_lang.solver.refuting import Relaxation
-from aidl_lang.solver.solution import Concession, Failure, GroupFailure, Member
-from aidl_lang.solver.suspects import MANY, needed, suspects
+from aidl_lang.solver.problem import Concession, Failure, GroupFailure, Member, Problem, Relation, Settings
+from aidl_lang.solver.refuting import MOST_ACCUSED, Relaxation, needed, suspects
 from aidl_lang.solver.tiers import Scope
 
 WORK = 60_000
@@ -60,9 +58,7 @@ SEED = 1
 
 @record()
 class _SearchResult:
-    """The result of a search: how it ended, the values of the free unknowns there, and the greatest
-    violation.
-    """
+    """The end of a search: how it came, the values of the free unknowns, and the greatest violation."""
 
     end: End
     reached: dict[int, float]
@@ -94,9 +90,7 @@ def explain(
 
 
 def is_refuted(hierarchy: Hierarchy, scope: Scope) -> bool:
-    """Tells whether a proof exists that the constraints of `scope` cannot hold together with its unknowns
-    free.
-    """
+    """Tells whether it is proved that the constraints of `scope` cannot hold with its unknowns free."""
     hierarchy.refresh(scope.constraints)
     rows = hierarchy.rows(scope.constraints)
     return Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance).is_refuted
@@ -197,7 +191,7 @@ class _ConflictSearch:
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
         free = sorted(mentioned & self.scope.free)
         self.ended = []
-        positions = frozenset(u for u in free if not hierarchy.is_kept(u) or hierarchy.is_spanned(u))
+        positions = frozenset(u for u in free if not hierarchy.is_kept[u] or hierarchy.is_spanned[u])
         for scope in dict.fromkeys((positions, frozenset(free))):
             for start in itertools.islice(self._starts(sorted(scope)), starts):
                 if best.holds or clock.expired:
@@ -212,9 +206,7 @@ class _ConflictSearch:
         return sum(off <= ALIKE * least for off in self.ended) >= STARTS / 2
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
-        """Yields places about the first guesses: directions anywhere, sizes between a third and three
-        times.
-        """
+        """Yields places about the first guesses: directions anywhere, sizes from a third to three times."""
         problem, random = self.hierarchy.problem, np.random.default_rng(SEED)
         size = float(problem.rows.scale.max(initial=1.0))
         for turn in range(STARTS):
@@ -224,7 +216,7 @@ class _ConflictSearch:
                 share, here = random.uniform(-1.0, 1.0), self.before[unknown]
                 if problem.longest is not None and np.isfinite(problem.longest[unknown]):
                     start[unknown] = 180.0 * share
-                elif problem.kept[unknown] and not self.hierarchy.is_spanned(unknown):
+                elif problem.kept[unknown] and not self.hierarchy.is_spanned[unknown]:
                     start[unknown] = here * 3.0**share
                 else:
                     start[unknown] = here + spread * share
@@ -270,15 +262,11 @@ class _ConflictSearch:
         return self._needed(said)
 
     def _needed(self, found: list[int]) -> list[int]:
-        """Returns a smallest part of a failing set that still fails, or what was left of the set when the
-        budget was spent.
-        """
+        """Returns a smallest failing part of a failing set, or what was left when the budget was spent."""
         return needed(found, lambda part: self._spent or self._holds(part))
 
     def _refuted(self, constraints: Sequence[int]) -> list[int]:
-        """Returns constraints among these that are proved never to hold together; empty if there is no
-        proof.
-        """
+        """Returns constraints among these that provably never hold together; empty if there is no proof."""
         relaxation = self._relaxation(constraints)
         owner = self.hierarchy.owners(constraints)
         return sorted({owner[row] for row in relaxation.smallest()})
@@ -305,7 +293,11 @@ class _ConflictSearch:
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
         accused = suspects(hierarchy, scope.constraints, scope.free)
-        yield from (accused, *self._around(best)) if len(accused) <= MANY else (*self._around(best), accused)
+        if len(accused) <= MOST_ACCUSED:
+            yield accused
+        yield from self._around(best)
+        if len(accused) > MOST_ACCUSED:
+            yield accused
         yield self._violated(best)
         yield list(scope.constraints)
 
@@ -324,9 +316,7 @@ class _ConflictSearch:
         worst = max((self.member(hierarchy, index) for index in violated), key=lambda member: member.off)
         touched, before = hierarchy.mentions[worst.index] & free, 1
         for _ in range(RINGS):
-            around = [
-                index for index in self.scope.constraints if not touched.isdisjoint(hierarchy.mentions[index])
-            ]
+            around = [i for i in self.scope.constraints if not touched.isdisjoint(hierarchy.mentions[i])]
             if len(around) == before:
                 return
             yield around
@@ -350,7 +340,7 @@ class _ConflictSearch:
             hierarchy.refresh([index])
             slopes = gradients(hierarchy.values, roots)
             reached = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
-            if all(map(hierarchy.is_kept, reached)):
+            if all(map(hierarchy.is_kept.__getitem__, reached)):
                 found |= reached
         return frozenset(found)
 
@@ -432,7 +422,7 @@ def reasons(problem: Problem, settings: Settings, concession: Concession, solved
     hierarchy.reached[:] = concession.values
     hierarchy.values.assign(enumerate(concession.values.tolist()))
     left = concession.unknowns
-    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept(u))
+    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept[u])
     while left:
         scope = Scope(moving - left, concession.constraints)
         before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
@@ -455,9 +445,7 @@ def _bound(
     concession: Concession,
     solved: Floats,
 ) -> frozenset[int]:
-    """Returns the unknowns that the constraints hold at the solution: put back to its value before, each of
-    them breaks one.
-    """
+    """Returns the unknowns that the constraints hold at the solution: put back, each breaks one."""
     if len(unknowns) < 2:
         return unknowns
     kept = hierarchy.save(range(len(solved)))

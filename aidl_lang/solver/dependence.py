@@ -51,9 +51,7 @@ Relation: TypeAlias = dict[int, float]
 
 
 def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
-    """Returns the relation of each dependent row among unit rows, and the rows whose dependence is
-    undecided.
-    """
+    """Returns the relation of each dependent row among unit rows, and the rows that are undecided."""
     relations = _copies(rows, width)
     originals = others(len(rows), relations)
     matrix = rows.take(originals)
@@ -76,9 +74,7 @@ def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[
 
 
 def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
-    """Returns the rows that equal an earlier row or its opposite, found by a random combination of the
-    columns.
-    """
+    """Returns the rows that equal an earlier one or its opposite, by a random combination of the columns."""
     weights = scattered(width)
     sums = np.abs(np.bincount(matrix.rows, matrix.entries * weights[matrix.columns], len(matrix)))
     order = np.argsort(sums, kind="stable")
@@ -100,15 +96,12 @@ def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
 
 
 def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
-    """Returns the columns and entries of a row."""
     here = slice(matrix.starts[row], matrix.starts[row + 1])
     return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
 
 
 def _entangled(matrix: Sparse, width: int) -> Ints:
-    """Returns the rows that are left when rows with an unknown that no other mentions are taken away, again
-    and again.
-    """
+    """Returns the rows left when those with an unknown that no other mentions are taken away, repeatedly."""
     matrix = matrix.only(matrix.entries != 0.0)
     # The count of rows that mention a column, and the sum of their numbers: with one left, it is its number.
     counts = np.bincount(matrix.columns, minlength=width).tolist()
@@ -135,7 +128,6 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
 
 
 def _connected_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
-    """Returns the connected parts of the rows."""
     if not len(matrix):
         return []
     links = matrix.links
@@ -280,9 +272,7 @@ class _ImplicationTest:
         return [set(self._unknowns([row]).tolist()) for row in range(len(self.expressions))]
 
     def _around(self, row: int, others: Sequence[int]) -> list[int]:
-        """Returns independent rows that share unknowns with these, or with those that do, the nearest
-        first.
-        """
+        """Returns independent rows that share unknowns with these, or with such rows, the nearest first."""
         near = {row, *others}
         columns = set().union(*(self._mentions[each] for each in near))
         found: list[int] = []

@@ -180,9 +180,7 @@ class TapeBuilder:
         return self._node(Op.SELECT, condition, a, b)
 
     def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
-        """Returns the node of the greatest value over t in [0, 1] of the cubic with these Bernstein
-        coefficients.
-        """
+        """Returns the node of the greatest value in [0, 1] of the cubic with these Bernstein coefficients."""
         if p0 == p1 == p2 == p3:
             return p0
         common, rests = self._apart((p0, p1, p2, p3))
@@ -314,9 +312,7 @@ def _shared(nodes: Iterable[int], others: Iterable[int]) -> tuple[list[int], lis
 
 
 def below(tape: Tape, roots: Iterable[int], ends: bytes | None = None) -> list[int]:
-    """Returns the nodes that `roots` are made of, operands first; nothing below nodes that are marked as
-    `ends`.
-    """
+    """Returns the nodes that `roots` are made of, operands first; nothing below those marked as `ends`."""
     ops, operands = tape.op_list, tape.operand_lists
     seen = set(roots)
     stack = list(seen)

@@ -277,7 +277,6 @@ class Choice:
     # -- recipes
 
     def _slot(self, form: Form) -> int:
-        """Returns a slot that has the value of a form."""
         if isinstance(form, float):
             return self._new(NUMBER, (), (), form)
         if len(form.terms) == 1 and form.constant == 0.0:
@@ -443,9 +442,7 @@ class Program:
         return np.array([values[root] for root in self._roots])
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
-        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
-        factors.
-        """
+        """Returns the (r, k) partial derivatives where `residuals` was evaluated last, by these factors."""
         values, weights = self._values, self._weights
         for partial, operands, out, edges in self._partials:
             slopes = partial(*[values[i] for i in operands], values[out])
@@ -473,9 +470,7 @@ class Program:
         return matrix
 
     def _accumulate_with_care(self, sweep: Sweep, adjoints: list[float]) -> None:
-        """Accumulates slopes so that those that cancel become zero: a frame that moves all of a row moves
-        nothing in it.
-        """
+        """Adds up slopes so that those that cancel are zero: what moves all of a row moves nothing in it."""
         weights, sizes = self._weights, dict.fromkeys(sweep.touched, 0.0)
         for parent, child, edge in sweep.edges:
             slope = adjoints[parent]

@@ -34,8 +34,8 @@ import numpy as np
 from aidl_lang.solver.branches import Task, attempt, violation_of
 from aidl_lang.solver.loosening import givers, spare_sizes, thin
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.problem import Concession, GroupFailure, StageReport
 from aidl_lang.solver.settings import Stages
-from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
@@ -66,8 +66,8 @@ class Group:
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
         held = hierarchy.held_by(group)
-        self.hard = [index for index in held if hierarchy.is_hard(index)]
-        self.soft = [index for index in held if not hierarchy.is_hard(index)]
+        self.hard = [index for index in held if hierarchy.is_hard[index]]
+        self.soft = [index for index in held if not hierarchy.is_hard[index]]
         self.tiers = Tiers(hierarchy, group)
 
     def solve(self, reached: Tier = (0, 0)) -> None:
@@ -105,9 +105,7 @@ class Group:
             self.tiers.forget()
 
     def _leave_out(self) -> int | None:
-        """Returns the constraint to go on without after a failure; None if it is not known which would
-        help.
-        """
+        """Returns the constraint to go on without after a failure; None if none is known to help."""
         failure = self.hierarchy.failures[-1]
         own = [index for index in failure.conflict if index in self.hard]
         known = failure.minimal and own and not self.hierarchy.clock.expired
@@ -120,9 +118,7 @@ class Group:
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
-        """Returns the tier of the dearest thing that had to be freed to satisfy everything; None if nothing
-        does.
-        """
+        """Returns the tier of the dearest thing that had to be freed to satisfy all; None if nothing does."""
         hierarchy = self.hierarchy
         everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
@@ -213,9 +209,7 @@ class Group:
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]
     ) -> Tier | None:
-        """Returns the stage that satisfies everything from the place at which the failed constraints hold;
-        None if none does.
-        """
+        """Returns the stage that satisfies all from where the failed constraints hold; None if none does."""
         hierarchy = self.hierarchy
         for tier in (POSITIONS, ENDLESS) if failure.holds_elsewhere else ():
             scope = self.tiers.scope(tier, part)
@@ -263,11 +257,7 @@ class Group:
         return stages[scope], best
 
     def _report(
-        self,
-        tier: Tier,
-        scope: Scope,
-        before: dict[int, float] | None,
-        despite: tuple[int, ...] = (),
+        self, tier: Tier, scope: Scope, before: dict[int, float] | None, despite: tuple[int, ...] = ()
     ) -> None:
         """Reports a stage. If it succeeded, starting from the values `before`, first holds the unknowns that
         need not move. `despite` are constraints that hold though a search from `before` had failed.
@@ -277,9 +267,8 @@ class Group:
             before = hierarchy.since(before, scope.free)
             thin(hierarchy, scope, before, self.tiers.tier)
             spare_sizes(hierarchy, scope, before)
-            moved = frozenset(
-                u for u in scope.free if self.tiers.is_dear(u) and hierarchy.moved(u, before[u])
-            )
+            dear = filter(self.tiers.is_dear, scope.free)
+            moved = frozenset(u for u in dear if hierarchy.moved(u, before[u]))
             if moved:
                 values = np.array(hierarchy.values.unknowns)
                 values[list(before)] = list(before.values())
@@ -303,7 +292,7 @@ class Group:
     def _weigh_preferences(self, reached: Tier) -> None:
         """Satisfies preferences as well as possible with the unknowns that the winning stage had free."""
         hierarchy = self.hierarchy
-        if hierarchy.all_hard:
+        if all(hierarchy.is_hard):
             return
         limit = min(max(reached, OWN), POSITIONS)
         soft = set(self.soft)
@@ -312,7 +301,7 @@ class Group:
                 soft.update(
                     index
                     for index in hierarchy.solved_mentioning(unknown, self.group)
-                    if not hierarchy.is_hard(index)
+                    if not hierarchy.is_hard[index]
                 )
         if not hierarchy.unmet(soft):
             return
@@ -329,7 +318,7 @@ def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
     if hierarchy.attempt(scope, 1).satisfied:
         return True
     hierarchy.values.assign(before.items())
-    hard = [index for index in scope.constraints if hierarchy.is_hard(index)]
+    hard = [index for index in scope.constraints if hierarchy.is_hard[index]]
     rows = hierarchy.rows(hard)
     softness = [0.0] * len(rows)
     for index in soft:

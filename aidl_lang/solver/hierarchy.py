@@ -17,14 +17,21 @@ from numpy.typing import NDArray
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
-from aidl_lang.solver.memory import Memory, Recollection
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
-from aidl_lang.solver.problem import Problem, Row, depths, violations
-from aidl_lang.solver.riding import riding_depths
+from aidl_lang.solver.problem import (
+    GroupFailure,
+    Problem,
+    Row,
+    Solution,
+    StageReport,
+    Status,
+    depths,
+    violations,
+)
+from aidl_lang.solver.riding import Memory, Recollection, riding_depths
 from aidl_lang.solver.settings import Settings, Stages
-from aidl_lang.solver.solution import GroupFailure, Solution, StageReport, Status
-from aidl_lang.solver.tiers import OWN, Scope, Tier, stage_name
+from aidl_lang.solver.tiers import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:
@@ -59,16 +66,17 @@ class Hierarchy:
         """The values (n,) after the last depth."""
         self._broken: set[int] = set()
         self._levels: Levels | None = None
-
-    # Lists are quicker to read one by one than arrays; they are made when the first group asks.
-
-    @cached_property
-    def _kept(self) -> list[bool]:
-        return list(map(bool, self.problem.kept))
-
-    @cached_property
-    def _frame(self) -> list[bool]:
-        return list(map(bool, self.problem.frame_of >= 0))
+        self._group_depths = depths(problem.parent)
+        # Lists are quicker to read one by one than arrays.
+        self.is_kept: list[bool] = problem.kept.tolist()
+        """Tells of each unknown whether it is a kept size."""
+        self.is_spanned: list[bool] = problem.spanned.tolist()
+        """Tells of each unknown whether it is a size that was read off two places."""
+        self.is_hard: list[bool] = np.isnan(problem.weight).tolist()
+        self._is_frame: list[bool] = (problem.frame_of >= 0).tolist()
+        self._is_standing: list[bool] = problem.standing.tolist()
+        self._sealed: list[int] = problem.sealed.tolist()
+        self._depth: list[int] = self._group_depths[problem.group].tolist()
 
     @cached_property
     def _rides(self) -> list[int]:
@@ -76,32 +84,8 @@ class Hierarchy:
         places) that no constraint around that group names: for groups above that depth it rides along with
         its parent. 0 if all are named.
         """
-        return list(map(int, riding_depths(self.problem, self._group_depths)))
-
-    @cached_property
-    def _standing(self) -> list[bool]:
-        return list(map(bool, self.problem.standing))
-
-    @cached_property
-    def _spanned(self) -> list[bool]:
-        return list(map(bool, self.problem.spanned))
-
-    @cached_property
-    def _depth_of_group(self) -> list[int]:
-        return list(map(int, self._group_depths))
-
-    @cached_property
-    def _hard(self) -> list[bool]:
-        return list(map(bool, np.isnan(self.problem.weight)))
-
-    @cached_property
-    def _depth(self) -> list[int]:
-        """The depth of the group of each unknown."""
-        return list(map(int, self._group_depths[self.problem.group]))
-
-    @cached_property
-    def _group_depths(self) -> NDArray[np.intp]:
-        return depths(self.problem.parent)
+        rides: list[int] = riding_depths(self.problem, self._group_depths).tolist()
+        return rides
 
     @cached_property
     def _held_by(self) -> dict[int, list[int]]:
@@ -165,9 +149,7 @@ class Hierarchy:
                 recollection.note(depth, self.reached)
 
     def _solve_together(self, depth: int, known: Bools) -> None:
-        """Solves the groups at `depth`, but for those `known` (g,), at once; then, one by one, those that
-        remain unsolved.
-        """
+        """Solves the groups at `depth`, but for `known` (g,), at once; then one by one those that remain."""
         if self._levels is None:
             from aidl_lang.solver.levels import Levels
 
@@ -190,9 +172,7 @@ class Hierarchy:
             self.reached[:] = self.values.unknowns
 
     def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
-        """Reports the stages, but for those that are tried again; returns the last stage that helped each
-        group.
-        """
+        """Reports the stages but those that are tried again; returns the last that helped each group."""
         passed: dict[int, Tier] = {}
         for stage in stages:
             name = stage_name(stage.tier)
@@ -205,9 +185,7 @@ class Hierarchy:
         return passed
 
     def violations(self) -> Floats:
-        """Returns the violation of each row (r,) at the end, in the row's units; infinite if it has no
-        value.
-        """
+        """Returns the violation of each row (r,) at the end, in its units; infinite if it has no value."""
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
         self.values.assign(enumerate(self.reached.tolist()))
@@ -225,50 +203,33 @@ class Hierarchy:
 
     def tier(self, group: int, unknown: int, placed: Mapping[int, int]) -> Tier:
         """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
-        depth = self._depth_of_group[group]
+        depth = int(self._group_depths[group])
         level = self._depth[unknown] - depth
+        if self._sealed[unknown] > depth:
+            return SEALED
         match self.settings.stages:
             case Stages.FLAT:
                 return OWN
-            case Stages.PAPER if self._frame[unknown]:
+            case Stages.PAPER if self._is_frame[unknown]:
                 return (3, 1 + level)
             case Stages.PAPER:
                 return (4, level) if level else OWN
-            case _:
-                pass
-        if self._kept[unknown]:
-            if self._spanned[unknown] and unknown in placed:
+        if self.is_kept[unknown]:
+            if self.is_spanned[unknown] and unknown in placed:
                 return (4, level) if level else (1, 2)
             return (6, 0 if unknown in placed else 1 + level)
         if self._rides[unknown] > depth:
             return (5, level)
         if level == 0:
-            return (1, placed[unknown]) if unknown in placed else (2, int(self._standing[unknown]))
-        is_translated = self._frame[unknown] and self.settings.stages is not Stages.LEVEL
+            return (1, placed[unknown]) if unknown in placed else (2, int(self._is_standing[unknown]))
+        is_translated = self._is_frame[unknown] and self.settings.stages is not Stages.LEVEL
         return (3, level) if is_translated else (4, level)
-
-    @cached_property
-    def all_hard(self) -> bool:
-        return all(self._hard)
-
-    def is_hard(self, index: int) -> bool:
-        return self._hard[index]
-
-    def is_kept(self, unknown: int) -> bool:
-        """Tells whether an unknown is a kept size."""
-        return self._kept[unknown]
-
-    def is_spanned(self, unknown: int) -> bool:
-        """Tells whether an unknown is a size that was read off two places."""
-        return self._spanned[unknown]
 
     def held_by(self, group: int) -> list[int]:
         return self._held_by.get(group, [])
 
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
-        """Yields the constraints of `group` and its descendants that mention an unknown, without those that
-        could not be met.
-        """
+        """Yields the constraints of `group` and below it that mention an unknown, without those not met."""
         constraints, broken = self.problem.constraints, self._broken
         return (
             index
@@ -306,7 +267,7 @@ class Hierarchy:
         among the positions that these allow the nearest is taken.
         """
         rows = self.rows(scope.constraints)
-        sizes = [unknown for unknown in scope.free if self._kept[unknown]]
+        sizes = [unknown for unknown in scope.free if self.is_kept[unknown]]
         metric = self.firm if sizes else self.metric
         before = self.save(scope.free)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts, turning)
@@ -387,7 +348,6 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
 
 
 def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
-    """Returns the status by which of the hard constraints hold."""
     if satisfied.all():
         return Status.SOLVED
     if timed_out or not satisfied.any():

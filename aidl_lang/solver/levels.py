@@ -162,9 +162,7 @@ class Levels:
     # -- parts and scopes
 
     def _parts(self, active: Bools) -> tuple[Ints, Ints]:
-        """Returns the part of each constraint and of each unknown: the connected parts that the active
-        constraints link.
-        """
+        """Returns the connected part, by active constraints, of each constraint and of each unknown."""
         count = len(active)
         pairs = np.flatnonzero(active[self.constraints])
         labels = components(self.constraints[pairs], self.unknowns[pairs] + count, count + len(self.x))
@@ -189,7 +187,7 @@ class Levels:
         tier = np.where(problem.kept, sizes, tier)
         span = np.where(level == 0, KINDS["placed"] * DEPTHS + 2, KINDS["positions"] * DEPTHS + level)
         tier = np.where(problem.spanned & placed, span, tier)
-        return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
+        return np.where((level < 0) | (problem.sealed > depth), (KINDS["sizes"] + 1) * DEPTHS, tier)
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
         """Returns the mask of parts (p,) that have something free in every violated constraint."""
@@ -348,10 +346,8 @@ class Levels:
             None if metric.longest is None else metric.longest[columns],
             metric.unit[columns],
         )
-        settings = self.settings
-        outcome = newton.solve(
-            system, TIGHTER * settings.tolerance, settings.iterations, self.clock, restarts=0
-        )
+        tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations
+        outcome = newton.solve(system, tolerance, iterations, self.clock, restarts=0)
         if outcome.converged:
             x[columns] += metric.scale[columns] * outcome.z
         return outcome.end
@@ -420,9 +416,7 @@ class _Stack:
         return bool((self.done | self.failed).all())
 
     def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats | None) -> None:
-        """Takes one step of each system that is not settled, from the residuals and derivatives at its
-        place.
-        """
+        """Takes one step of each unsettled system, from the residuals and derivatives at its place."""
         b, m = self.rows.shape
         k = self.columns.shape[1]
         jacobian = np.zeros(b * m * k)

@@ -97,9 +97,7 @@ def _least_norm_of_one(jacobian: Floats, y: Floats) -> LeastNorm:
 
 
 def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
-    """Solves the normal equations and refines the solution once; returns None if they are not to be
-    trusted.
-    """
+    """Solves the normal equations and refines the solution once; None if they are not to be trusted."""
     if len(y) > jacobian.shape[1]:
         return None
     gram = jacobian @ jacobian.T
@@ -199,10 +197,6 @@ class DampedSteps:
             return np.asarray(-(shrunk @ self._vt))
         damped = self._gram + max(mu, 1e-10 * self.largest) * np.eye(len(self._gram))
         return np.asarray(-(self._jacobian.T @ np.linalg.solve(damped, self._residuals)))
-
-
-def damped_steps(jacobian: Matrix, residuals: Floats) -> DampedSteps:
-    return DampedSteps(jacobian, residuals)
 
 
 def with_slacks(jacobian: Matrix, slacks: Floats) -> Matrix:
@@ -335,6 +329,5 @@ class _DualActiveSet:
 
 
 def _scaled(factors: Floats) -> Floats:
-    """Returns factors in units of the greatest."""
     scaled: Floats = factors / np.abs(factors).max()
     return scaled

@@ -91,9 +91,7 @@ class _Rest:
         return float(np.linalg.norm(self.rest))
 
     def left(self, chosen: Sequence[int]) -> float:
-        """Returns the part of the rest that is left when some columns have taken up what they can; 0 if that
-        is nothing.
-        """
+        """Returns the part of the rest that some columns cannot take up; 0 if that is nothing."""
         basis = _basis(self.columns[:, chosen])
         left = float(np.linalg.norm(self.rest - basis @ (basis.T @ self.rest))) / self.size
         return left if left > NOTHING else 0.0
@@ -184,9 +182,8 @@ class _Loosening:
             parts = self._grouped([k for k in able if dear[k] == dearness], lambda k: self._part(locked[k]))
             following = [k for k in able if dearness[0] > POSITIONS and locked[k] in placed]
             chosen = set(rest.fewest(parts, given, following))
-            things = self._grouped(
-                [k for k in able if k in chosen], lambda k: ("thing", int(self.thing[locked[k]]))
-            )
+            taken = [k for k in able if k in chosen]
+            things = self._grouped(taken, lambda k: ("thing", int(self.thing[locked[k]])))
             found += rest.fewest(things, given)
         return frozenset(locked[k] for k in found)
 
@@ -195,7 +192,7 @@ class _Loosening:
         Within parts sizes that are free to change come before both.
         """
         tier, axis = self.tiers.tier(unknown), self.hierarchy.problem.axis
-        if self.hierarchy.is_kept(unknown):
+        if self.hierarchy.is_kept[unknown]:
             return tier, 2
         return tier, int(tier < DEEP or axis is None or axis[unknown] >= 0)
 
@@ -224,9 +221,8 @@ class _Loosening:
             share, length = np.abs(rest.rest @ rest.columns), np.linalg.norm(rest.columns, axis=0)
             helping = {locked[k] for k in np.flatnonzero(share > NOTHING * length * rest.size)}
             groups = {int(problem.group[u]) for u in helping if tier(u) < POSITIONS}
-            around = [
-                u for u in known if u in helping or (int(problem.group[u]) in groups and tier(u) < POSITIONS)
-            ]
+            beside = {u for u in known if int(problem.group[u]) in groups and tier(u) < POSITIONS}
+            around = [u for u in known if u in helping or u in beside]
             if helping:
                 yield around, RIDING if is_small else last
                 if is_small:
@@ -236,7 +232,7 @@ class _Loosening:
         """Returns the constraints of the scope, and those that bind unknowns outside of it."""
         hierarchy = self.hierarchy
         found = {i for unknown in locked for i in hierarchy.solved_mentioning(unknown, self.tiers.group)}
-        return sorted(filter(hierarchy.is_hard, found.union(self.constraints)))
+        return sorted(filter(hierarchy.is_hard.__getitem__, found.union(self.constraints)))
 
     def _rest(self, constraints: Sequence[int], locked: Sequence[int]) -> _Rest:
         """Returns the rest of the rows of some constraints. An inequality counts where it does not hold, or
@@ -248,7 +244,7 @@ class _Loosening:
         owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
         place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
         matrix = np.zeros((len(owned), len(place)))
-        ends = None if any(map(hierarchy.is_kept, place)) else hierarchy.values.still()
+        ends = None if any(map(hierarchy.is_kept.__getitem__, place)) else hierarchy.values.still()
         slopes = gradients(hierarchy.values, [row.expression for row in owned], ends=ends)
         for i, row in enumerate(owned):
             for unknown, slope in slopes[row.expression].items():
@@ -325,8 +321,8 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
         off = abs(hierarchy.values.unknowns[size] - before[size])
         return -off / abs(before[size]) if before[size] else -np.inf, hierarchy.name(size)
 
-    known = filter(hierarchy.is_kept, scope.free)
-    sizes = [u for u in known if not hierarchy.is_spanned(u) and hierarchy.moved(u, before[u])]
+    known = filter(hierarchy.is_kept.__getitem__, scope.free)
+    sizes = [u for u in known if not hierarchy.is_spanned[u] and hierarchy.moved(u, before[u])]
     if not 2 <= len({int(hierarchy.problem.thing[size]) for size in sizes}) <= len(sizes) <= SPARING:
         return
     for size in sorted(sizes, key=change):
@@ -342,9 +338,7 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
 
 
 def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
-    """Tells whether unknowns in curved rows moved about as far as the slopes promised, not through a singular
-    place.
-    """
+    """Tells whether unknowns in curved rows moved about as far as the slopes promised."""
     off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 

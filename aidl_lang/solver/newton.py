@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.solver.linear import Matrix, damped_steps, nearest, with_slacks
+from aidl_lang.solver.linear import DampedSteps, Matrix, nearest, with_slacks
 from aidl_lang.solver.operations import Floats
 
 GAIN = 0.1
@@ -82,9 +82,7 @@ class NewtonResult:
 
 @record(frozen=False)
 class Clock:
-    """The time of one solve: processor time of this thread, so that the answer does not depend on other work
-    of the machine.
-    """
+    """The time of one solve: of this thread on the processor, whatever else the machine works on."""
 
     seconds: float
     start: float = field(default_factory=time.thread_time)
@@ -135,9 +133,7 @@ class System:
     ) -> None:
         slacks = 0 if softness is None else int(np.count_nonzero(softness > 0.0))
         self.longest = None if longest is None else np.append(longest / scale, np.full(slacks, np.inf))
-        self.stretch = (
-            np.ones(len(scale) + slacks) if unit is None else np.append(unit / scale, np.ones(slacks))
-        )
+        self.stretch = np.append(np.ones(len(scale)) if unit is None else unit / scale, np.ones(slacks))
         self.program, self.origin, self.scale, self.inequality = program, origin, scale, inequality
         self.linear = program.linear
         self._has_inequalities = bool(inequality.any())
@@ -220,9 +216,7 @@ def _turned(system: System) -> Iterator[Floats]:
 
 
 def perturbation(size: int, turn: int = 0) -> Floats:
-    """Returns a fixed direction in which no two unknowns move alike: multiples of the golden ratio modulo
-    1.
-    """
+    """Returns a direction in which no two unknowns move alike: multiples of the golden ratio modulo 1."""
     phases = np.arange(1, size + 1) * GOLDEN + turn * SILVER
     direction: Floats = 2.0 * np.mod(phases, 1.0) - 1.0
     return direction
@@ -247,9 +241,7 @@ class _Newton:
         return self._refine(self._polish(reached) if self._isolated is None else reached)
 
     def _refine(self, found: NewtonResult) -> NewtonResult:
-        """Takes a last step for the last digits: the tolerance says when to stop, not how exact a drawing
-        is.
-        """
+        """Takes a step for the last digits: the tolerance says when to stop, not how exact a drawing is."""
         system = self.system
         if found.violation <= ROUNDED:
             return found
@@ -334,7 +326,7 @@ class _Newton:
                     return *taken, 0.0
         self._isolated = None
         rows = ~system.inequality | (residuals > 0.0)
-        damped = damped_steps(jacobian[rows], residuals[rows])
+        damped = DampedSteps(jacobian[rows], residuals[rows])
         largest = damped.largest
         # Written so that it ends with what overflows or vanishes as well.
         if not FLAT * np.sqrt(largest * merit) < damped.slope < np.inf or not TINY < largest < np.inf:
@@ -351,9 +343,7 @@ class _Newton:
         return None
 
     def _bounded(self, step: Floats) -> tuple[Floats, float]:
-        """Returns the step, or its greatest share in which no unknown moves further than it may at once, and
-        that share.
-        """
+        """Returns the step, or its greatest share that moves no unknown too far at once, and that share."""
         longest = self.system.longest
         if longest is None:
             return step, 1.0
@@ -371,9 +361,7 @@ class _Newton:
     # -- polishing
 
     def _polish(self, feasible: NewtonResult) -> NewtonResult:
-        """Moves from a feasible point to the nearest one; returns the point as it is if that cannot be
-        reached.
-        """
+        """Moves from a feasible point to the nearest one; returns it as it is if that cannot be reached."""
         system = self.system
         z, best, history = feasible.z, feasible, _Anderson()
         relaxation, shortest = 1.0, np.inf

@@ -75,9 +75,6 @@ IDENTITY = 40
 """The code, on arrays, of a branching node whose branch is chosen; beyond the codes of `Op`."""
 
 
-# ---- scalar values ------------------------------------------------------------------------------------
-
-
 def _div(a: float, b: float) -> float:
     if b != 0.0:
         return a / b
@@ -149,9 +146,7 @@ def cubic_maximiser(p0: float, p1: float, p2: float, p3: float) -> float:
 
 
 def _quadratic_roots(a: float, half_b: float, c: float) -> tuple[float, ...]:
-    """Returns the real roots of a t² + 2 half_b t + c, without cancellation (Numerical Recipes, section
-    5.6).
-    """
+    """Returns the real roots of a t² + 2 half_b t + c without cancellation (Numerical Recipes, 5.6)."""
     discriminant = half_b * half_b - a * c
     if not (discriminant >= 0.0 and math.isfinite(discriminant)):
         return ()
@@ -196,9 +191,6 @@ VALUE: dict[int, Callable[..., float]] = {
     Op.SELECT: lambda c, a, b: a if c >= 0.0 else b,
     Op.CUBIC_MAX: _cubic_max,
 }
-
-
-# ---- scalar partial derivatives: (a, b, value) -> (d/da, d/db) ------------------------------------------
 
 
 def _finite(d: float) -> float:
@@ -258,9 +250,6 @@ PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.SELECT: lambda c, a, b, _: (0.0, 1.0, 0.0) if c >= 0.0 else (0.0, 0.0, 1.0),
     Op.CUBIC_MAX: _d_cubic_max,
 }
-
-
-# ---- on arrays, many nodes at once; rare operations are left to the functions above ---------------------
 
 
 def values_of(op: int, operands: tuple[Floats, ...]) -> Floats:

@@ -1,8 +1,4 @@
-"""The input of the solver: unknowns, expressions and constraints over a tree of groups, as plain arrays.
-
-Nothing here knows of the language. A *group* is what a structure is to the language: it owns unknowns and
-constraints, and has a parent. A constraint held by a group mentions only unknowns of that group's subtree.
-"""
+"""The input of the solver and its output, as plain data."""
 
 from __future__ import annotations
 
@@ -18,6 +14,11 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.settings import Settings as Settings
+
+# --- The input of the solver: unknowns, expressions and constraints over a tree of groups, as plain arrays.
+#
+# Nothing here knows of the language. A *group* is what a structure is to the language: it owns unknowns and
+# constraints, and has a parent. A constraint held by a group mentions only unknowns of that group's subtree.
 
 Floats = NDArray[np.float64]
 
@@ -103,6 +104,8 @@ class Problem:
     spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch
     rigid    (g,) True for a group of which constraints around it name one thing at most: it moves as a whole,
              and what is in it moves against its frame only as if no constraint named it
+    sealed   (n,) depth of the innermost group around an unknown in which nothing moves for constraints of the
+             groups around it; 0 for none
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride
@@ -131,6 +134,7 @@ class Problem:
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     rigid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    sealed: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     thing: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     clinging: frozenset[int] | None = None
     observables: tuple[tuple[int, int], ...] = ()
@@ -143,6 +147,7 @@ class Problem:
             ("standing", np.zeros(count, dtype=np.bool_)),
             ("spanned", np.zeros(count, dtype=np.bool_)),
             ("rigid", np.zeros(groups, dtype=np.bool_)),
+            ("sealed", np.zeros(count, dtype=np.intp)),
             ("thing", np.zeros(count, dtype=np.intp)),
         ):
             if len(getattr(self, name)) != len(usual):
@@ -161,17 +166,11 @@ class Problem:
             strict=True,
         ):
             rows[owner].append(Row(expression, Relation.AT_MOST if at_most else Relation.EQUAL, scale))
-        placed, whole, inside = (
-            _by_constraint(pairs, len(rows)) for pairs in (self.placed, self.whole, self.inside)
-        )
+        listed_pairs = (self.placed, self.whole, self.inside)
+        placed, whole, inside = (_by_constraint(pairs, len(rows)) for pairs in listed_pairs)
         return tuple(
             Constraint(
-                holder,
-                tuple(rows[i]),
-                placed[i],
-                None if weight != weight else weight,
-                whole[i],
-                inside[i],
+                holder, tuple(rows[i]), placed[i], None if weight != weight else weight, whole[i], inside[i]
             )
             for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
         )
@@ -238,3 +237,123 @@ def violations(problem: Problem, nodes: Floats) -> Floats:
     value = nodes[problem.rows.expression]
     violation = np.where(problem.rows.at_most, np.maximum(value, 0.0), np.abs(value))
     return np.where(np.isnan(value), np.inf, violation)
+
+
+# --- The solution of a problem: the result as data, never an exception.
+
+
+class Status(StrEnum):
+    SOLVED = "solved"
+    """Every hard constraint holds."""
+    PARTIAL = "partial"
+    """Some groups could be solved, others not; the values are the best reached."""
+    FAILED = "failed"
+    """No useful set of constraints holds together; the values are the best reached."""
+
+
+class Failure(StrEnum):
+    """Reason for which a group could not be solved."""
+
+    CONTRADICTORY = "contradictory"
+    """A proof refuted it, or the search for the conflict failed from many places."""
+    OVERDETERMINED = "over-determined"
+    """The same, with more equations than unknowns, some of them curved: other values would not help."""
+    NOT_CONVERGED = "not converged"
+    TIMED_OUT = "timed out"
+
+
+@record()
+class Member:
+    """A constraint in a conflict; `off` is its violation where the search came nearest, in row units."""
+
+    index: int
+    off: float
+
+
+@record()
+class GroupFailure:
+    """A group whose constraints could not be met.
+
+    members   constraints that cannot hold together, by index; without any one of them the others hold when
+              `minimal`, else they are those that were violated
+    moving    the unknowns that could move for them
+    equations the number of their rows that are equations
+    work      rows times unknowns of the attempts that this took
+    holds_elsewhere True if the members hold at `nearest` after all, found from another place than the first
+              guesses
+    within    all constraints that took part in the search, by index
+    nearest   (unknown, value) where the search for the members came nearest, of all that was free
+    gaps      (member, residual of its one row where the others hold), if equations alone contradict
+    is_curved True if the slopes of the members' rows depend on the place
+    sizes     the kept sizes in members that hang on no position, as `a.radius == 6` does
+    """
+
+    group: int
+    reason: Failure
+    members: tuple[Member, ...]
+    minimal: bool = False
+    moving: tuple[int, ...] = ()
+    equations: int = 0
+    work: int = 0
+    holds_elsewhere: bool = False
+    within: tuple[int, ...] = field(default=(), repr=False)
+    nearest: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+    gaps: tuple[tuple[int, float], ...] = ()
+    is_curved: bool = False
+    sizes: frozenset[int] = frozenset()
+
+    @property
+    def conflict(self) -> tuple[int, ...]:
+        """The indices of the members."""
+        return tuple(member.index for member in self.members)
+
+
+@record(eq=False)
+class Concession:
+    """The dear unknowns that moved at a stage: kept sizes, frames that stood where their content is exact,
+    unknowns that ride along. The values (n,) are those before the stage; `conflicts.reasons` finds the
+    constraints that asked for it.
+
+    unknowns    those that gave way
+    free        all that could move
+    constraints those that bound them
+    """
+
+    unknowns: frozenset[int]
+    free: frozenset[int]
+    constraints: tuple[int, ...]
+    values: Floats
+
+
+@record()
+class StageReport:
+    """One stage tried while solving one group; for tracing and for tests of the order of stages."""
+
+    group: int
+    stage: str
+    unknowns: int
+    rows: int
+    succeeded: bool
+    concession: Concession | None = None
+    despite: tuple[int, ...] = ()
+    """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
+
+
+@record()
+class Solution:
+    """
+    values         (n,) solved unknowns
+    residuals      per constraint, the largest violation of its rows (0 for an inequality that holds),
+                   evaluated on the original expressions at `values`, in the units of the row
+    satisfied      per constraint
+    changed        unknowns of kept sizes that had to change
+    stages         the stages tried, in order
+    """
+
+    status: Status
+    values: Floats
+    residuals: tuple[float, ...]
+    satisfied: tuple[bool, ...]
+    changed: tuple[int, ...]
+    failures: tuple[GroupFailure, ...]
+    stages: tuple[StageReport, ...]

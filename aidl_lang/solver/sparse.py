@@ -211,9 +211,7 @@ class NullSpace:
         self._solve = gram_solver(self._rows)
 
     def sample(self, matrix: Sparse, count: int) -> Floats:
-        """Returns random combinations of the rows of `matrix`, projected onto the null space: (width,
-        count).
-        """
+        """Returns random combinations of rows of `matrix`, projected onto the null space: (width, count)."""
         rows = as_csr(matrix, self._rows.shape[1])
         found: Floats = rows.T @ np.random.default_rng(0).standard_normal((len(matrix), count))
         for _ in range(2):  # the second time for the digits that the square in `gram_solver` costs
@@ -275,17 +273,9 @@ def _pivots(rest: sp.csr_array) -> tuple[Ints, Ints]:
 
 
 def _untouched(
-    rows: Ints,
-    columns: Ints,
-    by_column: Ints,
-    starts: Ints,
-    candidate: Ints,
-    priority: Floats,
-    width: int,
+    rows: Ints, columns: Ints, by_column: Ints, starts: Ints, candidate: Ints, priority: Floats, width: int
 ) -> tuple[Ints, Ints]:
-    """Returns the candidates (one to a row) that come before all those they touch, then the same of the
-    rest.
-    """
+    """Returns the candidates (one to a row) before all those they touch, then the same of the rest."""
     column_starts = np.flatnonzero(np.diff(columns[by_column], prepend=-1))
     column_names = columns[by_column][column_starts]
     taken: list[Ints] = []
@@ -312,9 +302,7 @@ def _untouched(
 
 
 def _eliminate(rest: sp.csr_array, names: Ints, rows: Ints, pivots: Ints) -> tuple[sp.csr_array, Ints]:
-    """Returns the Schur complement of the pivots: the other rows without their part along the pivots'
-    columns.
-    """
+    """Returns the Schur complement of the pivots: the other rows without their part along these columns."""
     place = np.full(rest.shape[1], -1)
     place[pivots] = np.arange(len(pivots))
     upper = rest[rows]

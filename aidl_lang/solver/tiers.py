@@ -13,6 +13,7 @@ At a group every unknown of its subtree has a tier, which says at which stage it
     (6, 0)  kept size that a constraint places, at any level
     (6, 1)  own kept size
     (6, 1 + d)  kept size of a group d levels below
+    (9, 1)  what is in a group that is sealed: it is never freed
 
 A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
 constraints of descendants that mention something free. Those constraints are the ones that a move could
@@ -45,7 +46,8 @@ POSITIONS: Tier = (6, -1)
 """A tier after those of all positions, before the first one of kept sizes."""
 SIZES: Tier = (6, 0)
 ENDLESS: Tier = (9, 0)
-"""A tier after all."""
+"""A tier after all that may be freed."""
+SEALED: Tier = (9, 1)
 
 NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
 
@@ -91,7 +93,8 @@ class Tiers:
         constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
         placing = [index for index in indices if constraints[index].placed & mentions[index]]
         unmet = set(hierarchy.unmet(placing))
-        sizing = {i for i in placing if any(map(hierarchy.is_kept, constraints[i].placed & mentions[i]))}
+        is_kept = hierarchy.is_kept
+        sizing = {i for i in placing if any(is_kept[u] for u in constraints[i].placed & mentions[i])}
         for index, reached in self.reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)
@@ -119,7 +122,7 @@ class Tiers:
                     continue
                 free.add(unknown)
                 for index in hierarchy.solved_mentioning(unknown, self.group):
-                    if index not in constraints and hierarchy.is_hard(index):
+                    if index not in constraints and hierarchy.is_hard[index]:
                         constraints.add(index)
                         stack.append(index)
         return Scope(frozenset(free), tuple(sorted(constraints)))
@@ -140,7 +143,7 @@ class Tiers:
         hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
         hierarchy.refresh(indices)
         mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
-        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept(u)))
+        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept[u]))
         slopes: dict[int, Mapping[int, float]] = {}
         bent: list[int] = []
         for index in indices:
@@ -163,9 +166,7 @@ class Tiers:
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def independent(self, constraints: Iterable[int]) -> list[list[int]]:
-        """Returns the constraints in independent parts, by the unknowns they share that could ever move, in
-        their order.
-        """
+        """Returns the constraints in independent parts, by the unknowns they share that could ever move."""
         parts: list[list[int]] = []
         left = list(constraints)
         while left:

@@ -62,9 +62,8 @@ class Valuation:
         sizes = self.kept & free
         found = self._forms.get(sizes)
         if found is None or not found.is_fresh:
-            found = self._forms[sizes] = Forms(
-                self.tape, self.unknowns, self.kept - sizes, self._value_of(sizes)
-            )
+            value_of = self._value_of(sizes)
+            found = self._forms[sizes] = Forms(self.tape, self.unknowns, self.kept - sizes, value_of)
         return found
 
     def _value_of(self, sizes: frozenset[int]) -> Callable[[int], float | None]:

@@ -1,3 +1,1 @@
-"""The syntax: text becomes a tree (`ast`), and a tree its canonical text (`printer`). `parser` is the
-door.
-"""
+"""The syntax: text becomes a tree (`ast`), a tree its canonical text (`printer`). `parser` is the door."""

@@ -19,9 +19,7 @@ class Node:
     span: Span = field(repr=False)
 
     def __repr__(self) -> str:
-        """Returns what dataclasses print, without the span; one for all, as making one for each slows the
-        start.
-        """
+        """Returns what dataclasses print, without the span; one for all, as many would slow the start."""
         shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
         return f"{type(self).__name__}({', '.join(shown)})"
 
@@ -31,9 +29,6 @@ class Identifier(Node):
     """A name at the place where it is written (a definition, a member, an argument's name)."""
 
     text: str
-
-
-# --- Expressions ---------------------------------------------------------------------------------
 
 
 @record(eq=False, repr=False)
@@ -145,9 +140,7 @@ class ForArguments(Node):
 
 @record(eq=False, repr=False)
 class IfArguments(Node):
-    """`if test { arguments } else { arguments }` among the arguments of a call; `else if` is a block that
-    holds one more.
-    """
+    """`if test { arguments } else { arguments }` among the arguments of a call; `else if` holds one more."""
 
     test: Expression
     then: ArgumentBlock
@@ -189,9 +182,7 @@ class Membership(Node):
 
 @record(eq=False, repr=False)
 class Range(Node):
-    """`start..end` (both ends) or `start..<end` (without the last); one that a `for` counts through may have
-    a `step`.
-    """
+    """`start..end` (both ends) or `start..<end` (without the last); for a `for` it may have a `step`."""
 
     start: Expression
     end: Expression
@@ -228,9 +219,6 @@ Expression: TypeAlias = (
     | Range
     | Conditional
 )
-
-
-# --- Statements ----------------------------------------------------------------------------------
 
 
 @record(eq=False, repr=False)
@@ -464,16 +452,7 @@ Statement: TypeAlias = (
     | Todo
 )
 
-DEFINITIONS = (
-    Import,
-    Param,
-    Let,
-    Alias,
-    FunctionDefinition,
-    ShapeDefinition,
-    ConstraintDefinition,
-    Todo,
-)
+DEFINITIONS = (Import, Param, Let, Alias, FunctionDefinition, ShapeDefinition, ConstraintDefinition, Todo)
 """Statements that may stand beside the one structure of a file without making an assembly around both."""
 
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
@@ -549,9 +528,7 @@ _NUMBERS = {kind: number for number, kind in enumerate(_CLASSES)}
 
 
 def encoded(value: object) -> object:
-    """Returns a tree as data, without the text it was parsed from. Raises TypeError for a value that no tree
-    has.
-    """
+    """Returns a tree as data, without its text. Raises TypeError for a value that no tree has."""
     if isinstance(value, Node):
         names: tuple[str, ...] = value.__match_args__  # every field but the span
         fields = [encoded(getattr(value, name)) for name in names]

@@ -14,8 +14,7 @@ from lark.parsers.lalr_parser_state import ParserState
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tables import END, PlacedTree, Token, load_tables
-from aidl_lang.syntax.words import STATEMENT_WORDS
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, PlacedTree, Token, load_tables
 
 # --- Lark's parser at a place in a text, with what recovery asks of it and does to its stacks.
 
@@ -41,9 +40,7 @@ class Automaton:
         self.tree: Tree[Token] | None = None  # of the whole text, when its end was taken
 
     def feed(self, token: Token) -> bool:
-        """Takes one token. Returns False if it cannot stand here; the statement before it may be complete by
-        then.
-        """
+        """Takes one token. Returns False if it cannot stand here; what is before may be complete."""
         if token.kind in self.tables.soft_words:
             token.type = self._type(self.states, token.kind)
         try:
@@ -126,9 +123,7 @@ class Automaton:
         return sum(1 for token in self.open_brackets() if token.kind == "{")
 
     def accepts(self, kinds: Iterable[str], from_statement: bool = False) -> bool:
-        """Tells whether tokens of these kinds could come next, or in the place of the whole statement under
-        way.
-        """
+        """Tells whether tokens of these kinds could come next, or in place of the statement under way."""
         states = list(self.states)
         while from_statement and states[-1] not in self.tables.statement_states:
             states.pop()
@@ -160,9 +155,7 @@ class TokenRepair:
 
 @record()
 class SyntaxProblem:
-    """A diagnostic and its repair. `with_block`: if there is no repair, the block of the statement is left
-    out as well.
-    """
+    """A diagnostic and its repair. `with_block`: without one, the statement's block is left out as well."""
 
     diagnostic: Diagnostic
     repair: TokenRepair | None = None
@@ -171,9 +164,7 @@ class SyntaxProblem:
 
 @record()
 class Trouble:
-    """The token number `position`, which cannot stand in the automaton's state; `begin` is the first of its
-    statement.
-    """
+    """The token number `position`, which cannot stand where it does; `begin` is its statement's first."""
 
     source: SourceFile
     tokens: list[Token]
@@ -282,9 +273,8 @@ def wrong(
     """Returns a problem; with what is `right`, the fix writes that."""
     if right is not None:
         fix = replaced(f"write `{right}`", span, right)
-    return SyntaxProblem(
-        Diagnostic(code, message, span, label, secondary, hints=hints, fix=fix), repair, with_block
-    )
+    diagnostic = Diagnostic(code, message, span, label, secondary, hints, fix)
+    return SyntaxProblem(diagnostic, repair, with_block)
 
 
 def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:
@@ -303,9 +293,7 @@ def line_end(text: str, offset: int) -> int:
 
 
 def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> int:
-    """Returns the number of the token behind the statement at `begin`, which ends with its line at the
-    latest.
-    """
+    """Returns the number of the token behind the statement at `begin`; its line is the latest end."""
     stop = min(begin, len(tokens) - 1)
     end = line_end(source.text, tokens[stop].start)
     last = min(begin + LONGEST, len(tokens) - 1)
@@ -318,7 +306,17 @@ def closing(tokens: Sequence[Token], opening: int) -> int:
     """Returns the number of the bracket that closes one; -1 if it is missing, or beyond LONGEST tokens."""
     depth = 0
     for n in range(opening, min(len(tokens), opening + LONGEST)):
-        depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))
+        depth += tokens[n].nesting
         if depth == 0:
             return n
     return -1
+
+
+def opening(tokens: Sequence[Token], close: int) -> int:
+    """Returns the number of the bracket that one closes; its own if that is missing, or too far away."""
+    depth = 0
+    for n in range(close, max(close - LONGEST, -1), -1):
+        depth += tokens[n].nesting
+        if depth == 0:
+            return n
+    return close

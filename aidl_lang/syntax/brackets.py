@@ -11,11 +11,11 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    opening,
     replaced,
     wrong,
 )
-from aidl_lang.syntax.tables import END, Token, begins_line
-from aidl_lang.syntax.words import VALUE_STARTS
+from aidl_lang.syntax.tables import END, VALUE_STARTS, Token, begins_line
 
 CLOSE_BLOCK = "close the block"
 """The title of the fix for a block that is not closed."""
@@ -36,12 +36,8 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
     asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
         asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
-        if (
-            token.kind == "["
-            and opened[-1:] in ([], ["{"])
-            and "CALL" not in opened
-            and len(found) < _MOST_LISTS
-        ):
+        begins = token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened
+        if begins and len(found) < _MOST_LISTS:
             before = tokens[n - 1].kind if n else ";"
             joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
@@ -68,12 +64,8 @@ def _holds_constraints(tokens: list[Token], brace: int) -> bool:
         return True
     if not brace or tokens[brace - 1].kind != ")":
         return False
-    depth = 0
-    for n in range(brace - 1, max(brace - LONGEST, 0), -1):
-        depth += (tokens[n].kind in (")", "]", "}")) - (tokens[n].kind in _CLOSER)
-        if depth == 0:
-            return tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
-    return False
+    n = opening(tokens, brace - 1)
+    return n > 0 and tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
 
 
 _MOST_LISTS = 100
@@ -86,14 +78,10 @@ def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagno
     fix = replaced("put `constrain` before it", place, "constrain ")
     if not joined:
         return Diagnostic("E0101", "a statement cannot begin with `[`", span, fix=fix)
-    return Diagnostic(
-        "E0125",
-        "a line that begins with `[` continues the line above",
-        span,
-        "read as an index of the expression above",
-        hints=("newlines end no statement; with `constrain` before it a list begins one",),
-        fix=fix,
-    )
+    message = "a line that begins with `[` continues the line above"
+    label = "read as an index of the expression above"
+    hint = "newlines end no statement; with `constrain` before it a list begins one"
+    return Diagnostic("E0125", message, span, label, hints=(hint,), fix=fix)
 
 
 def wrong_closer(t: Trouble) -> SyntaxProblem | None:
@@ -101,18 +89,13 @@ def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
         return None
     opener = t.open[-1]
-    right = _CLOSER[opener.kind]
+    span, right = t.span(opener), _CLOSER[opener.kind]
     if not t.accepts(right):
         return None
-    return wrong(
-        "E0102",
-        f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
-        t.span(opener),
-        "opened here",
-        (Label(t.span(), f"`{right}` belongs here"),),
-        fix=replaced(f"write `{right}`", t.span(), right),
-        repair=t.exchanged(right),
-    )
+    message = f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`"
+    other = Label(t.span(), f"`{right}` belongs here")
+    fix = replaced(f"write `{right}`", t.span(), right)
+    return wrong("E0102", message, span, "opened here", (other,), fix=fix, repair=t.exchanged(right))
 
 
 def semicolons(t: Trouble) -> SyntaxProblem | None:
@@ -126,17 +109,13 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
         token = t.tokens[stop]
         if token.kind in (END, "}") or token.start >= end:
             return None
-        depth += (token.kind in _CLOSER) - (token.kind in _CLOSER.values())
+        depth += token.nesting
     meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
-    return wrong(
-        "E0112",
-        f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement",
-        t.span(),
-        f"within {_BRACKET[t.open[-1].kind]}",
-        fix=Fix("write `,`", edits, is_sure=True),
-        repair=TokenRepair(t.position, stop, meant),
-    )
+    message = f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement"
+    label = f"within {_BRACKET[t.open[-1].kind]}"
+    fix = Fix("write `,`", edits, is_sure=True)
+    return wrong("E0112", message, t.span(), label, fix=fix, repair=TokenRepair(t.position, stop, meant))
 
 
 def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
@@ -150,21 +129,20 @@ def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
         return None
     opener = t.open[-1]
     text = "".join(closers)
-    return wrong(
-        "E0102",
-        f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(t.gap(), f"`{text}` is missing"),),
-        fix=replaced(f"put in `{text}`", t.gap(), text),
-        repair=t.put_in(*closers),
-    )
+    fix = replaced(f"put in `{text}`", t.gap(), text)
+    return _not_closed(t, opener, text, t.gap(), fix, t.put_in(*closers))
+
+
+def _not_closed(
+    t: Trouble, opener: Token, text: str, place: Span, fix: Fix, repair: TokenRepair
+) -> SyntaxProblem:
+    message = f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here"
+    label, other = "opened here and not closed", Label(place, f"`{text}` is missing")
+    return wrong("E0102", message, t.span(opener), label, (other,), fix=fix, repair=repair)
 
 
 def unclosed_block(t: Trouble) -> SyntaxProblem | None:
-    """Recognises a block left open at the end of the file; indentation tells which one was to end, and
-    where.
-    """
+    """Recognises a block left open at the end of the file; indentation tells which was to end, and where."""
     if t.token.kind != END or not t.between:
         return None
     blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
@@ -174,15 +152,7 @@ def unclosed_block(t: Trouble) -> SyntaxProblem | None:
     place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
-    return wrong(
-        "E0102",
-        "expected `}` to close the block that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(place, "`}` is missing"),),
-        fix=replaced(CLOSE_BLOCK, place, closer),
-        repair=t.put_in("}"),
-    )
+    return _not_closed(t, opener, "}", place, replaced(CLOSE_BLOCK, place, closer), t.put_in("}"))
 
 
 def _misindented(t: Trouble, outermost: Token) -> Token | None:
@@ -193,9 +163,8 @@ def _misindented(t: Trouble, outermost: Token) -> Token | None:
             opened.append(token)
         elif token.kind == "}" and opened:
             opener = opened.pop()
-            if begins_line(t.source.text, token.start) and t.indentation(token.start) < t.indentation(
-                opener.start
-            ):
+            outer = t.indentation(opener.start)
+            if begins_line(t.source.text, token.start) and t.indentation(token.start) < outer:
                 return opener
     return None
 
@@ -207,9 +176,8 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
     for token in t.tokens:
         if token.start <= opener.start:
             continue
-        if (
-            begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
-        ) or token.kind == END:
+        is_outside = begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
+        if is_outside or token.kind == END:
             break
         last = token
     return Span(t.source, last.end, last.end)
@@ -218,14 +186,9 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
 def stray_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
         return None
-    return wrong(
-        "E0118",
-        f"`{t.token.text}` closes nothing",
-        t.span(),
-        "no bracket is open here",
-        fix=replaced("remove it", t.span(), ""),
-        repair=t.exchanged(),
-    )
+    message = f"`{t.token.text}` closes nothing"
+    fix = replaced("remove it", t.span(), "")
+    return wrong("E0118", message, t.span(), "no bracket is open here", fix=fix, repair=t.exchanged())
 
 
 def missing_comma(t: Trouble) -> SyntaxProblem | None:
@@ -234,15 +197,10 @@ def missing_comma(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(",", t.token.kind):
         return None
     opener, inside = t.open[-1], _ITEMS[t.open[-1].kind]
-    return wrong(
-        "E0112",
-        f"expected `,` between two {inside}",
-        t.gap(),
-        "a comma is missing here",
-        (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
-        fix=replaced("put in `,`", t.gap(), ","),
-        repair=t.put_in(","),
-    )
+    message, label = f"expected `,` between two {inside}", "a comma is missing here"
+    other = Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here")
+    fix = replaced("put in `,`", t.gap(), ",")
+    return wrong("E0112", message, t.gap(), label, (other,), fix=fix, repair=t.put_in(","))
 
 
 def comma_before_block(t: Trouble) -> SyntaxProblem | None:
@@ -254,7 +212,7 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
         token, before = t.tokens[n], t.tokens[n - 1]
         if token.kind in ("for", "if") and not depth:
             break
-        depth += (token.kind in (")", "]", "}")) - (token.kind in _CLOSER)
+        depth -= token.nesting
         if depth < 0:
             return None
     else:
@@ -262,15 +220,11 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
     if before.kind not in (*_VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
-    return wrong(
-        "E0112",
-        f"expected `,` before a block of arguments that begins with `{token.text}`",
-        place,
-        "a comma is missing here",
-        (Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here"),),
-        fix=replaced("put in `,`", place, ","),
-        repair=TokenRepair(n, n, (Token(",", ",", before.end, before.end),)),
-    )
+    message = f"expected `,` before a block of arguments that begins with `{token.text}`"
+    other = Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here")
+    fix = replaced("put in `,`", place, ",")
+    repair = TokenRepair(n, n, (Token(",", ",", before.end, before.end),))
+    return wrong("E0112", message, place, "a comma is missing here", (other,), fix=fix, repair=repair)
 
 
 def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
@@ -283,15 +237,8 @@ def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     if not t.accepts(*"}" * count, ")"):
         return None
     opener, text = t.open[-1], "}" * count
-    return wrong(
-        "E0102",
-        f"expected `{text}` to close the block that begins here",
-        t.span(opener),
-        "opened here and not closed",
-        (Label(t.gap(), f"`{text}` is missing"),),
-        fix=replaced(f"put in `{text}`", t.gap(), " " + text),
-        repair=t.put_in(*text),
-    )
+    fix = replaced(f"put in `{text}`", t.gap(), " " + text)
+    return _not_closed(t, opener, text, t.gap(), fix, t.put_in(*text))
 
 
 def choice_in_block(t: Trouble) -> SyntaxProblem | None:
@@ -315,14 +262,11 @@ def name_in_block(t: Trouble) -> SyntaxProblem | None:
         message = f"an argument in a block has no name, and this is called `{name}`"
         return wrong("E0119", message, t.span(t.before, t.token), hints=(hint,))
     place = Span(t.source, t.before.start, t.before.start)
-    return wrong(
-        "E0119",
-        f"a block of arguments makes nothing, and `{name} = …` would",
-        t.span(t.before, t.token),
-        fix=replaced("write `let`", place, "let "),
-        hints=(f"`let {name} = …` names a value for the rest of the block",),
-        repair=TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),)),
-    )
+    message = f"a block of arguments makes nothing, and `{name} = …` would"
+    fix = replaced("write `let`", place, "let ")
+    hint = f"`let {name} = …` names a value for the rest of the block"
+    repair = TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),))
+    return wrong("E0119", message, t.span(t.before, t.token), fix=fix, hints=(hint,), repair=repair)
 
 
 def three_coordinates(t: Trouble) -> SyntaxProblem | None:
@@ -330,24 +274,15 @@ def three_coordinates(t: Trouble) -> SyntaxProblem | None:
         return None
     if t.before.kind != "," or not t.accepts(")"):
         return None
-    return wrong(
-        "E0123",
-        "a point has two coordinates: `(x, y)`",
-        t.span(t.open[-1], t.token),
-        "this has a third",
-        hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
-    )
+    message = "a point has two coordinates: `(x, y)`"
+    hint = "drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`"
+    return wrong("E0123", message, t.span(t.open[-1], t.token), "this has a third", hints=(hint,))
 
 
 def stray_comma(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "," or t.open or not t.accepts(";"):
         return None
-    return wrong(
-        "E0122",
-        "statements are not separated by commas",
-        t.span(),
-        "a new line or `;` does",
-        right=";",
-        hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
-        repair=t.exchanged(";"),
-    )
+    message = "statements are not separated by commas"
+    label = "a new line or `;` does"
+    hint = "commas stand between arguments, and between constraints inside `constrain { }`"
+    return wrong("E0122", message, t.span(), label, right=";", hints=(hint,), repair=t.exchanged(";"))

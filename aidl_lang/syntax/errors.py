@@ -9,8 +9,7 @@ from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
 from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
-from aidl_lang.syntax.tables import END, Token
-from aidl_lang.syntax.words import describe
+from aidl_lang.syntax.tables import END, Token, describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     foreign.prose,
@@ -81,9 +80,7 @@ _EXPECTED = (
 
 
 def explain(trouble: Trouble) -> SyntaxProblem:
-    """Returns the first answer to the questions, or else a problem that names the token and what could stand
-    here.
-    """
+    """Returns the first answer to the questions, or a problem that names the token and what could stand."""
     for question in _QUESTIONS:
         if (problem := question(trouble)) is not None:
             return problem
@@ -111,16 +108,11 @@ def _unexpected(t: Trouble) -> SyntaxProblem:
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
-    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call it was meant to
-    be.
-    """
+    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call that was meant."""
     name = token.text[:-1]
     gap = Span(source, token.start + len(name), token.end - 1)
-    return Diagnostic(
-        "E0114",
-        f"the `(` of a call touches its name: `{name}(`",
-        Span(source, token.start, token.end),
-        "a space ends the name here",
-        hints=("newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`",),
-        fix=replaced("remove the space", gap, ""),
-    )
+    message = f"the `(` of a call touches its name: `{name}(`"
+    span = Span(source, token.start, token.end)
+    label = "a space ends the name here"
+    hint = "newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`"
+    return Diagnostic("E0114", message, span, label, hints=(hint,), fix=replaced("remove the space", gap, ""))

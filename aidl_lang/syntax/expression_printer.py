@@ -120,9 +120,7 @@ def render(document: PrintDocument, indent: int, column: int | None = None, afte
 
 
 class ExpressionPrinter:
-    """A printer of expressions. `names` gives spellings that differ from the written ones, for names, members
-    and callees.
-    """
+    """A printer of expressions. `names` gives other spellings for names, members and callees."""
 
     def __init__(self, names: Mapping[ast.Node, str] | None = None) -> None:
         self.names = names or {}
@@ -169,7 +167,6 @@ class ExpressionPrinter:
         return doc(self._argument_block(" else ", block))
 
     def _print(self, node: ast.Expression) -> tuple[int, PrintDocument]:  # noqa: C901 (one case a node)
-        """Returns how tightly a node binds, and its text."""
         match node:
             case ast.Number():
                 return ATOM, doc(node.text + (node.unit or ""))
@@ -230,9 +227,7 @@ class ExpressionPrinter:
                 return CHOICE, doc("if ", self.expression(node.test, OR), " then ", then, " else ", otherwise)
 
     def _owner(self, node: ast.Expression) -> PrintDocument:
-        """Returns the expression before `.` or `[`; a number gets parentheses, as it would swallow the
-        point.
-        """
+        """Returns the expression before `.` or `[`; a number in parentheses, as it would take the point."""
         document = self.expression(node, ATOM)
         return doc("(", document, ")") if isinstance(node, ast.Number) else document
 
@@ -264,9 +259,7 @@ def begins_statement(node: ast.Expression) -> bool:
 
 
 def _begins(node: ast.Expression, level: int) -> bool:
-    """Tells whether the text of an operand begins with something that may begin a statement; parentheses
-    may.
-    """
+    """Tells whether the text of an operand begins with what may begin a statement; parentheses may."""
     match node:
         case ast.Name() | ast.Number() | ast.Point():
             return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import (
     LONGEST,
@@ -19,8 +19,6 @@ from aidl_lang.syntax.automaton import (
     wrong,
 )
 from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
-
-# --- Prose ----------------------------------------------------------------------------------------
 
 _PROSE = re.compile(
     r"[ \t]*(?:#{1,6} |[-*•] |\d+[.)] )?[*_`\"“]*[A-ZÀ-Þ][^{};=@<>|\n]*\Z"  # no sign of the language
@@ -44,21 +42,14 @@ def prose(t: Trouble) -> SyntaxProblem | None:
     while _PROSE_ON.match(line := text[end + 1 : line_end(text, end + 1)]) and end < len(text):
         starts.append(end + 1)
         end += 1 + len(line)
-    stop = next(
-        k for k in range(t.begin, len(t.tokens)) if t.tokens[k].start >= end or t.tokens[k].kind == END
-    )
+    behind = (k for k in range(t.begin, len(t.tokens)) if t.tokens[k].start >= end)
+    stop = next(behind, len(t.tokens) - 1)
     starts[0] = first
     edits = tuple(Edit(Span(t.source, at, at), "// ") for at in starts)
-    return wrong(
-        "E0108",
-        "this is prose, and no part of the program",
-        Span(t.source, first, end),
-        fix=Fix("make it a comment", edits, is_sure=True),
-        repair=TokenRepair(t.begin, stop),
-    )
+    message = "this is prose, and no part of the program"
+    fix = Fix("make it a comment", edits, is_sure=True)
+    return wrong("E0108", message, Span(t.source, first, end), fix=fix, repair=TokenRepair(t.begin, stop))
 
-
-# --- Loops and blocks -----------------------------------------------------------------------------
 
 _LOOP = re.compile(
     r"for\s*(?P<open>\()?\s*(?:(?:let|var|const|int|auto)\s+)?(?P<i>[^\W\d]\w*)\s*"
@@ -72,9 +63,7 @@ _LOOP = re.compile(
 
 
 def foreign_loop(t: Trouble) -> SyntaxProblem | None:
-    """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0
-    to 3`.
-    """
+    """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for i of list` and the like."""
     if t.first.kind != "for" or t.between:
         return None
     end = min(line_end(t.source.text, t.first.start), t.first.start + LONGEST)
@@ -100,22 +89,14 @@ def foreign_loop(t: Trouble) -> SyntaxProblem | None:
     head = [Token("for", "for", start, start + 3), Token("NAME", found["i"], *found.span("i"))]
     head.append(Token("in", "in", *found.span("i")))
     stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
-    span = Span(t.source, start, end)
-    return wrong(
-        "E0113",
-        f"a loop is written `{right} {{ … }}`",
-        span,
-        right=right,
-        repair=TokenRepair(t.begin, stop, (*head, *inner)),
-    )
+    span, repair = Span(t.source, start, end), TokenRepair(t.begin, stop, (*head, *inner))
+    return wrong("E0113", f"a loop is written `{right} {{ … }}`", span, right=right, repair=repair)
 
 
 def _last(found: re.Match[str]) -> int:
-    return (
-        max(found.end(name) for name in ("list", "b4"))
-        if found["list"] or found["b4"]
-        else found.end("b3") + 1
-    )
+    if found["list"] or found["b4"]:
+        return max(found.end(name) for name in ("list", "b4"))
+    return found.end("b3") + 1
 
 
 def _slice(t: Trouble, start: int, end: int) -> list[Token]:
@@ -124,13 +105,7 @@ def _slice(t: Trouble, start: int, end: int) -> list[Token]:
 
 def indented_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `for i in 0..3:` and an indented block, as in Python."""
-    if (
-        t.between
-        or t.open
-        or t.token.kind != ":"
-        or not t.accepts("{", "}")
-        or t.following.kind in ("{", END)
-    ):
+    if t.between or t.open or t.token.kind != ":" or t.following.kind in ("{", END) or not t.accepts(*"{}"):
         return None
     text, indentation = t.source.text, t.indentation(t.first.start)
     end_of_head = line_end(text, t.token.start)
@@ -147,24 +122,14 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
     if not one_line:
         end = line_end(text, end)
         close = Edit(Span(t.source, end, end), "\n" + " " * indentation + "}")
-    braces = (
-        Token("{", "{", t.token.start, t.token.end),
-        Token("}", "}", t.tokens[last].end, t.tokens[last].end),
-    )
+    end = t.tokens[last].end
+    braces = t.token.but("{", "{"), Token("}", "}", end, end)
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
-    return wrong(
-        "E0121",
-        f"the block of `{t.first.text}` stands in braces, not behind a colon",
-        t.span(),
-        "`{` belongs here, and `}` at the end of the block",
-        fix=Fix("put the block in braces", (opening, close), is_sure=True),
-        repair=TokenRepair(
-            t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])
-        ),
-    )
-
-
-# --- Values ---------------------------------------------------------------------------------------
+    message = f"the block of `{t.first.text}` stands in braces, not behind a colon"
+    label = "`{` belongs here, and `}` at the end of the block"
+    fix = Fix("put the block in braces", (opening, close), is_sure=True)
+    repair = TokenRepair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1]))
+    return wrong("E0121", message, t.span(), label, fix=fix, repair=repair)
 
 
 def object_literal(t: Trouble) -> SyntaxProblem | None:
@@ -172,11 +137,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
     close = closing(t.tokens, t.position)
-    if (
-        close < 0
-        or t.following.kind not in ("NAME", "STRING")
-        or t.tokens[t.position + 2].kind not in (":", "=")
-    ):
+    two = t.tokens[t.position + 2] if close >= 0 else None
+    if two is None or two.kind not in (":", "=") or t.following.kind not in ("NAME", "STRING"):
         return None
     inner = t.tokens[t.position + 1 : close]
     keys: list[int] = []
@@ -184,7 +146,7 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     for n, token in enumerate(inner):
         if depth == 0 and (n == 0 or inner[n - 1].kind == ",") and n + 1 < len(inner):
             keys.append(n)
-        depth += (token.kind in ("CALL", "(", "[", "{")) - (token.kind in (")", "]", "}"))
+        depth += token.nesting
     names = [inner[n].text.strip("\"'") for n in keys]
     values = [inner[n + 2 : after] for n, after in zip(keys, [*keys[1:], len(inner) + 1], strict=True)]
     values = [v[:-1] if v and v[-1].kind == "," else v for v in values]
@@ -194,13 +156,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     place = t.token.start, t.token.end
     if [name.lower() for name in names] == ["x", "y"]:
         right, what = f"({texts[0]}, {texts[1]})", "a point"
-        tokens = [
-            Token("(", "(", *place),
-            *values[0],
-            Token(",", ",", *place),
-            *values[1],
-            Token(")", ")", *place),
-        ]
+        begin, comma, end = (Token(sign, sign, *place) for sign in "(,)")
+        tokens = [begin, *values[0], comma, *values[1], end]
     else:
         right = f"record({', '.join(f'{n}: {v}' for n, v in zip(names, texts, strict=True))})"
         what = "a record"
@@ -209,14 +166,8 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
             name = Token("NAME", names[n], inner[key].start, inner[key].end)
             tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
         tokens.append(Token(")", ")", *place))
-    span = t.span(t.token, t.tokens[close])
-    return wrong(
-        "E0109",
-        f"{what} is written `{right}`",
-        span,
-        right=right,
-        repair=TokenRepair(t.position, close + 1, tuple(tokens)),
-    )
+    span, repair = t.span(t.token, t.tokens[close]), TokenRepair(t.position, close + 1, tuple(tokens))
+    return wrong("E0109", f"{what} is written `{right}`", span, right=right, repair=repair)
 
 
 def question_mark(t: Trouble) -> SyntaxProblem | None:
@@ -235,15 +186,8 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
     places = zip(("if", "then", "else"), (parts[0][0], t.token, t.tokens[colon]), strict=True)
     words = [Token(word, word, place.start, place.end) for word, place in places]
     tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
-    span = t.span(parts[0][0], parts[2][-1])
-    fix = replaced(f"write `{right}`", span, right)
-    return wrong(
-        "E0109",
-        f"a choice is written `{right}`",
-        span,
-        fix=fix,
-        repair=TokenRepair(begin, stop, tuple(tokens)),
-    )
+    span, repair = t.span(parts[0][0], parts[2][-1]), TokenRepair(begin, stop, tuple(tokens))
+    return wrong("E0109", f"a choice is written `{right}`", span, right=right, repair=repair)
 
 
 def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
@@ -252,11 +196,10 @@ def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
     """
     depth, n = 0, at + step
     while n != limit:
-        kind = tokens[n].kind
-        opens, closes = kind in ("CALL", "(", "[", "{"), kind in (")", "]", "}")
-        if depth == 0 and (kind in (",", ";", ":", "=", END) or (closes if step > 0 else opens)):
+        deeper = step * tokens[n].nesting
+        if depth == 0 and (deeper < 0 or tokens[n].kind in (",", ";", ":", "=", END)):
             break
-        depth += step * (opens - closes)
+        depth += deeper
         n += step
     return n
 
@@ -268,11 +211,10 @@ def inches(t: Trouble) -> SyntaxProblem | None:
         return None
     if token.kind in (UNKNOWN, "STRING") and token.text[0] == '"' and _has_no_unit(before) and t.touches:
         rest = tokenize(t.source, token.start + 1, token.end).tokens[:-1]
-        span = Span(t.source, before.start, token.start + 1)
-        inch = Token("NUMBER", before.text + "in", before.start, token.start + 1)
-        fix = replaced(f"write `{inch.text}`", span, inch.text)
-        problem = Diagnostic("E0105", f"inches are written `{inch.text}`", span, fix=fix)
-        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (inch, *rest)))
+        span, right = Span(t.source, before.start, token.start + 1), before.text + "in"
+        inch = Token("NUMBER", right, span.start, span.end)
+        repair = TokenRepair(t.position - 1, t.position + 1, (inch, *rest))
+        return wrong("E0105", f"inches are written `{right}`", span, right=right, repair=repair)
     number = t.tokens[t.position - 2]
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
@@ -290,7 +232,6 @@ def inches(t: Trouble) -> SyntaxProblem | None:
 
 
 def _has_no_unit(token: Token) -> bool:
-    """Tells whether a token is a number to which a unit could be added."""
     return token.kind == "NUMBER" and token.text[-1].isdigit()
 
 
@@ -299,23 +240,12 @@ _ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">="
 
 def loose_point(t: Trouble) -> SyntaxProblem | None:
     """Recognises `5.`."""
-    before = t.before
-    if t.token.kind != "." or before is None or before.kind != "NUMBER" or not t.touches:
-        if (
-            before is None
-            or before.kind != "."
-            or t.position < 2
-            or t.tokens[t.position - 2].kind != "NUMBER"
-        ):
-            return None
-        point, number, at = before, t.tokens[t.position - 2], t.position - 1
-    else:
-        point, number, at = t.token, before, t.position
-    span = t.span(number, point)
-    fix = replaced(f"write `{number.text}`", span, number.text)
-    return wrong(
-        "E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix, repair=TokenRepair(at, at + 1)
-    )
+    for at in (t.position, t.position - 1) if t.before is not None else ():
+        number, point = t.tokens[at - 1], t.tokens[at]
+        if at and point.kind == "." and number.kind == "NUMBER" and (at < t.position or t.touches):
+            span, right, repair = t.span(number, point), number.text, TokenRepair(at, at + 1)
+            return wrong("E0105", f"`{right}.` is written `{right}`", span, right=right, repair=repair)
+    return None
 
 
 def word_for_sign(t: Trouble) -> SyntaxProblem | None:
@@ -323,29 +253,15 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
     sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
     if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
         return None
-    return wrong(
-        "E0109", f"`{t.token.text}` is written `{sign}`", t.span(), right=sign, repair=t.exchanged(sign)
-    )
+    message = f"`{t.token.text}` is written `{sign}`"
+    return wrong("E0109", message, t.span(), right=sign, repair=t.exchanged(sign))
 
-
-# --- Statements -----------------------------------------------------------------------------------
 
 _MODULES = frozenset(
-    [
-        "math",
-        "numpy",
-        "np",
-        "cadquery",
-        "build123d",
-        "aidl",
-        "typing",
-        "random",
-        "sys",
-        "os",
-        "ezdxf",
-        "maker",
-        "jscad",
-    ]
+    (
+        *("math", "numpy", "np", "cadquery", "build123d", "aidl", "typing", "random", "sys", "os"),
+        *("ezdxf", "maker", "jscad"),
+    )
 )
 
 
@@ -356,43 +272,27 @@ def import_of_module(t: Trouble) -> SyntaxProblem | None:
         return None
     stop = statement_end(t.source, t.tokens, t.begin)
     span = t.span(t.first, t.tokens[stop - 1])
-    return wrong(
-        "E0113",
-        f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
-        span,
-        fix=replaced("remove the line", span, ""),
-        repair=TokenRepair(t.begin, stop),
-    )
+    message = f"nothing is imported from `{words[1]}`: functions and shapes are known without it"
+    fix = replaced("remove the line", span, "")
+    return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, stop))
 
 
 def several_names(t: Trouble) -> SyntaxProblem | None:
     """Recognises `x, y = 3, 4` and `let (x, y) = …`."""
     has_let = t.first.kind in ("let", "var", "param") and t.token.kind in ("(", "[") and len(t.statement) == 1
-    bare = (
-        t.token.kind == ","
-        and len(t.statement) == 1
-        and t.first.kind == "NAME"
-        and t.following.kind == "NAME"
-    )
+    kinds = t.first.kind, t.token.kind, t.following.kind
+    bare = kinds == ("NAME", ",", "NAME") and len(t.statement) == 1
     if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.automaton.in_constraints):
         return None
-    return wrong(
-        "E0103",
-        "each name gets its value by itself: `let x = 3; let y = 4`",
-        t.span(t.first),
-        "one name at a time",
-    )
+    message = "each name gets its value by itself: `let x = 3; let y = 4`"
+    return wrong("E0103", message, t.span(t.first), "one name at a time")
 
 
 def documentation_text(t: Trouble) -> SyntaxProblem | None:
     """Recognises a text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`."""
-    if (
-        t.token.kind not in ("STRING", UNKNOWN)
-        or t.token.text[0] not in "\"'"
-        or not (t.between or t.complete)
-    ):
+    if t.token.kind not in ("STRING", UNKNOWN) or t.token.text[0] not in "\"'":
         return None
-    if not t.on_new_line and not t.between:
+    if not (t.between or (t.complete and t.on_new_line)):
         return None
     quotes = t.source.text[t.token.start : t.token.start + 3]
     stop, end, inner = t.position + 1, t.token.end, t.token.text.strip("\"'")
@@ -406,10 +306,6 @@ def documentation_text(t: Trouble) -> SyntaxProblem | None:
     span = Span(t.source, t.token.start, end)
     lines = [line.strip() for line in inner.strip().splitlines()]
     comment = "\n".join(f"// {line}".rstrip() for line in lines)
-    return wrong(
-        "E0117",
-        "a text alone says nothing; a remark begins with `//`",
-        span,
-        fix=replaced("make it a comment", span, comment),
-        repair=TokenRepair(t.position, stop),
-    )
+    message = "a text alone says nothing; a remark begins with `//`"
+    fix = replaced("make it a comment", span, comment)
+    return wrong("E0117", message, span, fix=fix, repair=TokenRepair(t.position, stop))

@@ -70,9 +70,7 @@ def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint:
 
 
 def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
-    """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a
-    remark.
-    """
+    """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: the rest of the line is a remark."""
     word, after = tokens[at], tokens[at + 1]
     before = tokens[at - 1].kind if at else ";"
     if before not in ("{", "}", ";") and not begins_line(source.text, word.start):
@@ -95,13 +93,8 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem
         is_last = not source.text[end : line_end(source.text, end)].strip()
         message += "; what is still to be done says a comment"
         right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
-    return wrong(
-        "E0117",
-        message,
-        span,
-        right=right,
-        repair=TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),)),
-    )
+    repair = TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),))
+    return wrong("E0117", message, span, right=right, repair=repair)
 
 
 def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> SyntaxProblem | None:
@@ -130,17 +123,12 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
         Token("=", "=", tokens[at].start, tokens[at].end),
         *value,
     )
-    return wrong(
-        "E0113",
-        f"a function is written `{right}`",
-        span,
-        fix=replaced("write it so", span, right),
-        repair=TokenRepair(0, (after + 1 if in_braces else stop) - begin, written),
-    )
+    message = f"a function is written `{right}`"
+    repair = TokenRepair(0, (after + 1 if in_braces else stop) - begin, written)
+    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
 
 
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
-    """Recognises `x between 3 and 5`."""
     end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
     middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
     if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in _VALUE_ENDS:
@@ -153,10 +141,9 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
         Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
         Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),
     )
-    problem = Diagnostic(
-        "E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits, is_sure=True)
-    )
-    return SyntaxProblem(problem, TokenRepair(0, middle + 1 - at, (word, *low, dots)))
+    repair = TokenRepair(0, middle + 1 - at, (word, *low, dots))
+    fix = Fix(f"write `{right}`", edits, is_sure=True)
+    return wrong("E0109", f"a range is written `{right}`", span, fix=fix, repair=repair)
 
 
 _VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])
@@ -197,13 +184,9 @@ def _as_function(
 ) -> SyntaxProblem:
     names = [token.text for token in head if token.kind == "NAME"]
     right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
-    return wrong(
-        "E0113",
-        f"a function is written `{right}`",
-        span,
-        fix=replaced("write it so", span, right),
-        repair=TokenRepair(start, stop, tuple(_function(names, head, value, span))),
-    )
+    message = f"a function is written `{right}`"
+    repair = TokenRepair(start, stop, tuple(_function(names, head, value, span)))
+    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
 
 
 def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:

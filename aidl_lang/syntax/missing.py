@@ -6,45 +6,35 @@ from collections.abc import Sequence
 
 from aidl_lang.common.diagnostics import Fix, Label
 from aidl_lang.common.source import Span
-from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, replaced, wrong
-from aidl_lang.syntax.tables import END, Token, begins_line
+from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, closing, opening, replaced, wrong
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, VALUE_STARTS, Token, begins_line, describe, kind_of
 from aidl_lang.syntax.tree import out_of_place
-from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe, kind_of
 
 # --- Placements in lists and arguments, where none can stand.
-
-_OPENING, _CLOSING = ("CALL", "(", "[", "{"), (")", "]", "}")
 
 
 def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
     if t.token.kind not in ("at", "rotated") or not t.open or t.before is None or t.before.kind != ")":
         return None
-    opening = t.tokens.index(t.open[-1], t.begin)
-    close = closing(t.tokens, opening)
+    begin = t.tokens.index(t.open[-1], t.begin)
+    close = closing(t.tokens, begin)
     if close < t.position or t.tokens[close].kind != ("]" if t.open[-1].kind == "[" else ")"):
         return None
-    listed = _as_members(t, opening, close)
+    listed = _as_members(t, begin, close)
     stop = _item_end(t.tokens, t.position, close)
-    call = f"{t.tokens[_call_start(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
+    call = f"{t.tokens[opening(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
     hint = f"give the part a name of its own: `part = {call}`"
     if t.tokens[stop].kind == "for":
         hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
     fix, repair = listed or (None, TokenRepair(t.position, stop))
-    return wrong(
-        "E0126",
-        f"`{t.token.kind}` stands behind a definition, not inside an expression",
-        t.span(to=t.tokens[stop - 1]),
-        fix=fix,
-        hints=(hint,) if fix is None else (),
-        repair=repair,
-    )
+    message = f"`{t.token.kind}` stands behind a definition, not inside an expression"
+    span = t.span(to=t.tokens[stop - 1])
+    return wrong("E0126", message, span, fix=fix, hints=(hint,) if fix is None else (), repair=repair)
 
 
 def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
-    """Returns the fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] =
-    b()`.
-    """
+    """Returns fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p`, `ribs[1] = b()`."""
     name, after = t.first, t.tokens[close + 1]
     is_list = [token.kind for token in t.tokens[t.begin : opening + 1]] == ["NAME", "=", "["]
     is_last = after.kind in ("}", ";", END) or begins_line(t.source.text, after.start)
@@ -77,38 +67,19 @@ def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
     for n in range(start, close):
         if depth == 0 and tokens[n].kind in (",", "for"):
             return n
-        depth += (tokens[n].kind in _OPENING) - (tokens[n].kind in _CLOSING)
-    return close
-
-
-def _call_start(tokens: Sequence[Token], close: int) -> int:
-    """Returns the number of the token that opens the bracket closed at `close`."""
-    depth = 0
-    for n in range(close, -1, -1):
-        depth += (tokens[n].kind in _CLOSING) - (tokens[n].kind in _OPENING)
-        if depth == 0:
-            return n
+        depth += tokens[n].nesting
     return close
 
 
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
 
-# --- Equals signs ---------------------------------------------------------------------------------
-
-
 def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
         return None
-    return wrong(
-        "E0111",
-        "a name is given its value by `=`, not `==`",
-        t.span(),
-        "`==` compares",
-        right="=",
-        repair=t.exchanged("="),
-    )
+    message = "a name is given its value by `=`, not `==`"
+    return wrong("E0111", message, t.span(), "`==` compares", right="=", repair=t.exchanged("="))
 
 
 def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
@@ -135,21 +106,14 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
         return None
     after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
     if t.following.kind == "NAME" and after_next.kind == "=":
-        return wrong(
-            "E0109",
-            f"`{t.first.text}` takes no type: its value tells",
-            t.span(t.token, t.following),
-            fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
-            hints=("write the unit with the number: `80mm`, `30deg`",),
-            repair=TokenRepair(t.position, t.position + 2),
-        )
-    return wrong(
-        "E0109",
-        "a name is given its value by `=`, not `:`",
-        t.span(),
-        fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
-        repair=t.exchanged("="),
-    )
+        message = f"`{t.first.text}` takes no type: its value tells"
+        fix = replaced("remove the type", Span(t.source, t.gap().start, t.following.end), "")
+        hint = "write the unit with the number: `80mm`, `30deg`"
+        repair = TokenRepair(t.position, t.position + 2)
+        return wrong("E0109", message, t.span(t.token, t.following), fix=fix, hints=(hint,), repair=repair)
+    message = "a name is given its value by `=`, not `:`"
+    fix = replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " =")
+    return wrong("E0109", message, t.span(), fix=fix, repair=t.exchanged("="))
 
 
 def missing_equals(t: Trouble) -> SyntaxProblem | None:
@@ -165,9 +129,6 @@ def missing_equals(t: Trouble) -> SyntaxProblem | None:
         fix=replaced("put in `=`", t.gap(), " ="),
         repair=t.put_in("="),
     )
-
-
-# --- Statements -----------------------------------------------------------------------------------
 
 
 def missing_value(t: Trouble) -> SyntaxProblem | None:
@@ -202,13 +163,8 @@ def choice_without_parentheses(t: Trouble) -> SyntaxProblem | None:
     """Recognises `a == if c then b else d`."""
     if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
         return None
-    return wrong(
-        "E0101",
-        f"a choice stands in parentheses behind {describe(t.before or t.first)}",
-        t.span(),
-        "this begins a choice",
-        hints=("write `(if c then a else b)`",),
-    )
+    message = f"a choice stands in parentheses behind {describe(t.before or t.first)}"
+    return wrong("E0101", message, t.span(), "this begins a choice", hints=("write `(if c then a else b)`",))
 
 
 def typed_definition(t: Trouble) -> SyntaxProblem | None:
@@ -218,14 +174,10 @@ def typed_definition(t: Trouble) -> SyntaxProblem | None:
     kind, name = t.statement
     if kind.kind != "NAME" or name.kind != "NAME":
         return None
-    return wrong(
-        "E0113",
-        f"a definition has no type before its name: `{name.text} = …`",
-        t.span(kind),
-        "the value tells what it is",
-        fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
-        repair=TokenRepair(t.begin, t.begin + 1),
-    )
+    message = f"a definition has no type before its name: `{name.text} = …`"
+    label = "the value tells what it is"
+    fix = replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), "")
+    return wrong("E0113", message, t.span(kind), label, fix=fix, repair=TokenRepair(t.begin, t.begin + 1))
 
 
 def import_without_path(t: Trouble) -> SyntaxProblem | None:
@@ -233,13 +185,10 @@ def import_without_path(t: Trouble) -> SyntaxProblem | None:
     if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
         return None
     name = t.before.text
-    return wrong(
-        "E0103",
-        f"`import {name}` does not say from which file",
-        t.span(t.first, t.before),
-        "a file is named by its path, in quotes",
-        hints=(f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name',),
-    )
+    message = f"`import {name}` does not say from which file"
+    span = t.span(t.first, t.before)
+    hint = f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name'
+    return wrong("E0103", message, span, "a file is named by its path, in quotes", hints=(hint,))
 
 
 def nameless_structure(t: Trouble) -> SyntaxProblem | None:
@@ -251,13 +200,9 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
         inner = t.token.text[1:-1]
         name = "".join(c if c.isalnum() else "_" for c in inner) or word + "_1"
         name = name if name.isidentifier() else "_" + name
-        return wrong(
-            "E0116",
-            f"a name is written without quotes: `{word} {name}`",
-            t.span(),
-            right=name,
-            repair=TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),)),
-        )
+        message = f"a name is written without quotes: `{word} {name}`"
+        repair = TokenRepair(t.position, t.position + 1, (t.token.but("NAME", name),))
+        return wrong("E0116", message, t.span(), right=name, repair=repair)
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
     name = _fresh_name(t, word)
@@ -305,14 +250,9 @@ def repeated_placement(t: Trouble) -> SyntaxProblem | None:
     earlier = next((token for token in t.statement if token.kind == word), None)
     if word not in ("at", "rotated") or earlier is None or t.open:
         return None
-    return wrong(
-        "E0120",
-        f"`{word}` is said twice",
-        t.span(),
-        "the second time",
-        (Label(t.span(earlier), "the first time"),),
-        hints=("a structure has one position and one rotation",),
-    )
+    other = Label(t.span(earlier), "the first time")
+    hint = "a structure has one position and one rotation"
+    return wrong("E0120", f"`{word}` is said twice", t.span(), "the second time", (other,), hints=(hint,))
 
 
 def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
@@ -324,14 +264,9 @@ def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
         return None
     word = t.first.text
     where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"
-    return wrong(
-        "E0119",
-        f"`{word}` cannot stand inside `constrain`",
-        t.span(t.first),
-        "only constraints, `let`, `prefer`, `for` and `if` do",
-        hints=(f"move it {where}",),
-        with_block=True,
-    )
+    message = f"`{word}` cannot stand inside `constrain`"
+    label = "only constraints, `let`, `prefer`, `for` and `if` do"
+    return wrong("E0119", message, t.span(t.first), label, hints=(f"move it {where}",), with_block=True)
 
 
 def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
@@ -342,37 +277,21 @@ def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
 
 def bare_value(t: Trouble) -> SyntaxProblem | None:
     """Recognises an expression as a statement that neither constrains nor does anything."""
-    if (
-        t.between
-        or t.open
-        or not t.accepts("==", "NAME")
-        or t.accepts(";")
-        or t.first.kind in STATEMENT_WORDS
-    ):
+    if t.between or t.open or t.first.kind in STATEMENT_WORDS:
+        return None
+    if t.accepts(";") or not t.accepts("==", "NAME"):
         return None
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None
     span = t.span(t.first, t.before)
-    return wrong(
-        "E0117",
-        f"`{_shortened(span.text)}` alone says nothing",
-        span,
-        "a statement defines a name, compares, or calls something",
-        hints=("to constrain it, compare it: `… == …`", "to name it, write `name = …`"),
-    )
-
-
-def _shortened(text: str) -> str:
-    text = " ".join(text.split())
-    return text if len(text) <= 40 else text[:37] + "…"
+    text, label = " ".join(span.text.split()), "a statement defines a name, compares, or calls something"
+    text = text if len(text) <= 40 else text[:37] + "…"
+    hints = ("to constrain it, compare it: `… == …`", "to name it, write `name = …`")
+    return wrong("E0117", f"`{text}` alone says nothing", span, label, hints=hints)
 
 
 def else_without_if(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "else" or not t.between:
         return None
-    return wrong(
-        "E0101",
-        "`else` follows the block of an `if`, and there is none before it",
-        t.span(),
-        hints=("`if c { … } else { … }`",),
-    )
+    message = "`else` follows the block of an `if`, and there is none before it"
+    return wrong("E0101", message, t.span(), hints=("`if c { … } else { … }`",))

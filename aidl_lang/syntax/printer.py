@@ -60,7 +60,6 @@ class CommentedLines:
         return "".join(line.rstrip() + "\n" for line in out)
 
     def _comments_before(self, offset: int, place: int, indent: int, first: bool) -> tuple[int, bool]:
-        """Prints the comments up to an offset on lines of their own."""
         while (comment := self._peek(offset)) is not None:
             self._blank_line(place, comment.span.start, first)
             first = False
@@ -70,7 +69,6 @@ class CommentedLines:
         return place, first
 
     def _peek(self, before: int) -> ast.Comment | None:
-        """Returns the next comment, if it begins before an offset."""
         if self.next_comment < len(self.comments) and self.comments[self.next_comment].span.start < before:
             return self.comments[self.next_comment]
         return None
@@ -88,9 +86,7 @@ class CommentedLines:
         self.lines[mark:mark] = moved
 
     def _trailing_comment(self, place: int) -> int:
-        """Puts a comment that follows on the same line behind the last line. Returns the offset to go on
-        from.
-        """
+        """Puts a comment that follows on the same line behind the last one. Returns where to go on."""
         comment = self._peek(len(self.source) + 1)
         if comment is None or comment.span.start < place or "\n" in comment.text:
             return place
@@ -100,10 +96,6 @@ class CommentedLines:
         self.lines[-1].comment = comment.text.rstrip()
         self.next_comment += 1
         return comment.span.end
-
-    def _has_comment(self, start: int, end: int) -> bool:
-        comment = self._peek(end)
-        return comment is not None and comment.span.end > start
 
 
 # Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
@@ -236,8 +228,7 @@ class _Printer(CommentedLines):
         self._long(node, indent, constraints)
 
     def _leaf(self, document: PrintDocument, indent: int) -> None:
-        text = render(document, indent)
-        self.lines += [Line(line) for line in (" " * indent + text).split("\n")]
+        self._add(render(document, indent), indent)
 
     def _long_assert(self, node: ast.Assert, message: ast.Expression, indent: int) -> None:
         """Prints an assert with its reason on a line of its own, which saves breaking up the test."""
@@ -257,8 +248,7 @@ class _Printer(CommentedLines):
 
     def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
         """Prints a statement whose blocks stand on lines of their own."""
-        head = render(doc(self._head(node, constraints), " {"), indent)
-        self.lines += [Line(line) for line in (" " * indent + head).split("\n")]
+        self._leaf(doc(self._head(node, constraints), " {"), indent)
         block, *others = self._blocks(node)
         inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
         self._block(block, indent, inner)
@@ -267,34 +257,29 @@ class _Printer(CommentedLines):
             chained = block.statements[0] if len(block.statements) == 1 else None
             if isinstance(chained, ast.If) and chained.span == block.span:
                 test = self.expressions.expression(chained.test, OR)
-                self._continue(render(doc("} else if ", test, " {"), indent), indent)
+                self._leaf(doc("} else if ", test, " {"), indent)
                 block, *others = self._blocks(chained)
             else:
-                self._continue("} else {", indent)
+                self._add("} else {", indent)
                 others = []
             self._block(block, indent, inner)
-        self.lines.append(Line(" " * indent + "}"))
+        self._add("}", indent)
 
-    def _continue(self, text: str, indent: int) -> None:
+    def _add(self, text: str, indent: int) -> None:
         self.lines += [Line(line) for line in (" " * indent + text).split("\n")]
 
     def _block(self, block: ast.Block, indent: int, constraints: bool) -> None:
-        """Prints the inside of the braces."""
         start, end = block.span.start + 1, max(block.span.end - 1, block.span.start + 1)
         # Comments of the head stand before its brace in the text; they move into the block.
-        place = self._trailing_comment(start) if self._first_line_comment(start, end) else start
+        comment = self._peek(end)
+        place = start if comment is None or comment.span.start < start else self._trailing_comment(start)
         self.statements(block.statements, place, end, indent + INDENT, constraints)
 
-    def _first_line_comment(self, start: int, end: int) -> bool:
-        comment = self._peek(end)
-        return comment is not None and comment.span.start >= start
-
     def _one_line(self, node: ast.Statement, constraints: bool) -> str | None:
-        """Returns the statement on one line, without attributes; None if its blocks were not written on
-        one.
-        """
+        """Returns the statement on one line, without attributes; None if its blocks were on several."""
         for block in self._blocks(node):
-            if "\n" in block.span.text or self._has_comment(node.span.start, block.span.end):
+            comment = self._peek(block.span.end)
+            if "\n" in block.span.text or (comment is not None and comment.span.end > node.span.start):
                 return None
         return self._flat(node, constraints)
 
@@ -321,7 +306,6 @@ class _Printer(CommentedLines):
         return "{ " + "; ".join(parts) + " }" if parts else "{}"
 
     def _blocks(self, node: ast.Statement) -> list[ast.Block]:
-        """Returns the blocks of a statement, in order."""
         match node:
             case ast.Structure() | ast.For() | ast.ShapeDefinition() | ast.ConstraintDefinition():
                 return [node.body]
@@ -414,7 +398,6 @@ class _Printer(CommentedLines):
         return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
 
     def _constrain(self, node: ast.Constrain) -> PrintDocument:
-        """Returns `constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
             return doc("constrain ", self._equation(item))

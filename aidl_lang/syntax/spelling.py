@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.automaton import SyntaxProblem, TokenRepair, Trouble, line_end, replaced, wrong
-from aidl_lang.syntax.tables import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.words import (
+from aidl_lang.syntax.tables import (
+    END,
     FOREIGN_WORDS,
     QUOTES,
     SIGNS,
@@ -17,10 +17,12 @@ from aidl_lang.syntax.words import (
     TWO_WAYS,
     UNIT_WORDS,
     UNITS,
+    UNKNOWN,
+    Token,
     example,
+    is_open_comment,
+    tokenize,
 )
-
-# --- Characters -----------------------------------------------------------------------------------
 
 
 def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
@@ -28,15 +30,11 @@ def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
         return None
     end = Span(t.source, t.token.end, t.token.end)
     opening = Span(t.source, t.token.start, t.token.start + 2)
-    return wrong(
-        "E0107",
-        "this comment is not closed: expected `*/`",
-        opening,
-        "the comment begins here and takes in the rest of the file",
-        fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
-        hints=("close it with `*/`, or begin each line of it with `//`",),
-        repair=t.exchanged(),
-    )
+    message = "this comment is not closed: expected `*/`"
+    label = "the comment begins here and takes in the rest of the file"
+    fix = replaced("close the comment at the end of the file", end, " */", is_sure=False)
+    hint = "close it with `*/`, or begin each line of it with `//`"
+    return wrong("E0107", message, opening, label, fix=fix, hints=(hint,), repair=t.exchanged())
 
 
 def unclosed_string(t: Trouble) -> SyntaxProblem | None:
@@ -51,14 +49,11 @@ def unclosed_string(t: Trouble) -> SyntaxProblem | None:
     string = Token("STRING", written + closing, t.token.start, end)
     rest = tokenize(t.source, end, t.token.end).tokens[:-1]
     place = Span(t.source, end, end)
-    return wrong(
-        "E0107",
-        f"this text is not closed: expected `{text[0]}` before the end of the line",
-        Span(t.source, t.token.start, end),
-        "the text begins here",
-        fix=replaced(f"close the text with `{text[0]}`", place, closing),
-        repair=TokenRepair(t.position, t.position + 1, (string, *rest)),
-    )
+    message = f"this text is not closed: expected `{text[0]}` before the end of the line"
+    span = Span(t.source, t.token.start, end)
+    fix = replaced(f"close the text with `{text[0]}`", place, closing)
+    repair = TokenRepair(t.position, t.position + 1, (string, *rest))
+    return wrong("E0107", message, span, "the text begins here", fix=fix, repair=repair)
 
 
 def unknown_unit(t: Trouble) -> SyntaxProblem | None:
@@ -67,19 +62,13 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         return None
     text, number = t.token.text, before.text
     if text[0].isdigit() or text[0] == ".":
-        return wrong(
-            "E0105",
-            f"`{number}{text}` is not a number",
-            t.span(before, t.token),
-            "more than one point",
-            repair=t.exchanged(),
-        )
+        message, label = f"`{number}{text}` is not a number", "more than one point"
+        return wrong("E0105", message, t.span(before, t.token), label, repair=t.exchanged())
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
-        span = t.span(before, t.token)
-        fix = replaced(f"write `{whole.text}`", span, whole.text)
-        problem = Diagnostic("E0105", f"`{number}{text}` is written `{whole.text}`", span, fix=fix)
-        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (whole,)))
+        span, repair = t.span(before, t.token), TokenRepair(t.position - 1, t.position + 1, (whole,))
+        message = f"`{number}{text}` is written `{whole.text}`"
+        return wrong("E0105", message, span, right=whole.text, repair=repair)
     meant = UNIT_WORDS.get(text.lower())
     return wrong(
         "E0105",
@@ -128,9 +117,8 @@ def _fence(t: Trouble) -> SyntaxProblem:
     stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
     line = Span(t.source, t.token.start, end)
     message = "the fence of a Markdown block is no part of the program"
-    return wrong(
-        "E0108", message, line, fix=replaced("remove it", line, ""), repair=TokenRepair(t.position, stop)
-    )
+    fix = replaced("remove it", line, "")
+    return wrong("E0108", message, line, fix=fix, repair=TokenRepair(t.position, stop))
 
 
 def _bars(t: Trouble) -> SyntaxProblem | None:
@@ -159,9 +147,8 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
 def _curly_quote(t: Trouble) -> SyntaxProblem:
     """Recognises a text in typographic quotes: the fix makes both of them straight."""
     quote = "'" if t.token.text in SINGLE_QUOTES else '"'
-    line_end = t.source.text.find("\n", t.token.start)
-    line_end = len(t.source.text) if line_end < 0 else line_end
-    close = next((i for i in range(t.token.end, line_end) if t.source.text[i] in QUOTES), None)
+    end = line_end(t.source.text, t.token.start)
+    close = next((i for i in range(t.token.end, end) if t.source.text[i] in QUOTES), None)
     edits = [Edit(t.span(), quote)]
     stop, stand_in = t.position + 1, tuple[Token, ...]()
     if close is not None:
@@ -170,14 +157,11 @@ def _curly_quote(t: Trouble) -> SyntaxProblem:
         stand_in = (Token("STRING", quote + inner.replace("\\", "\\\\") + quote, t.token.start, close + 1),)
         while t.tokens[stop].kind != END and t.tokens[stop].start <= close:
             stop += 1
-    return wrong(
-        "E0108",
-        f"text stands in straight quotes: `{quote}`",
-        t.span() if close is None else Span(t.source, t.token.start, close + 1),
-        "this is a typographic quote",
-        fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
-        repair=TokenRepair(t.position, stop, stand_in),
-    )
+    message = f"text stands in straight quotes: `{quote}`"
+    span = t.span() if close is None else Span(t.source, t.token.start, close + 1)
+    label = "this is a typographic quote"
+    fix = Fix("make the quotes straight", tuple(edits), is_sure=True)
+    return wrong("E0108", message, span, label, fix=fix, repair=TokenRepair(t.position, stop, stand_in))
 
 
 def spaced_unit(t: Trouble) -> SyntaxProblem | None:
@@ -191,14 +175,10 @@ def spaced_unit(t: Trouble) -> SyntaxProblem | None:
         gap = Span(t.source, number.end, token.start)
         if "\n" in gap.text or not gap.text or any(unit in number.text for unit in UNITS):
             continue
-        return wrong(
-            "E0106",
-            f"a unit touches its number: `{number.text}{token.text}`",
-            t.span(number, token),
-            "the space ends the number",
-            fix=replaced("remove the space", gap, ""),
-            repair=TokenRepair(at, at + 1),
-        )
+        message = f"a unit touches its number: `{number.text}{token.text}`"
+        label = "the space ends the number"
+        fix = replaced("remove the space", gap, "")
+        return wrong("E0106", message, t.span(number, token), label, fix=fix, repair=TokenRepair(at, at + 1))
     return None
 
 
@@ -230,28 +210,15 @@ def operator_spelling(t: Trouble) -> SyntaxProblem | None:
             "...": ("`a..b` includes both ends, `a..<b` leaves out the last",),
             "..=": ("`a..b` includes both ends, `a..<b` leaves out the last",),
         }.get(written, ())
-        return wrong(
-            "E0109",
-            f"`{written}` is written `{right}`",
-            t.span(one, two),
-            right=right,
-            hints=hints,
-            repair=TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),)),
-        )
-    one, two = t.token, t.following
-    if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
-        two := one, one := t.before or one
-    ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
-        return wrong(
-            "E0109",
-            f"there is no `{one.text}=`: a name keeps the value it was given",
-            t.span(one, two),
-            hints=("give the new value a name of its own: `let longer = length + 5`",),
-        )
+        message = f"`{written}` is written `{right}`"
+        repair = TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),))
+        return wrong("E0109", message, t.span(one, two), right=right, hints=hints, repair=repair)
+    for one, two in ((t.token, t.following), (t.before or t.token, t.token)):
+        if one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start:
+            message = f"there is no `{one.text}=`: a name keeps the value it was given"
+            hint = "give the new value a name of its own: `let longer = length + 5`"
+            return wrong("E0109", message, t.span(one, two), hints=(hint,))
     return None
-
-
-# --- Words ----------------------------------------------------------------------------------------
 
 
 def foreign_statement(t: Trouble) -> SyntaxProblem | None:
@@ -270,13 +237,9 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
         # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
-        return wrong(
-            "E0113",
-            f"there is no `{word}`: a definition begins with its name, `{name} = …`",
-            span,
-            fix=replaced(f"leave out `{word}`", rest, ""),
-            repair=TokenRepair(t.begin, t.begin + 1),
-        )
+        message = f"there is no `{word}`: a definition begins with its name, `{name} = …`"
+        fix = replaced(f"leave out `{word}`", rest, "")
+        return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, t.begin + 1))
     if right:
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
         if first.kind == "NAME" and _would_take(t, stand_in):
@@ -287,9 +250,7 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
 
 
 def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
-    """Tells whether the statement could be read up to and with the trouble if its first word were
-    exchanged.
-    """
+    """Tells whether the statement could be read through the trouble if its first word were exchanged."""
     rest = [*stand_in, *t.tokens[t.begin + 1 : t.position + 1]]
     return t.automaton.accepts((token.kind for token in rest), from_statement=True)
 
@@ -307,13 +268,9 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
         return None
     word = token.text
     if word == "at" and t.open and t.following.kind in (":", "="):
-        return wrong(
-            "E0104",
-            "`at` is a word of the language; where a shape is says its `center`",
-            t.span(token),
-            right="center",
-            repair=TokenRepair(at, at + 1, (token.but("NAME", "center"),)),
-        )
+        message = "`at` is a word of the language; where a shape is says its `center`"
+        repair = TokenRepair(at, at + 1, (token.but("NAME", "center"),))
+        return wrong("E0104", message, t.span(token), right="center", repair=repair)
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)
     stop = at + 1

@@ -1,12 +1,12 @@
 """The builder of nodes: for each rule of the grammar, `Nodes` calls the method of `Builder` with its name.
 
-Every method takes the range of the rule in the text and the values of its symbols. It reports mistakes that
+Every method takes the place of the rule in the text and the values of its symbols. It reports mistakes that
 the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from keyword import iskeyword
 from typing import Any
@@ -15,57 +15,211 @@ from lark.visitors import Transformer_NonRecursive
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold, is_slip, nearest
-from aidl_lang.common.source import Span
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
-from aidl_lang.syntax.tables import Token
-from aidl_lang.syntax.words import FOREIGN_WORDS, KIND_OF_WORD, KINDS, kind_of
+from aidl_lang.syntax.tables import FOREIGN_WORDS, KIND_OF_WORD, KINDS, Token, kind_of
+
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
+_UNITS = ("turn", "deg", "rad", "mm", "cm", "in", "ft", "m", "°")
 
 
-class ThenIf:
-    """The expression at the end of a statement and the `if` that follows it."""
-
-    __slots__ = ("following", "value")
-
-    def __init__(self, value: ast.Expression, following: ast.If | ast.IfArguments) -> None:
-        self.value = value
-        self.following = following
+def makes(kind: type[ast.Node], *first: object) -> Callable[..., Any]:
+    """Returns a method that makes a node of what a rule has, behind some fields that are always the same."""
+    return lambda self, at, *parts: kind(*first, *parts, span=at)
 
 
-class Builder(ExpressionBuilder):
-    """The nodes of one file in the making; see the module."""
+def under(word: str) -> Callable[..., tuple[str, Any]]:
+    """Returns a method that hands on what a rule has under a word."""
+    return lambda self, at, value: (word, value)
+
+
+def handed_on(self: Builder, at: Span, value: Any) -> Any:
+    return value
+
+
+class Builder:
+    """Builder of expression nodes, with a method for each rule of the grammar that makes one."""
+
+    def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:
+        self.source = source
+        self.docs = docs
+        self.diagnostics: list[Diagnostic] = []
+
+    def span(self, start: int, end: int) -> Span:
+        return Span(self.source, start, end)
+
+    def identifier(self, token: Token) -> ast.Identifier:
+        text = token.text[:-1] if token.kind == "CALL" else token.text
+        return ast.Identifier(text, span=Span(self.source, token.start, token.start + len(text)))
+
+    # --- Names and literals ---
+
+    def name(self, at: Span, token: Token) -> ast.Name:
+        return ast.Name(token.text, span=at)
+
+    def number(self, at: Span, token: Token) -> ast.Number:
+        digits, unit = number_parts(token.text)
+        return ast.Number(float(digits), unit, digits, span=at)
+
+    def string(self, at: Span, token: Token) -> ast.String:
+        return ast.String(string_value(token.text), span=at)
+
+    true, false = makes(ast.Boolean, True), makes(ast.Boolean, False)
+    point = makes(ast.Point)
+
+    def list(self, at: Span, *items: Any) -> ast.List | ast.Comprehension:
+        if items and isinstance(items[0], _Generator):
+            return items[0].comprehension(at)
+        return ast.List(items, span=at)
+
+    # --- Places and calls ---
+
+    def member(self, at: Span, value: ast.Expression, name: Token) -> ast.Member:
+        return ast.Member(value, self.identifier(name), span=at)
+
+    def index_of(self, at: Span, value: ast.Expression, *indices: ast.Expression) -> ast.Index:
+        """Builds `a[i, j]` as `a[i][j]`."""
+        for index in indices[:-1]:
+            value = ast.Index(value, index, span=at)
+        return ast.Index(value, indices[-1], span=at)
+
+    def call(self, at: Span, callee: Token, arguments: Any = ()) -> ast.Call:
+        return ast.Call(self.identifier(callee), None, arguments_of(arguments), span=at)
+
+    def method(self, at: Span, receiver: ast.Expression, callee: Token, arguments: Any = ()) -> ast.Call:
+        return ast.Call(self.identifier(callee), receiver, arguments_of(arguments), span=at)
+
+    def arguments(self, at: Span, *items: Any) -> tuple[ast.Argument, ...]:
+        return tuple(
+            item if isinstance(item, ast.Argument) else ast.Argument(None, item, span=item.span)
+            for item in items
+        )
+
+    argument = makes(ast.Argument, None)
+
+    def named_argument(self, at: Span, name: Token, value: ast.Expression) -> ast.Argument:
+        return ast.Argument(self.identifier(name), value, span=at)
+
+    # --- Blocks of arguments ---
+
+    def argument_block(self, at: Span, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
+        return ast.ArgumentBlock(items, span=at)
+
+    def for_arguments(
+        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
+    ) -> ast.ForArguments:
+        """Builds `for x in a, y in b { … }` as one loop in another."""
+        body = rest[-1]
+        if len(rest) > 1:
+            body = ast.ArgumentBlock((self.for_arguments(at, *rest),), span=body.span)
+        return ast.ForArguments(variables, iterable, body, span=at)
+
+    def if_arguments(
+        self,
+        at: Span,
+        test: ast.Expression,
+        then: ast.ArgumentBlock,
+        other: ast.ArgumentBlock | ast.IfArguments | None = None,
+    ) -> ast.IfArguments:
+        if isinstance(other, ast.IfArguments):
+            other = ast.ArgumentBlock((other,), span=other.span)
+        return ast.IfArguments(test, then, other, span=at)
+
+    # --- Operators ---
+
+    def comparison_operator(self, at: Span, token: Token) -> str:
+        return token.text
+
+    add_operator = multiply_operator = comparison_operator
+
+    def binary(self, at: Span, left: ast.Expression, operator: str, right: ast.Expression) -> ast.Binary:
+        return ast.Binary(operator, left, right, span=at)
+
+    power = makes(ast.Binary, "^")
+    conjunction = makes(ast.Binary, "and")
+    disjunction = makes(ast.Binary, "or")
+    sign = makes(ast.Unary)
+    negated = makes(ast.Unary, "not")
+
+    def comparison(self, at: Span, *parts: Any) -> ast.Comparison:
+        return ast.Comparison(parts[::2], parts[1::2], span=at)
+
+    membership = makes(ast.Membership)
+
+    def not_membership(self, at: Span, value: ast.Expression, container: ast.Expression) -> Any:
+        return self.negated(at, self.membership(at, value, container))
+
+    def range(
+        self,
+        at: Span,
+        first: ast.Expression,
+        last: ast.Expression,
+        step: ast.Expression | None = None,
+        *,
+        exclusive: bool = False,
+    ) -> ast.Range:
+        return ast.Range(first, last, exclusive, step, span=at)
+
+    def exclusive_range(self, at: Span, *parts: ast.Expression) -> ast.Range:
+        return self.range(at, *parts, exclusive=True)
+
+    # --- Comprehensions ---
+
+    def variables(self, at: Span, *names: Token) -> tuple[ast.Identifier, ...]:
+        return tuple(map(self.identifier, names))
+
+    filter = default = handed_on
+
+    def generator_clause(self, at: Span, *parts: Any) -> tuple[int, tuple[Any, ...]]:
+        return at.start, parts
+
+    def generator(
+        self, at: Span, element: ast.Expression, *clauses: tuple[int, tuple[Any, ...]]
+    ) -> _Generator:
+        """Builds `a for i in b for j in c` as the list for `i` of the members of the lists for `j`."""
+        loops = []
+        for begin, (*both, last) in clauses:
+            condition = last if len(both) % 2 == 0 else None
+            names = both if condition is not None else [*both, last]
+            for k in range(0, len(names), 2):
+                is_last = k + 2 == len(names)
+                loops.append((begin, names[k], names[k + 1], condition if is_last else None))
+        for begin, variables, iterable, condition in reversed(loops[1:]):
+            span = self.span(begin, at.end)
+            element = ast.Comprehension(element, variables, iterable, condition, True, span=span)
+        _, variables, iterable, condition = loops[0]
+        return _Generator(element, variables, iterable, condition, at)
 
     # --- Files and blocks ---
 
-    def block(self, start: int, end: int, *statements: ast.Statement) -> ast.Block:
-        return ast.Block(statements, span=self.span(start, end))
+    def block(self, at: Span, *statements: ast.Statement) -> ast.Block:
+        return ast.Block(statements, span=at)
 
-    def module(self, start: int, end: int, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
+    def module(self, at: Span, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
         return statements
 
     # --- Structures and geometry ---
 
-    def structure(self, start: int, end: int, *parts: Any) -> ast.Structure:
+    def structure(self, at: Span, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
         kind, name = rest[0], rest[1]
         indices = tuple(i for p in rest if isinstance(p, tuple) and p[0] == "index" for i in p[1])
-        return self._structure(start, end, attributes, kind, name, indices, None, rest)
+        return self._structure(at, attributes, kind, name, indices, None, rest)
 
-    def template(self, start: int, end: int, *parts: Any) -> ast.Structure:
+    def template(self, at: Span, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
         parameters = next((p for p in rest if isinstance(p, tuple)), ())
-        return self._structure(start, end, attributes, rest[0], rest[1], (), parameters, rest)
+        return self._structure(at, attributes, rest[0], rest[1], (), parameters, rest)
 
     def _structure(
         self,
-        start: int,
-        end: int,
+        at: Span,
         attributes: tuple[ast.Attribute, ...],
         kind: Token,
         name: Token,
         indices: tuple[ast.Expression, ...],
         parameters: tuple[ast.Parameter, ...] | None,
-        rest: list[Any],
+        rest: Sequence[Any],
     ) -> ast.Structure:
         word = self.identifier(kind)
         placement = next((p for p in rest if isinstance(p, ast.Placement)), None)
@@ -78,17 +232,16 @@ class Builder(ExpressionBuilder):
             placement,
             attributes,
             rest[-1],
-            self.docs.get(start),
-            span=self.span(start, end),
+            self.docs.get(at.start),
+            span=at,
         )
 
     def _unknown_kind(self, word: ast.Identifier) -> str:
         """Reports a word that is no kind. Returns the nearest kind, which is assumed."""
         if foreign := FOREIGN_WORDS.get(word.text.lower()):
             fix = Fix(f"write `{foreign[1]}`", (Edit(word.span, foreign[1]),)) if foreign[1] else None
-            self.diagnostics.append(
-                Diagnostic("E0113", f"there is no `{word.text}`: {foreign[0]}", word.span, fix=fix)
-            )
+            message = f"there is no `{word.text}`: {foreign[0]}"
+            self.diagnostics.append(Diagnostic("E0113", message, word.span, fix=fix))
             return "solid"
         near = nearest(word.text, KIND_OF_WORD)
         guess = KIND_OF_WORD[near[0]] if near else "solid"
@@ -109,51 +262,45 @@ class Builder(ExpressionBuilder):
         )
         return guess
 
-    def attribute(self, start: int, end: int, name: Token, arguments: Any = ()) -> ast.Attribute:
-        return ast.Attribute(self.identifier(name), arguments_of(arguments), span=self.span(start, end))
+    def attribute(self, at: Span, name: Token, arguments: Any = ()) -> ast.Attribute:
+        return ast.Attribute(self.identifier(name), arguments_of(arguments), span=at)
 
-    def allowed(self, start: int, end: int, *parts: Any) -> Any:
+    def allowed(self, at: Span, *parts: Any) -> Any:
         """Returns the statements behind `@allow`, which is said of the first of them."""
         attributes, (first, *others) = _split(parts)
         for attribute in attributes:
             if fold(attribute.name.text) != ast.ALLOW:
                 word = self.source.text[first.span.start : first.span.end].split(None, 1)[0]
                 self.diagnostics.append(out_of_place(attribute.span, f"`{word}`"))
-        doc = {"doc": self.docs.get(start)} if hasattr(first, "doc") else {}
-        span = self.span(start, first.span.end)
+        doc = {"doc": self.docs.get(at.start)} if hasattr(first, "doc") else {}
+        span = self.span(at.start, first.span.end)
         return [replace(first, allowing=(*attributes, *first.allowing), span=span, **doc), *others]
 
-    def at(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "at", value
+    at = under("at")
+    rotated = under("rotated")
 
-    def rotated(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "rotated", value
-
-    def placement(self, start: int, end: int, *parts: tuple[str, ast.Expression]) -> ast.Placement:
+    def placement(self, at: Span, *parts: tuple[str, ast.Expression]) -> ast.Placement:
         by_word = dict(parts)
-        return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=self.span(start, end))
+        return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=at)
 
-    def index(self, start: int, end: int, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
+    def index(self, at: Span, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
         return "index", values
 
-    def parameters(self, start: int, end: int, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
+    def parameters(self, at: Span, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
         return items
 
-    def parameter(self, start: int, end: int, name: Token, *parts: Any) -> ast.Parameter:
+    def parameter(self, at: Span, name: Token, *parts: Any) -> ast.Parameter:
         kind = next((p for p in parts if isinstance(p, ast.Identifier)), None)
         default = parts[-1] if parts and not isinstance(parts[-1], ast.Identifier) else None
-        return ast.Parameter(self.identifier(name), kind, default, span=self.span(start, end))
+        return ast.Parameter(self.identifier(name), kind, default, span=at)
 
-    def parameter_type(self, start: int, end: int, name: Token) -> ast.Identifier:
+    def parameter_type(self, at: Span, name: Token) -> ast.Identifier:
         return self.identifier(name)
 
-    def default(self, start: int, end: int, value: ast.Expression) -> ast.Expression:
-        return value
-
-    def construction(self, start: int, end: int) -> bool:
+    def construction(self, at: Span) -> bool:
         return True
 
-    def assign(self, start: int, end: int, *parts: Any) -> Any:
+    def assign(self, at: Span, *parts: Any) -> Any:
         attributes, rest = _split(parts)
         construction = rest[0] is True
         target, value = rest[1:3] if construction else rest[:2]
@@ -163,172 +310,142 @@ class Builder(ExpressionBuilder):
             indices.insert(0, target.index)
             target = target.value
         name = ast.Identifier(target.text, span=target.span)
-        doc = self.docs.get(start)
+        doc = self.docs.get(at.start)
 
         def make(value: ast.Expression, span: Span) -> ast.Assign:
-            return ast.Assign(
-                name, tuple(indices), value, placement, construction, attributes, doc, span=span
-            )
+            rest = placement, construction, attributes, doc
+            return ast.Assign(name, tuple(indices), value, *rest, span=span)
 
-        return self._ending_in(start, end, value, make)
+        return self._ending_in(at, value, make)
 
     def _ending_in(
-        self, start: int, end: int, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
-    ) -> ast.Statement | list[Any]:
+        self, at: Span, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
+    ) -> Any:
         """Builds the statement that ends in `value`, and the `if` after it if there is one."""
         if isinstance(value, ThenIf):
-            return [make(value.value, self.span(start, value.value.span.end)), value.following]
-        return make(value, self.span(start, end))
+            return [make(value.value, self.span(at.start, value.value.span.end)), value.following]
+        return make(value, at)
 
     # --- Values ---
 
-    def param(self, start: int, end: int, name: Token, value: ast.Expression, *parts: Any) -> ast.Param:
+    def param(self, at: Span, name: Token, value: ast.Expression, *parts: Any) -> ast.Param:
         by_word = dict(parts)
         return ast.Param(
             self.identifier(name),
             value,
             by_word.get("in"),
             by_word.get("step"),
-            self.docs.get(start),
-            span=self.span(start, end),
+            self.docs.get(at.start),
+            span=at,
         )
 
-    def domain(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "in", value
+    domain = under("in")
+    step = under("step")
 
-    def step(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "step", value
+    def var(self, at: Span, name: Token, value: Any) -> Any:
+        doc = self.docs.get(at.start)
+        return self._ending_in(at, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span))
 
-    def var(self, start: int, end: int, name: Token, value: Any) -> Any:
-        doc = self.docs.get(start)
-        return self._ending_in(
-            start, end, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span)
-        )
+    def let(self, at: Span, name: Token, value: Any) -> Any:
+        doc = self.docs.get(at.start)
+        return self._ending_in(at, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span))
 
-    def let(self, start: int, end: int, name: Token, value: Any) -> Any:
-        doc = self.docs.get(start)
-        return self._ending_in(
-            start, end, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span)
-        )
-
-    def function(self, start: int, end: int, name: Token, *parts: Any) -> Any:
-        doc, parameters = self.docs.get(start), parts[0] if len(parts) > 1 else ()
+    def function(self, at: Span, name: Token, *parts: Any) -> Any:
+        doc, parameters = self.docs.get(at.start), parts[0] if len(parts) > 1 else ()
 
         def make(value: ast.Expression, span: Span) -> ast.FunctionDefinition:
             return ast.FunctionDefinition(self.identifier(name), parameters, value, doc, span=span)
 
-        return self._ending_in(start, end, parts[-1], make)
+        return self._ending_in(at, parts[-1], make)
 
-    def alias(self, start: int, end: int, name: Token, target: Token) -> ast.Alias:
-        return ast.Alias(
-            self.identifier(name), self.identifier(target), self.docs.get(start), span=self.span(start, end)
-        )
+    def alias(self, at: Span, name: Token, target: Token) -> ast.Alias:
+        return ast.Alias(self.identifier(name), self.identifier(target), self.docs.get(at.start), span=at)
 
-    def shape(self, start: int, end: int, name: Token, *parts: Any) -> ast.ShapeDefinition:
+    def shape(self, at: Span, name: Token, *parts: Any) -> ast.ShapeDefinition:
         parameters = parts[0] if len(parts) > 1 else ()
-        return ast.ShapeDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
-        )
+        doc = self.docs.get(at.start)
+        return ast.ShapeDefinition(self.identifier(name), parameters, parts[-1], doc, span=at)
 
-    def import_(self, start: int, end: int, path: Token) -> ast.Import:
-        return ast.Import(self.string(path.start, path.end, path), None, (), span=self.span(start, end))
+    def import_(self, at: Span, path: Token) -> ast.Import:
+        return ast.Import(self.string(self.span(path.start, path.end), path), None, (), span=at)
 
-    def import_as(self, start: int, end: int, path: Token, name: Token) -> ast.Import:
-        text = self.string(path.start, path.end, path)
-        return ast.Import(text, self.identifier(name), (), span=self.span(start, end))
+    def import_as(self, at: Span, path: Token, name: Token) -> ast.Import:
+        text = self.string(self.span(path.start, path.end), path)
+        return ast.Import(text, self.identifier(name), (), span=at)
 
-    def import_names(self, start: int, end: int, *parts: Token) -> ast.Import:
+    def import_names(self, at: Span, *parts: Token) -> ast.Import:
         *names, path = parts
-        text = self.string(path.start, path.end, path)
-        return ast.Import(text, None, tuple(map(self.identifier, names)), span=self.span(start, end))
+        text = self.string(self.span(path.start, path.end), path)
+        return ast.Import(text, None, tuple(map(self.identifier, names)), span=at)
 
-    def todo(self, start: int, end: int) -> ast.Todo:
-        return ast.Todo(span=self.span(start, end))
+    todo = makes(ast.Todo)
 
     # --- Constraints ---
 
-    def constrain(self, start: int, end: int, value: Any) -> Any:
+    def constrain(self, at: Span, value: Any) -> Any:
         if isinstance(value, ast.For | ast.If):
             value = ast.Block((value,), span=value.span)
         if isinstance(value, ast.Block):
-            return ast.Constrain(value, True, span=self.span(start, end))
+            return ast.Constrain(value, True, span=at)
 
         def make(item: Any, span: Span) -> ast.Constrain:
-            statement = (
-                item if isinstance(item, ast.Equation) else ast.ExpressionStatement(item, span=item.span)
-            )
-            return ast.Constrain(ast.Block((statement,), span=item.span), False, span=span)
+            if not isinstance(item, ast.Equation):
+                item = ast.ExpressionStatement(item, span=item.span)
+            return ast.Constrain(ast.Block((item,), span=item.span), False, span=span)
 
-        return self._ending_in(start, end, value, make)
+        return self._ending_in(at, value, make)
 
-    def constraint(self, start: int, end: int, name: Token, *parts: Any) -> ast.ConstraintDefinition:
+    def constraint(self, at: Span, name: Token, *parts: Any) -> ast.ConstraintDefinition:
         parameters = parts[0] if len(parts) > 1 else ()
         return ast.ConstraintDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
+            self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at
         )
 
-    def item_constrain(self, start: int, end: int, value: Any) -> Any:
+    def item_constrain(self, at: Span, value: Any) -> Any:
         """Returns the items of a `constrain` inside `constrain`, which adds nothing."""
-        made = self.constrain(start, end, value)
+        made = self.constrain(at, value)
         statements: list[ast.Statement] = []
         for statement in made if isinstance(made, list) else [made]:
             statements += statement.items.statements if isinstance(statement, ast.Constrain) else [statement]
         return statements
 
-    def equation(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Equation:
-        return ast.Equation(left, right, span=self.span(start, end))
+    equation = makes(ast.Equation)
 
     def prefer(
-        self, start: int, end: int, value: ast.Expression, weight: tuple[str, ast.Expression] | None = None
+        self, at: Span, value: ast.Expression, weight: tuple[str, ast.Expression] | None = None
     ) -> ast.Prefer:
-        return ast.Prefer(value, weight[1] if weight else None, span=self.span(start, end))
+        return ast.Prefer(value, weight[1] if weight else None, span=at)
 
-    def weight(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "weight", value
+    weight = under("weight")
 
-    def assert_(
-        self, start: int, end: int, test: ast.Expression, message: ast.Expression | None = None
-    ) -> ast.Assert:
+    def assert_(self, at: Span, test: ast.Expression, message: ast.Expression | None = None) -> ast.Assert:
         if message is None and isinstance(test, ast.Point):  # `assert(a.width > 3, "too narrow")`
-            return ast.Assert(test.x, test.y, span=self.span(start, end))
-        return ast.Assert(test, message, span=self.span(start, end))
+            return ast.Assert(test.x, test.y, span=at)
+        return ast.Assert(test, message, span=at)
 
-    def expression_statement(self, start: int, end: int, value: ast.Expression) -> ast.ExpressionStatement:
-        return ast.ExpressionStatement(value, span=self.span(start, end))
+    expression_statement = makes(ast.ExpressionStatement)
 
     # --- Control ---
 
     def for_(
-        self,
-        start: int,
-        end: int,
-        variables: tuple[ast.Identifier, ...],
-        iterable: ast.Expression,
-        *rest: Any,
+        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
     ) -> ast.For:
         """Builds `for x in a, y in b { … }` as one loop in another."""
-        span, body = self.span(start, end), rest[-1]
+        body = rest[-1]
         if len(rest) > 1:
-            inner = self.for_(start, end, *rest)
-            body = ast.Block((inner,), span=body.span)
-        return ast.For(variables, iterable, body, span=span)
+            body = ast.Block((self.for_(at, *rest),), span=body.span)
+        return ast.For(variables, iterable, body, span=at)
 
     def if_(
-        self,
-        start: int,
-        end: int,
-        test: ast.Expression,
-        then: ast.Block,
-        other: ast.Block | ast.If | None = None,
+        self, at: Span, test: ast.Expression, then: ast.Block, other: ast.Block | ast.If | None = None
     ) -> ast.If:
         if isinstance(other, ast.If):
             other = ast.Block((other,), span=other.span)
-        return ast.If(test, then, other, span=self.span(start, end))
+        return ast.If(test, then, other, span=at)
 
     def interrupted(
         self,
-        start: int,
-        end: int,
+        at: Span,
         value: ast.Expression,
         word: Token,
         test: ast.Expression,
@@ -336,12 +453,11 @@ class Builder(ExpressionBuilder):
         otherwise: ast.Block | ast.If | None = None,
     ) -> ThenIf:
         """Builds an expression, and the `if` statement that begins with `word`."""
-        return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
+        return ThenIf(value, self.if_(self.span(word.start, at.end), test, then, otherwise))
 
     def interrupted_argument(
         self,
-        start: int,
-        end: int,
+        at: Span,
         value: ast.Expression,
         word: Token,
         test: ast.Expression,
@@ -349,30 +465,82 @@ class Builder(ExpressionBuilder):
         otherwise: ast.ArgumentBlock | ast.IfArguments | None = None,
     ) -> ThenIf:
         """Builds an argument, and the block that begins with `word`."""
-        return ThenIf(value, self.if_arguments(word.start, end, test, then, otherwise))
+        return ThenIf(value, self.if_arguments(self.span(word.start, at.end), test, then, otherwise))
 
-    def conditional(
-        self, start: int, end: int, test: ast.Expression, then: ast.Expression, otherwise: Any
-    ) -> Any:
+    def conditional(self, at: Span, test: ast.Expression, then: ast.Expression, otherwise: Any) -> Any:
         if isinstance(otherwise, ThenIf):
-            value = self.conditional(start, otherwise.value.span.end, test, then, otherwise.value)
+            shorter = self.span(at.start, otherwise.value.span.end)
+            value = self.conditional(shorter, test, then, otherwise.value)
             return ThenIf(value, otherwise.following)
-        return ast.Conditional(test, then, otherwise, span=self.span(start, end))
+        return ast.Conditional(test, then, otherwise, span=at)
 
-    def conditional_after(
-        self, start: int, end: int, then: ast.Expression, test: ast.Expression, other: Any
-    ) -> Any:
-        return self.conditional(start, end, test, then, other)
+    def conditional_after(self, at: Span, then: ast.Expression, test: ast.Expression, other: Any) -> Any:
+        return self.conditional(at, test, then, other)
+
+
+class _Generator:
+    """`element for variables in iterable if condition`, not yet known to stand in brackets or in a call."""
+
+    def __init__(
+        self,
+        element: ast.Expression,
+        variables: tuple[ast.Identifier, ...],
+        iterable: ast.Expression,
+        condition: ast.Expression | None,
+        span: Span,
+    ) -> None:
+        self.parts = (element, variables, iterable, condition)
+        self.span = span
+
+    def comprehension(self, span: Span) -> ast.Comprehension:
+        return ast.Comprehension(*self.parts, span=span)
+
+
+def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
+    """Returns the arguments of a call; its only one may be a bare comprehension: `sum(a for a in b)`."""
+    if isinstance(value, _Generator):
+        return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
+    return tuple(value)
+
+
+def number_parts(text: str) -> tuple[str, str | None]:
+    """Returns digits and unit of a number as written; `°` is `deg`."""
+    for unit in _UNITS:
+        if text.endswith(unit):
+            return text[: -len(unit)], "deg" if unit == "°" else unit
+    return text, None
+
+
+def string_value(text: str) -> str:
+    """Returns the value of a string token, without its quotes and escapes."""
+    inner = text[1:-1]
+    if "\\" not in inner:
+        return inner
+    out: list[str] = []
+    chars = iter(inner)
+    for char in chars:
+        if char == "\\":
+            escaped = next(chars)
+            char = _ESCAPES.get(escaped, escaped)
+        out.append(char)
+    return "".join(out)
+
+
+class ThenIf:
+    """The expression at the end of a statement and the `if` that follows it."""
+
+    __slots__ = ("following", "value")
+
+    def __init__(self, value: ast.Expression, following: ast.If | ast.IfArguments) -> None:
+        self.value = value
+        self.following = following
 
 
 def out_of_place(attribute: Span, before: str) -> Diagnostic:
     """Returns what is said of an attribute before something that takes none, or no other than `@allow`."""
-    return Diagnostic(
-        "E0119",
-        f"an attribute stands before a structure or a geometry, not before {before}",
-        attribute,
-        hints=('write it in front of the definition it is about: `@color("red") solid a { … }`',),
-    )
+    message = f"an attribute stands before a structure or a geometry, not before {before}"
+    hint = 'write it in front of the definition it is about: `@color("red") solid a { … }`'
+    return Diagnostic("E0119", message, attribute, hints=(hint,))
 
 
 class Nodes(Transformer_NonRecursive[Token, Any]):
@@ -391,7 +559,7 @@ class Nodes(Transformer_NonRecursive[Token, Any]):
                 symbols += part
             else:
                 symbols.append(part)
-        return method(meta.begin, meta.until, *symbols)
+        return method(self.builder.span(meta.begin, meta.until), *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:

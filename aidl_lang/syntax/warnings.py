@@ -8,8 +8,7 @@ from typing import Protocol
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import END, Token, begins_line
-from aidl_lang.syntax.words import STATEMENT_WORDS
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, begins_line
 
 # --- Lines of `constrain { }` that begin with a sign, and the question if one begins a constraint of its
 # own.
@@ -25,9 +24,7 @@ _OPERANDS = frozenset({"NAME", "NUMBER", "STRING"})
 
 
 def begins_with_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
-    """Tells whether a token is a `-` that begins a line, touches its operand and stands before a
-    comparison.
-    """
+    """Tells whether a token is a `-` that begins a line, touches its operand and precedes a comparison."""
     if not _is_sign(text, tokens, position):
         return False
     depth, after_operand = 0, False
@@ -64,13 +61,10 @@ class _Parsed(Protocol):
 def lines_joined_by_sign(
     module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
 ) -> list[Diagnostic]:
-    """Returns W0101 for each line that begins with a sign if it and the lines above read as whole
-    statements.
-    """
+    """Returns W0101 for each line that begins with a sign if it and what is above read as statements."""
     source, text = module.source, module.source.text
-    places = [
-        t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start) and text[: t.start].strip()
-    ]
+    signs = (t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start))
+    places = [start for start in signs if text[:start].strip()]
     if not places:
         return []
     found = []
@@ -123,14 +117,8 @@ def _warning(source: SourceFile, place: int, begun: str) -> Diagnostic:
     sign = Span(source, place, place + 1)
     begun += sign.text.strip("+")
     before = len(source.text[:place].rstrip())
-    return Diagnostic(
-        "W0101",
-        f"a line that begins with `{sign.text}` continues the line above",
-        sign,
-        f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above",
-        hints=("if it was meant as a statement of its own, end the line above with `;`",),
-        fix=Fix(
-            "end the line above with `;`",
-            (Edit(Span(source, before, before), ";"), Edit(sign, begun)),
-        ),
-    )
+    message = f"a line that begins with `{sign.text}` continues the line above"
+    label = f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above"
+    hint = "if it was meant as a statement of its own, end the line above with `;`"
+    fix = Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"), Edit(sign, begun)))
+    return Diagnostic("W0101", message, sign, label, hints=(hint,), fix=fix)

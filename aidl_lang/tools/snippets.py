@@ -147,6 +147,7 @@ SNIPPETS = (
     Snippet("@tolerance", "the general tolerances", '@tolerance("${1:ISO 2768-m}")$0', "attribute"),
     Snippet("@finish", "the surface of a part", '@finish("${1:Ra 3.2}")$0', "attribute"),
     Snippet("@detached", "a part that touches no other", "@detached$0", "attribute"),
+    Snippet("@rigid", "a part in which nothing moves", "@rigid$0", "attribute"),
     Snippet("gap", "one part above another", "${1:a}.above(${2:b}, gap: ${3:2})$0", "constraints"),
     Snippet("centered", "one part in the middle of another", "${1:a}.centered_in(${2:b})$0", "constraints"),
     Snippet("same", "two sizes alike", "${1:a}.width == ${2:b}.width$0", "constraints"),

@@ -12,12 +12,10 @@ from dataclasses import fields
 from functools import cache
 
 from aidl_lang.checking import builtins, library
-from aidl_lang.checking.registry import PUBLIC
-from aidl_lang.checking.types import PARAMETER_TYPES
+from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.records import record
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.words import KIND_OF_WORD, KINDS
+from aidl_lang.syntax.tables import KIND_OF_WORD, KINDS, load_tables
 from aidl_lang.tools.reference.collect import reference
 
 _KEYWORDS: Mapping[str, str] = {

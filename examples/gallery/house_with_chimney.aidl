@@ -16,7 +16,7 @@ assembly house_with_chimney {
         drawing bars { v = [line((0, -h / 2), (0, h / 2)), line((-w / 2, 0), (w / 2, 0))] }
         @color("#3f7a5c") @shade(slope) solid shutter {
             v = rectangle((0.73 * w + 1.5, 0), 0.38 * w, h + 3)
-            drawing louvres { v = ribs(shutter.v, pitch: 3, width: 0, angle: 90, margin: 1) }
+            drawing louvres { v = ribs(shutter.v, pitch: 3, width: 0, angle: 0, margin: 1) }
         }
         other_shutter = mirror(shutter, about: y_axis)
         box = block(1.5 * w, 4, "#8c5a33") at (0, -h / 2 - 3)

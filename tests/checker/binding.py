@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.checking.synonyms import COORDINATES, PAIRS, PARAMETERS
+from aidl_lang.checking.binding import COORDINATES, PAIRS, PARAMETERS
 from aidl_lang.syntax import ast
 from tests.checker.tree import Array, Geo, Node
 from tests.checker.values import Boxed, MistakeError, Num, Point, Scope, UnavailableError, fold

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from inspect import signature
 from typing import Any, TypeVar
 
-from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.syntax import ast
 from tests.checker import fields, functions
 from tests.checker.binding import chosen, respelled, with_defaults

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.binding import MEMBERS
 from tests.checker.tree import Array, Geo, Node, Vec
 from tests.checker.values import (
     Boxed,

@@ -13,8 +13,7 @@ from aidl_lang.checking.units import UNITS
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.words import kind_of
+from aidl_lang.syntax.tables import kind_of, load_tables
 from aidl_lang.tools.vocabulary import NAMES, unclaimed, vocabulary
 
 WORDS = vocabulary()

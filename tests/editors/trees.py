@@ -16,8 +16,7 @@ import pytest
 from tree_sitter import Language, Node, Parser, Tree
 
 from aidl_lang.common.names import fold
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.words import kind_of
+from aidl_lang.syntax.tables import kind_of, load_tables
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 

@@ -9,8 +9,7 @@ import pytest
 
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tables import END, Token, load_tables, tokenize
-from aidl_lang.syntax.words import KINDS
+from aidl_lang.syntax.tables import END, KINDS, Token, load_tables, tokenize
 from aidl_lang.tools.grammars import export
 from tests.amount import TRIES_ALL
 from tests.grammars.engines import Engine, all_programs, engine, syntax_errors

@@ -15,7 +15,8 @@ import pytest
 from hypothesis import given, reject
 from hypothesis import strategies as st
 
-from aidl_lang.solver import Problem, Solution, Status, dependence, gradients, mobility, solve
+from aidl_lang.solver import Problem, Solution, Status, dependence, gradients, solve
+from aidl_lang.solver import analysis as mobility
 from aidl_lang.solver.analysis import Freedom, State, analyse
 from aidl_lang.solver.operations import Op
 from tests.amount import tries

@@ -98,7 +98,7 @@ def test_damped_steps(seed: int, damping: float) -> None:
     mu = 10.0**damping
     expected = -np.linalg.solve(matrix.T @ matrix + mu * np.eye(matrix.shape[1]), matrix.T @ residuals)
     for kind in (matrix, SparseMatrix(csr_array(matrix))):
-        steps = linear.damped_steps(kind, residuals)
+        steps = linear.DampedSteps(kind, residuals)
         assert np.abs(steps.step(mu) - expected).max() <= 1e-6 * (1.0 + np.abs(expected).max())
         assert steps.slope == pytest.approx(np.linalg.norm(matrix.T @ residuals))
         assert steps.largest >= 0.99 * np.linalg.norm(matrix, 2) ** 2

@@ -8,8 +8,7 @@ from aidl_lang.building import boxes, curves
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.values import ListVal, Num, PointVal, Value
 from aidl_lang.checking import builtins
-from aidl_lang.checking.registry import PRIMITIVES
-from aidl_lang.checking.types import ANY, GeometryType, ListType, NumberType, PointType, Type
+from aidl_lang.checking.types import ANY, PRIMITIVES, GeometryType, ListType, NumberType, PointType, Type
 from tests.compiled import compiled
 
 

@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from aidl_lang.checking.binding import FIELDS, PARAMETERS
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
-from aidl_lang.checking.synonyms import FIELDS, PARAMETERS
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.names import fold, is_like, is_slip, nearest
@@ -122,11 +122,6 @@ ATTRIBUTES_MEANT: Mapping[str, tuple[str, str]] = {
 """Attributes of other languages, folded: the attribute that is meant, or a hint if it is none."""
 
 
-def value_hint(name: str) -> str | None:
-    """Returns the hint for a name that is a value in other languages."""
-    return _VALUES.get(fold(name))
-
-
 def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast.Module, list[Diagnostic]]:
     """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
     functions that one of the files defines stay.
@@ -164,13 +159,10 @@ _BODIES = ("statements", "body", "then", "otherwise", "items")
 
 def _idle(node: ast.ExpressionStatement) -> Diagnostic:
     assert isinstance(node.value, ast.Call)
-    return Diagnostic(
-        "N0504",
-        f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes",
-        node.span,
-        hints=("the output is named on the command line: `aidl compile plate.aidl -o plate.svg`",),
-        fix=Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True),
-    )
+    message = f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes"
+    hint = "the output is named on the command line: `aidl compile plate.aidl -o plate.svg`"
+    fix = Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True)
+    return Diagnostic("N0504", message, node.span, hints=(hint,), fix=fix)
 
 
 def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
@@ -189,20 +181,13 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
     return None
 
 
-# --- Diagnostics for names that are unknown, ambiguous, or used before they exist.
-
-
 def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
     """Reports `h = …` among constraints with a new name: it compares, but was meant to declare one."""
     start = Span(name.span.source, name.span.start, name.span.start)
-    resolver.report(
-        "E0201",
-        f"there is no `{name.text}` here; among constraints `=` compares",
-        name,
-        label="not declared",
-        hints=(f"`let {name.text} = …` names an expression; geometry is made outside",),
-        fix=Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None,
-    )
+    message = f"there is no `{name.text}` here; among constraints `=` compares"
+    hint = f"`let {name.text} = …` names an expression; geometry is made outside"
+    fix = Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None
+    resolver.report("E0201", message, name, label="not declared", hints=(hint,), fix=fix)
 
 
 def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None:
@@ -217,31 +202,20 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     called = scope.called(name)
     if called is not None:
         kind = kind_of(called[1][0])
-        resolver.report(
-            "E0206",
-            f"`{name}` is a {kind} and has to be called: `{name}(…)`",
-            node,
-            label="a name alone means a value",
-        )
+        message = f"`{name}` is a {kind} and has to be called: `{name}(…)`"
+        resolver.report("E0206", message, node, label="a name alone means a value")
         return
-    hint = value_hint(name)
+    hint = _VALUES.get(fold(name))
     like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
     hints: tuple[str, ...] = (hint,) if hint else ()
     if not like and not hints:
         hints = ("names are declared with `param`, `let` or `name = …`",)
     declared = scope.value(like[0]) if like else None
-    secondary = (
-        (Label(declared.declarations[0].span, "declared here"),) if declared and declared.declarations else ()
-    )
-    resolver.report(
-        "E0201",
-        f"there is no `{name}` here" + did_you_mean(like),
-        node,
-        label="not declared",
-        secondary=secondary,
-        hints=hints,
-        fix=respell(node, like),
-    )
+    places = declared.declarations[:1] if declared else ()
+    secondary = tuple(Label(place.span, "declared here") for place in places)
+    message = f"there is no `{name}` here" + did_you_mean(like)
+    fix = respell(node, like)
+    resolver.report("E0201", message, node, label="not declared", secondary=secondary, hints=hints, fix=fix)
 
 
 def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> None:
@@ -254,9 +228,8 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         hint, fix = f"`{name}` alone names it", None
         if isinstance(value.node, ast.Structure):
             fix = _as_template(value.node)
-            hint = (
-                f"with a parameter list, `{value.node.kind} {name}() {{ … }}`, it is a template to be called"
-            )
+            listed_so = f"`{value.node.kind} {name}() {{ … }}`"
+            hint = f"with a parameter list, {listed_so}, it is a template to be called"
         resolver.report(
             "E0206",
             f"`{name}` is {value.kind.with_article} and cannot be called",
@@ -291,9 +264,7 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
 
 
 def _is_spelled_right(name: str, meant: str, scope: SymbolScope) -> bool:
-    """Tells whether a word in which two names differ is a known one: `same_side` is no slip for
-    `same_size`.
-    """
+    """Tells whether a word by which two names differ is known: `same_side` is no slip for `same_size`."""
     known = {word for other in scope.callable_names() for word in other.casefold().split("_")}
     known |= PARAMETERS.keys() | FIELDS
     words, others = name.casefold().split("_"), meant.casefold().split("_")
@@ -316,9 +287,9 @@ def _may_hold(scope: SymbolScope, name: str) -> bool:
     """Tells whether a callable may be a condition: shapes and templates are none, nor is `sin`."""
     found = scope.called(name)
     made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
-    return (
-        found is not None and all(kind_of(s) not in made for s in found[1]) and not _is_built_in(scope, name)
-    )
+    if found is None or _is_built_in(scope, name):
+        return False
+    return all(kind_of(s) not in made for s in found[1])
 
 
 def _is_built_in(scope: SymbolScope, name: str) -> bool:
@@ -369,20 +340,13 @@ def check_aliases(resolver: Resolver, scope: SymbolScope) -> None:
             if trail[-1] in trail[:-1]:
                 break
         if len(trail) > 1 and trail[-1] in trail[:-1]:
-            resolver.report(
-                "E0207",
-                f"the alias `{symbol.name}` stands for itself: {' → '.join(trail)}",
-                target,
-                hints=("let one of them name a function, shape, constraint or template",),
-            )
+            message = f"the alias `{symbol.name}` stands for itself: {' → '.join(trail)}"
+            hint = "let one of them name a function, shape, constraint or template"
+            resolver.report("E0207", message, target, hints=(hint,))
             continue
         like = nearest(target.text, [n for n in scope.callable_names() if n != symbol.name], 2)
-        resolver.report(
-            "E0203",
-            f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like),
-            target,
-            fix=respell(target, like),
-        )
+        message = f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like)
+        resolver.report("E0203", message, target, fix=respell(target, like))
 
 
 def is_below(node: ast.Name, symbol: Symbol, scope: SymbolScope) -> bool:
@@ -396,9 +360,7 @@ def is_below(node: ast.Name, symbol: Symbol, scope: SymbolScope) -> bool:
 
 
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: SymbolScope) -> None:
-    """Reports geometry and unknowns used above their line; those of other structures are judged by
-    validity.
-    """
+    """Reports geometry and unknowns used above their line; validity judges those of other structures."""
     if is_below(node, symbol, scope):
         hint = "write a first guess here, and the relation in `constrain`, which is read after the rest"
         used_early(resolver.report, node, symbol, *(meant_outside(symbol, node) or (hint,)))

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, SymbolKind, SymbolScope
-from aidl_lang.checking.types import PARAMETER_TYPES, Signature
+from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
@@ -34,9 +33,7 @@ def is_definition(node: ast.Node) -> bool:
 
 
 def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
-    """Returns the kind of symbol that `name = value` declares: geometry, a structure, or only an
-    expression.
-    """
+    """Returns the kind of symbol that `name = value` declares: geometry, a structure, an expression."""
     match value:
         case ast.Point():
             return SymbolKind.GEOMETRY
@@ -84,9 +81,8 @@ class Declarer:
                     self._callables(then.statements)
                     self._callables(otherwise.statements if otherwise else ())
                 case ast.Alias(name):
-                    self.scope.aliases[name.text] = self.resolver.enter(
-                        self.scope, name, SymbolKind.ALIAS, node
-                    )
+                    symbol = self.resolver.enter(self.scope, name, SymbolKind.ALIAS, node)
+                    self.scope.aliases[name.text] = symbol
                 case (
                     ast.FunctionDefinition()
                     | ast.ShapeDefinition()
@@ -94,16 +90,15 @@ class Declarer:
                     | ast.Structure()
                 ) if is_definition(node):
                     self._callable(node, shapes)
-                case _:
-                    pass
 
     def _callable(self, node: ast.Callable, shapes: set[str]) -> None:
         made = signature(node, self._shape_types(node, shapes))
         name = node.name.text
         overloads = self.scope.callables.setdefault(name, [])
-        symbol = self.resolver.enter(self.scope, node.name, _definition_kind(node), node)
+        symbol = self.resolver.enter(self.scope, node.name, complaints.kind_of(made), node)
         for other in overloads:
-            if _same_parameters(made, other) and other.node is not None:
+            is_same = [p[:2] for p in made.parameters] == [p[:2] for p in other.parameters]
+            if is_same and other.node is not None:
                 earlier = self.resolver.resolution.of_definition[other.node]
                 complaints.declared_twice(self.resolver, symbol.declarations[0], earlier)
                 break
@@ -122,13 +117,9 @@ class Declarer:
                 found.append(word.text)
                 continue
             like = nearest(word.text, [*PARAMETER_TYPES, *shapes], 2)
-            self.resolver.report(
-                "E0215",
-                f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else ""),
-                word,
-                hints=("types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes",),
-                fix=complaints.respell(word, like),
-            )
+            message = f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else "")
+            hint = "types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes"
+            self.resolver.report("E0215", message, word, hints=(hint,), fix=complaints.respell(word, like))
         return found
 
     # --- Values --------------------------------------------------------------------------------
@@ -152,8 +143,6 @@ class Declarer:
                         self._values(otherwise.statements, (*branch, (id(node), False)))
                 case ast.For(variables, _, body) if not self.is_turn:
                     self._indexed(body.statements, branch, {v.text for v in variables})
-                case _:
-                    pass
 
     def _member(self, node: ast.Structure | ast.Assign, kind: SymbolKind, branch: Branch) -> None:
         if not self.is_turn:
@@ -202,18 +191,13 @@ class Declarer:
                     self._indexed(then.statements, (*branch, (id(node), True)), local)
                     if otherwise is not None:
                         self._indexed(otherwise.statements, (*branch, (id(node), False)), local)
-                case _:
-                    pass
 
     def _same_index(self, node: ast.Structure | ast.Assign, indices: Sequence[ast.Expression]) -> None:
         name = node.name.text
-        self.resolver.report(
-            "E0208",
-            f"`{name}` gets the same index in every turn of this `for`",
-            indices[-1],
-            label="does not depend on the loop",
-            hints=("let the index depend on the loop variable",),
-        )
+        message = f"`{name}` gets the same index in every turn of this `for`"
+        label = "does not depend on the loop"
+        hint = "let the index depend on the loop variable"
+        self.resolver.report("E0208", message, indices[-1], label=label, hints=(hint,))
 
     def _value(
         self,
@@ -247,20 +231,6 @@ class Declarer:
         self.resolver.resolution.uses[name] = known
         known.declarations.append(name)
         known.nodes.append(node)
-
-
-def _definition_kind(node: ast.Callable) -> SymbolKind:
-    kinds: Mapping[type, SymbolKind] = {
-        ast.FunctionDefinition: SymbolKind.FUNCTION,
-        ast.ShapeDefinition: SymbolKind.SHAPE,
-        ast.ConstraintDefinition: SymbolKind.CONSTRAINT,
-        ast.Structure: SymbolKind.TEMPLATE,
-    }
-    return kinds[type(node)]
-
-
-def _same_parameters(a: Signature, b: Signature) -> bool:
-    return [p[:2] for p in a.parameters] == [p[:2] for p in b.parameters]
 
 
 def _together(a: Branch, b: Branch) -> bool:

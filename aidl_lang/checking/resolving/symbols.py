@@ -103,9 +103,7 @@ class SymbolScope:
     _spellings: dict[str, Spellings] = field(default_factory=dict, repr=False)
 
     def spelled_alike(self, kind: Literal["values", "callables", "aliases"], name: str) -> str | None:
-        """Returns the name in one of the tables of this scope that differs only in spelling (see
-        `names.find`).
-        """
+        """Returns the name in a table of this scope that differs only in spelling (see `names.find`)."""
         if (known := self._spellings.get(kind)) is None:
             known = self._spellings[kind] = Spellings(getattr(self, kind))
         return known.find(name)
@@ -138,9 +136,7 @@ class SymbolScope:
         return space.scope.spaces[space.name]
 
     def container(self) -> SymbolScope:
-        """Returns the scope whose members the declarations here become: that of the structure or definition
-        around.
-        """
+        """Returns the scope whose members the declarations here become: of the structure or definition."""
         scope = self
         while isinstance(scope.owner, ast.For) and scope.parent is not None:
             scope = scope.parent
@@ -252,9 +248,7 @@ class Resolution:
         return (*self.library.sources, *self.drawings)
 
     def scope_of(self, definition: ast.Node) -> SymbolScope:
-        """Returns the scope of a definition's body; one of the library is resolved when it is first
-        needed.
-        """
+        """Returns the scope of a definition's body; the library's are resolved when they are first needed."""
         if definition not in self.scopes:
             self.enter_library(definition)
         return self.scopes[definition]
@@ -282,9 +276,7 @@ def library_scope(library: Library) -> SymbolScope:
 
 
 class _Joined(dict[str, list[Signature]]):
-    """Built-in and library overloads by name, joined when they are looked up: only then is a library
-    definition decoded.
-    """
+    """Built-in and library overloads by name, joined, and decoded, when they are looked up."""
 
     def __init__(self, *tables: Mapping[str, tuple[Signature, ...]]) -> None:
         super().__init__({name: [] for table in tables for name in table})

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from aidl_lang.building.expression import Evaluator, Expression
 from aidl_lang.building.model import Model, Structure
-from aidl_lang.building.scopes import ParamBinding, Scope
+from aidl_lang.building.state import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.geometry.curves import Arc, Circle
 from aidl_lang.geometry.dimensions.clipped import left_of

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.boxes import Box, spelled_out
-from aidl_lang.building.by_hand import axis_of, measured, options
 from aidl_lang.building.expression import ZERO, Evaluator, Expression, constant
+from aidl_lang.building.impose import axis_of, measured, options
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure, convert, convert_angle
 from aidl_lang.building.values import NOTHING, Array, ListVal, Num, PointVal, TextVal, Value, members
 from aidl_lang.building.wording import Wording

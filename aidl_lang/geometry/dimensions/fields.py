@@ -13,7 +13,7 @@ from dataclasses import replace
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Evaluator, Expression
 from aidl_lang.building.model import Geometry, Model, Structure, convert_angle
-from aidl_lang.building.scopes import Scope
+from aidl_lang.building.state import Scope
 from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record

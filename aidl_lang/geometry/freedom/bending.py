@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once, scattered
+from aidl_lang.solver.analysis import Part
 from aidl_lang.solver.gradients import Sparse, linearise
-from aidl_lang.solver.mobility import Part
-from aidl_lang.solver.problem import Problem
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import Valuation
 
 Floats = NDArray[np.float64]

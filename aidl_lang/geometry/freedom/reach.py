@@ -25,7 +25,7 @@ from aidl_lang.geometry.freedom.scene import (
     X,
     Y,
 )
-from aidl_lang.solver.mobility import Part
+from aidl_lang.solver.analysis import Part
 
 Flags: TypeAlias = NDArray[np.bool_]
 

@@ -7,13 +7,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.building.curves import DIRECTIONS
 from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered, seen
 from aidl_lang.building.model import Geometry, Model, Structure
-from aidl_lang.building.primitives import DIRECTIONS
 from aidl_lang.common.records import record
 from aidl_lang.geometry.freedom.bending import Bending
-from aidl_lang.solver.mobility import Motions
+from aidl_lang.solver.analysis import Motions
 
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.intp]

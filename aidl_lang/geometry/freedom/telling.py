@@ -21,7 +21,7 @@ from aidl_lang.geometry.freedom.scene import NUMBER, ROOT, WHOLE, Floats, Ints, 
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.gradients import connected
-from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.problem import Solution
 
 MOST = 200
 """Parts of the model that are put into words."""
@@ -29,7 +29,7 @@ MOST = 200
 _KINDS = ("slide", "turn", "grow", "change", "together")
 """Kinds of motion of one thing, the more telling first."""
 _FOLLOWED = frozenset(_KINDS) - {"together"}
-_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "{} at first"}
+_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "turn"}
 """Words for a motion that does not go on as it begins."""
 
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from aidl_lang.export import Options
     from aidl_lang.export.profiles import Profile
     from aidl_lang.pipeline import Compiled
-    from aidl_lang.solver.memory import Memory
-    from aidl_lang.solver.solution import StageReport
+    from aidl_lang.solver.problem import StageReport
+    from aidl_lang.solver.riding import Memory
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -315,7 +315,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
     if arguments.file == files.STANDARD:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
-    from aidl_lang.solver.memory import Memory
+    from aidl_lang.solver.riding import Memory
 
     targets(arguments)
 

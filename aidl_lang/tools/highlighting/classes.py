@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
-from aidl_lang.syntax.words import kind_of
+from aidl_lang.syntax.tables import END, UNKNOWN, Token, kind_of, tokenize
 from aidl_lang.tools.vocabulary import vocabulary
 
 _ESCAPE = re.compile(r"\\.", re.DOTALL)

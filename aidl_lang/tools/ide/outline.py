@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from aidl_lang.checking.builtins import ATTRIBUTES, PATTERNS
-from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.symbols import SymbolKind, word_meant
+from aidl_lang.checking.types import PUBLIC
 from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.common.names import fold, is_spelled_in
 from aidl_lang.common.records import record

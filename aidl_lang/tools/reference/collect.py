@@ -132,7 +132,7 @@ class Reference:
 
 TOPICS = (
     *("rectangles", "corners", "rounds", "polygons", "triangles", "quadrilaterals", "geometry", "path"),
-    *("text", "arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "spline"),
+    *("text", "arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "links", "spline"),
     *("relations", "placement", "arrangements", "sizes", "constraints", "tangency", "symmetry", "measures"),
     *("clearance", "operations", "outlines", "patterns", "joints", "hardware", "mounts", "fasteners", "gear"),
     *("dimensions", "language", "numbers", "colors", "exactness"),

@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.checking import library
-from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.types import (
     PARAMETER_TYPES,
     PEERS,
+    PUBLIC,
     NumberType,
     Signature,
     TextType,

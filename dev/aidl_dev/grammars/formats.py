@@ -20,7 +20,7 @@ from aidl_dev.grammars.reader import read_rules
 from aidl_dev.grammars.spacing import spaced
 from aidl_dev.grammars.terminals import SPACING, bounded_terminals, reading_terminals
 from aidl_dev.grammars.writing import GBNF, LARK, W3C
-from aidl_lang.syntax.words import KINDS
+from aidl_lang.syntax.tables import KINDS
 
 # Lines without three backticks, and the opening of a block.
 _TICKS = optional(alt(Text("`"), Text("``")))

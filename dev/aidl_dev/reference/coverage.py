@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 from aidl_lang import pipeline
-from aidl_lang.checking.registry import PRIMITIVES
+from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.common.diagnostics import MOST_ERRORS
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile

@@ -3,7 +3,7 @@ library, the grammar and the examples, where that file has a placeholder.
 
     {{calls TOPIC …}}      how the names of those topics are called, and the parts of shapes
     {{forms TOPIC …}}      the same without parts
-    {{names TOPIC …}}      those names alone
+    {{names TOPIC …}}      those names alone; after `rare` also those that `calls` leaves out
     {{fields}}             what each primitive can be asked for
     {{reserved}}           the words that cannot be names
     {{example NAME}}       the program `examples/NAME.aidl`
@@ -21,8 +21,8 @@ from pathlib import Path
 
 from aidl_dev.reference.short import short_calls
 from aidl_lang.checking.builtins import CUTS
-from aidl_lang.checking.registry import PRIMITIVES, PUBLIC
 from aidl_lang.checking.subset import Variant
+from aidl_lang.checking.types import PRIMITIVES, PUBLIC
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference
@@ -56,9 +56,7 @@ GENERATED = {
 
 
 def guide(variant: Variant = Variant.FULL) -> str:
-    """Returns the guide as Markdown. Raises KeyError for a placeholder, variant or topic that does not
-    exist.
-    """
+    """Returns the guide as Markdown. Raises KeyError for an unknown placeholder or topic."""
     text = template()
     for block in _BLOCKS:
         text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)
@@ -66,8 +64,7 @@ def guide(variant: Variant = Variant.FULL) -> str:
 
 
 def _variants(names: str) -> list[Variant]:
-    known = {str(variant): variant for variant in Variant}
-    return [known[name] for name in names.split()]
+    return [variant for variant in Variant if str(variant) in names.split()]
 
 
 def template() -> str:
@@ -95,7 +92,7 @@ def _calls(variant: Variant, *topics: str) -> str:
     without the Béziers of a figure, to which nothing is joined) and how it lies.
     """
     lines, told = [], dict[str, set[str]]()
-    for entry in _entries(variant, topics):
+    for entry in [e for e in _entries(variant, topics) if e.name not in _RARE]:
         told_of = (part for node in entry.nodes for part in parts(node) if part.type != "bezier")
         named = _gathered(dict.fromkeys(part.name for part in told_of))
         like = next((n for n, known in told.items() if len(known) > 3 and known <= set(named)), None)
@@ -162,8 +159,7 @@ def _arguments(variant: Variant, entry: Entry) -> str:
 
 def _is_laxer(one: str, other: str) -> bool:
     """Tells whether a form has the arguments of another, and lets more of them out."""
-    pairs = list(zip_longest(one.split(", "), other.split(", ")))
-    return all(a == b or (b is not None and a == f"{b}?") for a, b in pairs)
+    return all(a in (b, f"{b}?") for a, b in zip_longest(one.split(", "), other.split(", ")))
 
 
 def _factored(forms: Sequence[str]) -> str:
@@ -211,8 +207,16 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
+_RARE = [
+    *("checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf"),
+    *("ogee_arch", "ogive", "reuleaux", "rhombus", "rosette", "squircle"),
+]
+"""Shapes whose names are told among those of `names` only, of whatever topic they are."""
+
+
 def _names(variant: Variant, *topics: str) -> str:
-    return f"`{' '.join(entry.name for entry in _entries(variant, topics))}`"
+    rare, topics = (_RARE, topics[1:]) if topics[0] == "rare" else ([], topics)
+    return f"`{' '.join([*rare, *(entry.name for entry in _entries(variant, topics))])}`"
 
 
 def _fields(variant: Variant) -> str:
@@ -226,15 +230,11 @@ def _reserved(variant: Variant) -> str:
     return " ".join(sorted(load_tables().reserved))
 
 
-def _example(variant: Variant, name: str) -> str:
-    return f"```aidl\n{resource(f'examples/{name}.aidl').read_text('utf-8')}```"
-
-
 _MAKERS: Mapping[str, Callable[..., str]] = {
     "calls": _calls,
     "forms": _forms,
     "names": _names,
     "fields": _fields,
     "reserved": _reserved,
-    "example": _example,
+    "example": lambda _, name: f"```aidl\n{resource(f'examples/{name}.aidl').read_text('utf-8')}```",
 }

@@ -16,8 +16,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Tape, TapeBuilder
 from aidl_lang.solver.operations import Op
-from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, constraint_arrays
-from aidl_lang.solver.solution import Status
+from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, Status, constraint_arrays
 from tests.solver.problems.members import (
     Members,
     as_count,

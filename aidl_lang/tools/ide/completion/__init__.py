@@ -9,7 +9,7 @@ from functools import partial
 from aidl_lang.checking.types import TextType
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.words import KINDS, kind_of
+from aidl_lang.syntax.tables import KINDS, kind_of
 from aidl_lang.tools.ide.completion import drafts, names
 from aidl_lang.tools.ide.completion.constraints import constraints
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, Use, context_of

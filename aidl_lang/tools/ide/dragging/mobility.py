@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, spelled_out
+from aidl_lang.building.curves import xy
 from aidl_lang.building.expression import Evaluator, Expression, Unknown
 from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Comparison, Constraint, Geometry, Model, Structure, convert, own_geometry
-from aidl_lang.building.primitives import xy
-from aidl_lang.building.scopes import Scope
+from aidl_lang.building.state import Scope
 from aidl_lang.building.values import PointVal, Value
-from aidl_lang.checking.registry import PRIMITIVES
+from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span

@@ -11,8 +11,7 @@ from aidl_lang.checking.units import UNITS
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import Token
-from aidl_lang.syntax.words import kind_of
+from aidl_lang.syntax.tables import Token, kind_of
 from aidl_lang.tools.ide.guesses import guesses
 from aidl_lang.tools.ide.hover.solved_values import Solved, solved_of
 from aidl_lang.tools.ide.hover.telling import compared, constraint_lines, lines, number_text

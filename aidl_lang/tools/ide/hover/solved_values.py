@@ -16,8 +16,7 @@ from aidl_lang.building.calls import call
 from aidl_lang.building.evaluate import evaluate, iterate, turn_scope
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Geometry, Model, Structure, own_geometry
-from aidl_lang.building.scopes import LetBinding, Scope
-from aidl_lang.building.state import BuildingLimits, Env, Interpreter, Reach
+from aidl_lang.building.state import BuildingLimits, Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import Array, ListVal, Nothing, Num, PointVal, Value, members
 from aidl_lang.common.diagnostics import has_errors

@@ -10,10 +10,9 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.conditions import holds
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Condition, Geometry, Structure
-from aidl_lang.building.scopes import Scope
-from aidl_lang.building.state import Env
+from aidl_lang.building.state import Env, Scope
 from aidl_lang.building.values import Exactness, Num, PointVal, TextVal, Value
-from aidl_lang.checking.registry import PRIMITIVES
+from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.source import Span

@@ -24,7 +24,7 @@ from aidl_lang.geometry.evaluate import Bounds, bounds, is_finite
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.solver.memory import Memory
+from aidl_lang.solver.riding import Memory
 from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     DrawnElement,

@@ -1,4 +1,4 @@
-/// A city tram: doors and windows along its body, two bogies, a pantograph under its wire, and the track.
+/// A city tram: doors and windows along its body, two bogies, a pantograph, and the track.
 assembly tram {
     param length = 360 in 300..440
     param windows = 3 in 1..4
@@ -13,12 +13,11 @@ assembly tram {
             for s in sleeper { s.top == rail.bottom }
         }
     }
-
-    @color("black") solid bogie(radius = 15) {
+    @color("black") @rigid solid bogie(radius = 15) {
         frame = trapezoid(center: origin, bottom_width: 50, top_width: 76, height: 24)
         for i in 0..1 {
-            tyre[i] = circle(center: fixed((48 * i - 24, -12)), radius: radius)
-            hole spokes[i] at fixed((48 * i - 24, -12)) {
+            tyre[i] = circle(center: (48 * i - 24, -12), radius: radius)
+            hole spokes[i] at (48 * i - 24, -12) {
                 cut = polar_array(circle(radius: 2.5), n: 5, radius: 9)
             }
         }
@@ -26,23 +25,15 @@ assembly tram {
     front = bogie() at (110, 0)
     rear = bogie() at (-110, 0)
 
-    @color("dimgray") solid pantograph {
-        way = path(from: (-20, 0), line_to(22, 24), line_to(-4, 48))
-        arms = thick(way, 3)
-        shoe = rounded_rectangle(center: (-4, 50), width: 56, height: 5, radius: 2)
-    }
-
     @color(paint) @shade(slope) solid body {
         hull = rounded_rectangle(width: length, height: 92, radius: 16)
-        construction skirt = rectangle(width: length - 32, height: 26)
-        constrain skirt.bottom_center == hull.bottom_center
-
-        @color(darker(paint)) drawing panels { seams = hatching(skirt, pitch: 8, angle: 90deg) }
-
         @color("gold") drawing lettering { name = text("CITY LINE 17", height: 9) }
-        constrain lettering.name.center == skirt.center
+        constrain lettering.name.center == hull.bottom_center + (0, 14)
     }
-
+    @color("dimgray") solid pantograph {
+        arms = thick(polyline([(-16, 0), (26, 24), (0, 48)]), 3)
+        shoe = rounded_rectangle(center: (0, 50), width: 56, height: 5, radius: 2)
+    }
     for i in 0..1 {
         @color("lightcyan") @shade("lightblue") solid door[i] {
             leaf = rounded_rectangle(width: 40, height: 74, radius: 4)
