@@ -63,9 +63,19 @@ def summary(found: Ranges) -> str:
         return "no param has a range of numbers, so there is nothing to walk"
     places = sum(len(walk.turns) for walk in found.walks)
     tried = sum(len(walk.tried) for walk in found.walks)
-    kinds = f"{counted(places, 'place')} where the kind changes" if places else "one kind throughout"
-    parts = [f"{counted(len(found.walks), 'param')} walked from end to end, {kinds}, {found.seconds:.1f} s"]
-    parts.append(f"this holds for the {tried} values that were tried, not for what lies between two of them")
+    kinds = (
+        f"{counted(places, 'place')} where the kind changes"
+        if places
+        else "one kind" + " throughout" * found.ok
+    )
+    whole = sum(not walk.stopped for walk in found.walks)
+    parts = [f"{counted(whole, 'param')} walked from end to end, {kinds}, {found.seconds:.1f} s"]
+    if whole < len(found.walks):
+        parts.append(f"{counted(len(found.walks) - whole, 'param')} not walked to its ends")
+    if tried:
+        parts.append(
+            f"this holds for the {tried} values that were tried, not for what lies between two of them"
+        )
     counts = [walk.knob.path for walk in found.walks if walk.declared]
     if counts:
         does = "changes" if len(counts) == 1 else "change"
