@@ -61,6 +61,29 @@ def test_range_as_json(aidl: Aidl, folder: Path) -> None:
     assert PLATE[:start] + text + PLATE[end:] == PLATE.replace("0..50", "0..34")
 
 
+def test_two_params_are_turned_together(aidl: Aidl, folder: Path) -> None:
+    text = """\
+solid plate {
+    param way = 0 in 0..30
+    param size = 4 in 2..14
+    body = rectangle(center: origin, width: 80, height: 50)
+    hole bore { rim = circle(center: (way, 0), radius: size) }
+}
+"""
+    (folder / "plate.aidl").write_text(text)
+    assert aidl("check", "--range", "plate.aidl").code == 0
+    result = aidl("check", "--pairs", "plate.aidl")
+    assert (result.code, result.out) == (
+        1,
+        "plate.aidl: at `way = 30` with `size = 14` the openings of `plate` go from 1 to 0: "
+        "`plate.bore.rim` breaks through its edge\n",
+    )
+    assert "1 pair of params tried at the ends and halfway, at 8 pairs of values" in result.err
+    (found,) = json.loads(aidl("check", "--pairs", "--json", "plate.aidl").out)["range"]
+    (pair,) = found["pairs"]
+    assert (pair["params"], pair["turns"][0]["values"], pair["tried"]) == (["way", "size"], [30, 14], 8)
+
+
 def test_python_gives_warnings_with_fixes() -> None:
     first, second = aidl_lang.check(PLATE, range=True)
     assert (first.code, first.span and first.span.line, second.code) == ("W0607", 2, "W0607")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def _swept(
-    source: SourceFile, world: World, settings: Settings, compiled: Compiled, *, walks: bool
+    source: SourceFile, world: World, settings: Settings, compiled: Compiled, walks: bool | str
 ) -> Sweep | Ranges:
     """Tries a working program at the ends of its params, or between them, with progress on a terminal."""
     from aidl_lang.tools.ends import SweepJob, sweep
@@ -38,7 +38,8 @@ def _swept(
             return sweep(job, compiled.knobs, compiled.diagnostics, partial(_progress, "ends tried"))
         from aidl_lang.tools.ranges import ranges
 
-        return ranges(job, compiled.knobs, partial(_progress, "params walked"))
+        told = partial(_progress, "params walked")
+        return ranges(job, compiled.knobs, told, in_pairs=walks == "pairs")
     finally:
         _progress("", 0, 0)
 
@@ -59,9 +60,10 @@ def tell(name: str, sweep: Sweep | Ranges) -> None:
         told = [(each, sentence(each, name)) for each in sweep.turned]
         lines, last = [f"{'' if each.ok else 'error '}{text}" for each, text in told if text], _summary(sweep)
     else:
-        from aidl_lang.tools.ranges import sentences, summary
+        from aidl_lang.tools.ranges import sentences, summary, together
 
         lines, last = [text for walk in sweep.walks for text in sentences(walk)], summary(sweep)
+        lines += [text for pair in sweep.pairs for text in together(pair)]
     for line in lines:
         print(f"{name}: {escape(line)}")
     say(f"{name}: {last}")
@@ -130,10 +132,13 @@ def register_check(parser: argparse.ArgumentParser) -> None:
         "--ends",
         "try both ends of the range of each param as well, one at a time, and tell how far each may go",
     )
-    flag(
-        how_far,
-        "--range",
-        "walk each param over its range, and tell where something changes kind: a solution, holes, contacts",
+    flag(how_far, "--range", "walk each param over its range, and tell where something changes kind")
+    how_far.add_argument(
+        "--pairs",
+        dest="range",
+        action="store_const",
+        const="pairs",
+        help="as --range, and two params at a time",
     )
     how_far.add_argument(
         "--no-solve",
@@ -218,7 +223,7 @@ def _found(
     status = compiled.status if compiled.model is not None else ""
     sweep = None
     if compiled.ok and (arguments.ends or arguments.range):
-        sweep = _swept(source, world, settings, compiled, walks=arguments.range)
+        sweep = _swept(source, world, settings, compiled, arguments.range)
     return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
 
 

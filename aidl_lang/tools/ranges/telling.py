@@ -16,6 +16,7 @@ from aidl_lang.compiled import Compiled
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ends import SweepJob, valued
 from aidl_lang.tools.ranges.looks import Look, differences, look
+from aidl_lang.tools.ranges.pairs import Pair
 from aidl_lang.tools.ranges.walking import LONGEST, Ranges, Remedy, Turn, Walk, ranges
 
 _TOLD = 3
@@ -57,17 +58,26 @@ def sentences(walk: Walk) -> Iterator[str]:
         yield f"`{walk.knob.path}` was not walked to its ends: {walk.stopped}"
 
 
+def together(pair: Pair) -> Iterator[str]:
+    """Yields what is told of two params together."""
+    for meeting in pair.meetings[:_PLACES]:
+        a, b = (valued(knob, v) for knob, v in zip((pair.one, pair.other), meeting.values, strict=True))
+        told = first_few([change.text for change in meeting.changes], _TOLD, "; and {} more", "; ")
+        yield f"at `{pair.one.path} = {a}` with `{pair.other.path} = {b}` {told}"
+    if len(pair.meetings) > _PLACES:
+        more = counted(len(pair.meetings) - _PLACES, "other pair")
+        yield f"`{pair.one.path}` with `{pair.other.path}`: {more} of values at which the kind is another"
+
+
 def summary(found: Ranges) -> str:
     """Returns what was walked in one line, and that nobody looked between the values."""
     if not found.walks and not found.left:
         return "no param has a range of numbers, so there is nothing to walk"
     places = sum(len(walk.turns) for walk in found.walks)
     tried = sum(len(walk.tried) for walk in found.walks)
-    kinds = (
-        f"{counted(places, 'place')} where the kind changes"
-        if places
-        else "one kind" + " throughout" * found.ok
-    )
+    kinds = "one kind throughout" if all(walk.ok for walk in found.walks) else "one kind as far as that was"
+    if places:
+        kinds = f"{counted(places, 'place')} where the kind changes"
     whole = sum(not walk.stopped for walk in found.walks)
     parts = [f"{counted(whole, 'param')} walked from end to end, {kinds}, {found.seconds:.1f} s"]
     if whole < len(found.walks):
@@ -82,6 +92,14 @@ def summary(found: Ranges) -> str:
         parts.append(f"{first_few([f'`{path}`' for path in counts], 6)} {does} of what parts there are")
     if found.left:
         parts.append(f"{counted(len(found.left), 'param')} not walked: they take too long")
+    if found.pairs or found.untried:
+        values = sum(pair.tried for pair in found.pairs)
+        whole = sum(not pair.stopped for pair in found.pairs)
+        left = len(found.pairs) - whole + found.untried
+        parts.append(
+            f"{counted(whole, 'pair')} of params tried at the ends and halfway, at {values} pairs of values"
+            + f", {counted(left, 'pair')} not or not at all of them" * bool(left)
+        )
     return "; ".join(parts)
 
 
@@ -92,6 +110,16 @@ def described(name: str, found: Ranges) -> dict[str, Any]:
         "ok": found.ok,
         "walked": [_walked(walk) for walk in found.walks],
         "left": [knob.path for knob in found.left],
+        "pairs": [
+            {
+                "params": [pair.one.path, pair.other.path],
+                "turns": [asdict(meeting) for meeting in pair.meetings],
+                "tried": pair.tried,
+                "stopped": pair.stopped,
+            }
+            for pair in found.pairs
+        ],
+        "pairs_left": found.untried,
         "seconds": round(found.seconds, 3),
     }
 

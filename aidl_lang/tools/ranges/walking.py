@@ -12,7 +12,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from aidl_lang.pipeline import Front
 from aidl_lang.solver import Memory, Problem, Settings, Status, solve
 from aidl_lang.tools.ends import SweepJob, allowed, is_whole, rounded
 from aidl_lang.tools.ranges.looks import Change, Look, differences, look, may_meet, moves
+from aidl_lang.tools.ranges.pairs import Pair, Spot, paired
 from aidl_lang.tools.sweeping.bundle import BROKEN
 
 FINEST = 1e-3
@@ -96,15 +97,20 @@ class Walk:
 
 @record()
 class Ranges:
-    """The walks of all params with a range. `left`: those that were not walked, for want of time."""
+    """The walks of all params with a range, and pairs of them if that was asked for. `left`: those that were
+    not walked, for want of time, and `untried` is the number of such pairs.
+    """
 
     walks: tuple[Walk, ...]
     left: tuple[Knob, ...] = ()
     seconds: float = 0.0
+    pairs: tuple[Pair, ...] = ()
+    untried: int = 0
 
     @property
     def ok(self) -> bool:
-        return not self.left and all(walk.ok for walk in self.walks)
+        is_whole = not (self.left or self.untried) and all(walk.ok for walk in self.walks)
+        return is_whole and not any(pair.meetings or pair.stopped for pair in self.pairs)
 
 
 def has_way(knob: Knob) -> bool:
@@ -352,16 +358,28 @@ _known: dict[SweepJob, Front] = {}
 """The program that this process has checked already."""
 
 
-def walked(job: SweepJob, knob: Knob, seconds: float = _A_KNOB) -> Walk:
-    """Walks a param of a program that works as written."""
-    start = time.perf_counter()
-    source, memory = SourceFile(job.name, job.text), Memory()
+def _compiling(job: SweepJob, source: SourceFile) -> Callable[[Spot], Compiled]:
+    """Returns what compiles a program with some params set: it is checked once, and solved anew in part."""
+    memory = Memory()
     if job not in _known:
         _known.clear()
         _known[job] = pipeline.front(source, job.world, job.settings)
+    return lambda spot: pipeline.compile(source, job.world, dict(spot), job.settings, (), memory, _known[job])
+
+
+def met(job: SweepJob, one: Knob, other: Knob, seconds: float = _A_KNOB) -> Pair:
+    """Tries two params of a program that works as written together."""
+    compiling = _compiling(job, SourceFile(job.name, job.text))
+    return paired(one, other, compiling, time.monotonic() + seconds)
+
+
+def walked(job: SweepJob, knob: Knob, seconds: float = _A_KNOB) -> Walk:
+    """Walks a param of a program that works as written."""
+    start, source = time.perf_counter(), SourceFile(job.name, job.text)
+    compiling = _compiling(job, source)
 
     def compiled(value: float) -> Compiled:
-        return pipeline.compile(source, job.world, {knob.path: value}, job.settings, (), memory, _known[job])
+        return compiling(((knob.path, value),))
 
     def other(changed: SourceFile, params: Mapping[str, float]) -> Compiled:
         return pipeline.compile(changed, job.world, params, job.settings)
@@ -382,8 +400,11 @@ def ranges(
     knobs: Sequence[Knob],
     progress: Callable[[int, int], None] = lambda done, count: None,
     seconds: float = LONGEST,
+    *,
+    in_pairs: bool = False,
 ) -> Ranges:
-    """Walks the params of a working program, side by side. `progress` is told how many are done, of how many.
+    """Walks the params of a working program, side by side, and tries each two of them if `in_pairs`.
+    `progress` is told how many are done, of how many.
 
     Raises Cancelled where nobody waits for it any more (see `common.running`).
     """
@@ -392,27 +413,36 @@ def ranges(
     if not wanted:
         return Ranges((), (), 0.0)
     workers = Guarded(min(count(), len(wanted)), "aidl_lang.tools.ranges.walking")
-    crew: Crew[int, Walk] = Crew(workers)
-    done: dict[int, Walk] = {}
+    crew: Crew[int, Walk | Pair] = Crew(workers)
+    twos = list(combinations(wanted, 2)) if in_pairs else []
+    done: dict[int, Walk | Pair] = {}
     try:
-        progress(0, len(wanted))
+        progress(0, len(wanted) + len(twos))
         for number, knob in enumerate(wanted):
             crew.give(number, _A_KNOB + job.seconds, walked, job, knob)
+        for number, two in enumerate(twos, len(wanted)):
+            crew.give(number, _A_KNOB + job.seconds, met, job, *two)
         while crew and time.monotonic() < start + seconds:
             checkpoint()
             for number, found in crew.came(_PAUSE):
-                done[number] = _came(found, wanted[number])
-                progress(len(done), len(wanted))
+                done[number] = _came(found, [*((knob,) for knob in wanted), *twos][number])
+                progress(len(done), len(wanted) + len(twos))
     finally:
         workers.close()
+    results = [done[number] for number in sorted(done)]
+    walks = tuple(each for each in results if isinstance(each, Walk))
+    pairs = tuple(each for each in results if isinstance(each, Pair))
     left = tuple(knob for number, knob in enumerate(wanted) if number not in done)
-    return Ranges(tuple(done[n] for n in sorted(done)), left, time.monotonic() - start)
+    return Ranges(walks, left, time.monotonic() - start, pairs, len(twos) - len(pairs))
 
 
-def _came(found: Walk | Broke, knob: Knob) -> Walk:
-    """Returns the walk of a process, or how it ended."""
+def _came(found: Walk | Pair | Broke, knobs: tuple[Knob, ...]) -> Walk | Pair:
+    """Returns the result of a process, or how it ended."""
     if isinstance(found, Walk):
-        return replace(found, knob=knob)
+        return replace(found, knob=knobs[0])
+    if isinstance(found, Pair):
+        return found
     if found.limit is None:
         raise found.error
-    return Walk(knob, stopped=BROKEN[found.limit])
+    why = BROKEN[found.limit]
+    return Pair(*knobs, stopped=why) if len(knobs) == 2 else Walk(knobs[0], stopped=why)
