@@ -250,7 +250,7 @@ constraint centered_horizontally(a: box, b: box, by: length = 0) { a.center_x ==
 constraint centered_vertically(a: box, b: box, by: length = 0) { a.center_y == b.center_y + by }
 
 /// a stands between b and c with the same room on both sides, along the axis on which they are further apart.
-/// Either of b and c may be the one on the left, or below; a fits between them.
+/// Either of b and c may be the one on the left, or below; where a is wider than the room, it reaches as far over both.
 ///
 /// ```aidl
 /// drawing d {
@@ -270,10 +270,8 @@ constraint amid(a: box, from: box, to: box) {
 constraint amid(a: box, from: box, to: box, axis: text) {
     if choice(axis, ["x", "y"]) == "x" {
         a.left + a.right == min(from.right, to.right) + max(from.left, to.left)
-        a.width <= max(from.left, to.left) - min(from.right, to.right)
     } else {
         a.bottom + a.top == min(from.top, to.top) + max(from.bottom, to.bottom)
-        a.height <= max(from.bottom, to.bottom) - min(from.top, to.top)
     }
 }
 

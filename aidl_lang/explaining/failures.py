@@ -401,12 +401,16 @@ class Explanation:
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
+        edits = [Edit(place, "") for place in self._rigid()]
+        if edits and self.trials.can_edit(edits) and self.trials.holds(edits, self.failure):
+            yield from (Label(edit.span, "nothing in it moves against it") for edit in edits)
+
+    def _rigid(self) -> dict[Span, None]:
+        """Returns the places where parts that the parties speak of are said to be `@rigid`."""
         named = (n for party in self.parties for c in party.stated.comparisons for n in _structures(c))
-        for s in dict.fromkeys(around for each in named for around in chain(each)):
-            if s.attributes.get("rigid", (False,)) != (False,) and s.span is not None:
-                head = s.span.text.partition("{")[0].rstrip()
-                place = Span(s.span.source, s.span.start, s.span.start + len(head))
-                yield Label(place, "`@rigid`: nothing in it moves against it")
+        spans = {s.span: None for each in named for s in chain(each) if "rigid" in s.attributes and s.span}
+        found = [(span, re.search(r"@rigid\b(\s*\([^)]*\))?", span.text)) for span in spans]
+        return {Span(s.source, s.start + m.start(), s.start + m.end()): None for s, m in found if m}
 
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:

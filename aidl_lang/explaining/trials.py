@@ -210,6 +210,14 @@ class Trials:
         asked = {self.lowered.problem.names[u] for u in failure.sizes}
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
+    def holds(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
+        """Tells whether the constraints of a failure hold after the edits, whatever gives way for it."""
+        if self.is_over or (other := self._with(edits)) is None:
+            return False
+        matched = _matched(self.lowered, other) or {}
+        found = solve(other.problem, self._quick).satisfied if matched else ()
+        return bool(found) and all(found[matched[i]] for i in failure.conflict)
+
     def finishes(self, edits: Sequence[Edit]) -> bool:
         """Tells whether edits that resolve a failure leave no errors, such as another failure."""
         return not has_errors(self.diagnostics(edits))

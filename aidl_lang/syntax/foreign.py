@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import accumulate
 
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
@@ -18,7 +19,7 @@ from aidl_lang.syntax.automaton import (
     statement_end,
     wrong,
 )
-from aidl_lang.syntax.tables import END, UNKNOWN, Token, tokenize
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, UNKNOWN, Token, tokenize
 
 _PROSE = re.compile(
     r"[ \t]*(?:#{1,6} |[-*•] |\d+[.)] )?[*_`\"“]*[A-ZÀ-Þ][^{};=@<>|\n]*\Z"  # no sign of the language
@@ -133,12 +134,17 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
 
 
 def object_literal(t: Trouble) -> SyntaxProblem | None:
-    """Recognises `{x: 1, y: 2}`."""
+    """Recognises `{x: 1, y: 2}`, and `{1, 2}`."""
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
     close = closing(t.tokens, t.position)
-    two = t.tokens[t.position + 2] if close >= 0 else None
-    if two is None or two.kind not in (":", "=") or t.following.kind not in ("NAME", "STRING"):
+    if close < 0 or close == t.position + 1:
+        return None
+    kinds = {token.kind for token in t.tokens[t.position + 1 : close]}
+    if kinds.isdisjoint((":", "=", ";", *STATEMENT_WORDS)):
+        return _braced_list(t, close)
+    two = t.tokens[t.position + 2]
+    if two.kind not in (":", "=") or t.following.kind not in ("NAME", "STRING"):
         return None
     inner = t.tokens[t.position + 1 : close]
     keys: list[int] = []
@@ -168,6 +174,19 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
         tokens.append(Token(")", ")", *place))
     span, repair = t.span(t.token, t.tokens[close]), TokenRepair(t.position, close + 1, tuple(tokens))
     return wrong("E0109", f"{what} is written `{right}`", span, right=right, repair=repair)
+
+
+def _braced_list(t: Trouble, close: int) -> SyntaxProblem:
+    inner, last = t.tokens[t.position + 1 : close], t.tokens[close]
+    depths = accumulate(token.nesting for token in inner)
+    commas = sum(token.kind == "," and depth == 0 for token, depth in zip(inner, depths, strict=True))
+    what, sides = ("a point", "()") if commas == 1 else ("a list", "[]")
+    begin, end = (token.but(side, side) for token, side in zip((t.token, last), sides, strict=True))
+    places = (Span(t.source, token.start, token.end) for token in (t.token, last))
+    fix = Fix(f"put it in `{sides}`", tuple(map(Edit, places, sides)), is_sure=True)
+    repair = TokenRepair(t.position, close + 1, (begin, *inner, end))
+    message = f"{what} stands in `{sides}`, as in `{'(10, 5)' if commas == 1 else '[a, b, c]'}`"
+    return wrong("E0109", message, t.span(t.token, last), fix=fix, repair=repair)
 
 
 def question_mark(t: Trouble) -> SyntaxProblem | None:
