@@ -8,7 +8,9 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ends import SweepJob
 from aidl_lang.tools.ranges import Walk, ranges, sentences, walking
+from aidl_lang.tools.ranges.looks import differences, look
 from aidl_lang.tools.ranges.walking import Remedy, walked
+from tests.documents import ROOT
 
 
 def walk(text: str) -> Walk:
@@ -170,3 +172,19 @@ def test_params_are_walked_side_by_side_and_what_is_left_is_counted() -> None:
     assert [(each.knob.path, len(each.turns)) for each in found.walks] == [("lean", 1), ("long", 0)]
     none = ranges(job, compiled.knobs, seconds=0.0)
     assert ([k.path for k in none.left], none.ok) == (["lean", "long"], False)
+
+
+@pytest.mark.parametrize("name", ["workshop/linkage", "hanger", "motor_bracket"])
+def test_each_value_is_as_if_it_were_compiled_alone(name: str) -> None:
+    text = (ROOT / "examples" / f"{name}.aidl").read_text("utf-8")
+    source = SourceFile("it.aidl", text)
+    compiling = walking._compiling(SweepJob("it.aidl", text, None, pipeline.Settings()), source)
+    for knob in pipeline.compile(source).knobs[:2]:
+        low, high = knob.range or (0.0, 1.0)
+        for share in (0.1, 0.5, 0.51, 0.9):
+            value = low + share * (high - low)
+            kept = look(compiling(((knob.path, value),)), value)
+            alone = look(pipeline.compile(source, params={knob.path: value}), value)
+            assert not differences(kept, alone)
+            assert kept.places == alone.places
+            assert abs(kept.spots - alone.spots).max() < 1e-6
