@@ -189,3 +189,32 @@ def test_each_value_is_as_if_it_were_compiled_alone(name: str) -> None:
             assert not differences(kept, alone)
             assert kept.places == alone.places
             assert abs(kept.spots - alone.spots).max() < 1e-6
+
+
+def test_a_count_with_which_a_hole_leaves_its_part_is_told() -> None:
+    text = """\
+solid plate {
+    param holes = 2 in 1..6
+    body = rectangle(bottom_left: fixed((0, 0)), width: 90, height: 40)
+    for i in 1..holes { hole cut[i] { dot = circle(center: fixed((20 * i, 20)), radius: 3) } }
+}
+"""
+    found = walk(text)
+    assert [(turn.before, turn.after) for turn in found.turns] == [(4, 5)]
+    assert {c.kind for c in found.turns[0].changes} == {"openings", "warning"}
+    assert found.declared == 5
+
+
+def test_a_jump_at_the_end_of_a_range_is_looked_at_within_it() -> None:
+    text = """\
+drawing d {
+    param high = 10 in 0..30.01
+    tip = guess((31, 30))
+    left = line(fixed((0, high)), tip)
+    right = line(fixed((60, high)), tip)
+    constrain { left.length == 40; right.length == 40 }
+}
+"""
+    (turn,) = walk(text).turns
+    assert turn.changes[0].kind == "jump"
+    assert turn.before <= 30 <= turn.after

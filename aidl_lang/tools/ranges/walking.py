@@ -220,19 +220,19 @@ class Walker:
             self._between(middle, b, depth + 1)
 
     def _turn(self, a: float, b: float, changes: Sequence[Change]) -> None:
+        self.declared += self.at(a).names != self.at(b).names
+        self.turns.append(Turn(a, b, tuple(changes)))  # this stays if there is no time to look closer
         jump = self._jump(a, b)
         kept = [c for c in changes if not (jump and c.kind == "edge") and self._lasts(c, a, b)]
-        if jump or kept:
-            self.turns.append(Turn(a, b, (*jump, *kept)))
-        self.declared += self.at(a).names != self.at(b).names
+        self.turns[-1:] = [Turn(a, b, (*jump, *kept))] if jump or kept else []
 
     def _lasts(self, change: Change, a: float, b: float) -> bool:
         """Tells whether a change is more than a warning for one value alone."""
+        if change.kind != "warning":
+            return True
         beyond = min(max(b + math.copysign(1.5 * self.width, b - a), self.low), self.high)
-        found = self.at(beyond).warnings.values() if change.kind == "warning" else ()
-        return change.kind != "warning" or any(
-            change.paths == (w.code,) and w.line == change.line for w in found
-        )
+        found = self.at(self._short(beyond) if self.is_count or self.knob.step else beyond)
+        return any(change.paths == (w.code,) and w.line == change.line for w in found.warnings.values())
 
     # --- Jumps
 
@@ -316,10 +316,10 @@ class Walker:
             a, b = (a, middle) if self._move(a, middle, spot) >= self._move(middle, b, spot) else (middle, b)
         return self._move(a, b, spot) > 0.8 * whole
 
-    def _problem(self, value: float) -> Problem:
-        built = self.compiled(value).built
-        assert built is not None  # it solves
-        return lower(built).problem
+    def _problem(self, value: float) -> Problem | None:
+        """Returns the problem at the nearest value of the range; None if the program is wrong there."""
+        built = self.compiled(min(max(value, self.low), self.high)).built
+        return None if built is None else lower(built).problem
 
     def _is_stated(self, a: float, b: float) -> bool:
         """Tells whether a number that the program states jumps as well: a rounded one, or a choice."""
@@ -327,6 +327,8 @@ class Walker:
         for aside in (0.0, 0.3):  # at a special value there may be less to compute
             one, other = self._problem(a - aside * way), self._problem(b + aside * way)
             third = self._problem(a - 8 * way if self.low <= a - 8 * way <= self.high else b + 8 * way)
+            if one is None or other is None or third is None:
+                return True
             if one.tape.op_list == other.tape.op_list == third.tape.op_list:
                 break
         else:
@@ -339,7 +341,7 @@ class Walker:
         """Tells whether there is a solution at `b` beside that at `a`, which the jump leaves."""
         before, problem = self.at(a), self._problem(b)
         start = np.array(list(before.unknowns.values()))
-        if len(start) != len(problem.initial):
+        if problem is None or len(start) != len(problem.initial):
             return False
         found = solve(replace(problem, initial=start), replace(Settings(), explain=False))
         return found.status is Status.SOLVED and bool(
