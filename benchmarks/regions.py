@@ -72,7 +72,7 @@ class Plate:
 def ours(plate: Plate) -> Callable[[], Result]:
     from aidl_lang.geometry.curves import Circle, Line, Piece
     from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.measures import area
+    from aidl_lang.geometry.region import area
     from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
     def geometry(name: str, curve: Piece | None, *parts: SolvedGeometry) -> SolvedGeometry:

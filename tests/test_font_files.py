@@ -23,7 +23,7 @@ from aidl_lang.common.resources import resource
 from aidl_lang.common.running import limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import area
 from aidl_lang.tools.discretion import Programs
 
 Draw = Callable[[Any], None]

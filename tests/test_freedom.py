@@ -18,8 +18,7 @@ from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Model
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.freedom import motions, report
-from aidl_lang.geometry.freedom.bending import Bending
-from aidl_lang.geometry.freedom.scene import Scene, X, Y
+from aidl_lang.geometry.freedom.scene import Bending, Scene, X, Y
 from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Relation, Solution, Status, solve

@@ -19,10 +19,9 @@ from aidl_lang import pipeline
 from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import Bezier, Line
-from aidl_lang.geometry.evaluate import reverse
+from aidl_lang.geometry.curves import Bezier, Line, reverse
 from aidl_lang.geometry.letters import lettered_region, stencilled
-from aidl_lang.geometry.measures import loop_area
+from aidl_lang.geometry.region import loop_area
 from tests.amount import tries
 
 FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))

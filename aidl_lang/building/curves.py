@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
 from aidl_lang.checking.types import fields_of
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.common.drawings.strokes import furthest
+from aidl_lang.common.drawings.drawing import furthest
 from aidl_lang.common.font_files import Vec
 from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record

@@ -27,9 +27,7 @@ def others(count: int, left_out: Iterable[int]) -> NDArray[np.intp]:
 
 
 def scattered(count: int, seed: int = 0) -> NDArray[np.float64]:
-    """Returns numbers (count,) from -1 to 1 without a pattern, the same for the same seed: the bits of a
-    counter mixed (splitmix64).
-    """
+    """Returns numbers (count,) from -1 to 1 without a pattern: a counter's bits mixed (splitmix64)."""
     z: NDArray[Any] = np.arange(1, count + 1, dtype=np.uint64) + np.uint64(seed << 32)
     z *= np.uint64(0x9E3779B97F4A7C15)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):

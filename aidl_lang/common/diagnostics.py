@@ -153,9 +153,7 @@ def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def by_statement(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Returns the diagnostics with one in place of all that have the same code, places and fix: a statement
-    in a loop makes several things.
-    """
+    """Returns one diagnostic for all of the same code, places and fix: loops make several of a statement."""
     alike: dict[object, list[Diagnostic]] = {}
     for d in diagnostics:
         places = (d.span, *(label.span for label in d.secondary)) if d.span else (d.message,)

@@ -11,9 +11,7 @@ from aidl_lang.common.source import Span
 
 
 class TooLongError(AidlError):
-    """Raised when working on a drawing takes too long, with a diagnostic that names the work and, if it is
-    known, the part of the program to blame.
-    """
+    """Work on a drawing takes too long: names it and, if known, the part of the program to blame."""
 
     def __init__(self, doing: str, seconds: float, span: Span | None = None, label: str = "") -> None:
         super().__init__(
@@ -32,9 +30,7 @@ class TooLongError(AidlError):
 
 @contextmanager
 def within(seconds: float, doing: str) -> Iterator[None]:
-    """Raises TooLongError if the work takes more than so many seconds of the processor's time; `doing` names
-    the work, as `drawing`.
-    """
+    """Raises TooLongError if work takes more processor seconds than these; `doing` names it, as `drawing`."""
     try:
         with limited_to(seconds):
             yield
@@ -54,9 +50,7 @@ class _Blamed(OutOfTime):
 
 @contextmanager
 def blaming(span: Callable[[], Span | None], label: str) -> Iterator[None]:
-    """Names a part of the program as the one to blame if the time runs out meanwhile; of nested parts the
-    innermost is blamed.
-    """
+    """Names a part of the program, the innermost of nested ones, to blame if the time runs out in it."""
     try:
         yield
     except _Blamed:

@@ -211,7 +211,6 @@ class _Drawer:
 
 
 def _true_type(file: TTFont) -> Any:
-    """Returns what draws a glyph of TrueType outlines with a pen."""
     file.setGlyphOrder([f"glyph{k}" for k in range(file["maxp"].numGlyphs)])
     if any(after < before for before, after in pairwise(file["loca"].locations)):
         raise FontError("its contents are broken")
@@ -226,7 +225,6 @@ def _true_type(file: TTFont) -> Any:
 
 
 def _cff(file: TTFont) -> Any:
-    """Returns what draws a glyph of CFF outlines with a pen."""
     from fontTools.misc.psCharStrings import T2OutlineExtractor
 
     class Counting(T2OutlineExtractor):  # type: ignore[misc]
@@ -273,7 +271,7 @@ def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
                 first = here = (x0 + x1) / 2, (y0 + y1) / 2
                 points = (*points[:-1], here)
             for control, end in decomposeQuadraticSegment(points):
-                yield _raised(here, control, end)
+                yield quadratic(here, control, end)
                 here = end
         elif command == "closePath":
             yield here, first
@@ -281,8 +279,16 @@ def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
             raise ValueError(f"{command} in an outline")
 
 
-def _raised(a: Vec, b: Vec, c: Vec) -> Curve:
+def quadratic(a: Vec, b: Vec, c: Vec) -> Curve:
     """Returns a quadratic Bézier curve as the same cubic one."""
     one = (a[0] + 2 * b[0]) / 3, (a[1] + 2 * b[1]) / 3
     two = (c[0] + 2 * b[0]) / 3, (c[1] + 2 * b[1]) / 3
     return a, one, two, c
+
+
+def point_of(curve: Curve, t: float) -> Vec:
+    """Returns the point of a cubic Bézier curve at a parameter."""
+    s = 1.0 - t
+    a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
+    return a * x0 + b * x1 + c * x2 + d * x3, a * y0 + b * y1 + c * y2 + d * y3

@@ -17,9 +17,7 @@ _NUMBERS = ("numpy", "scipy", "manifold3d", "ezdxf", "fonttools", "reportlab", "
 
 @cache
 def package() -> str:
-    """Returns `0.9.0+3f2a…`: the version with a digest of the code, the grammar and the standard library, the
-    same wherever the same package is installed.
-    """
+    """Returns `0.9.0+3f2a…`: the version, and a digest of code, grammar and standard library."""
     code = Path(__file__).resolve().parents[1]
     digest = hashlib.sha256()
     shipped = [(path, path.relative_to(code)) for path in code.rglob("*.py") if "_data" not in path.parts]

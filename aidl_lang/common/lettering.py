@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 
-from aidl_lang.common.font_files import Curve, FontFile, Vec
+from aidl_lang.common.font_files import Curve, FontFile, Vec, point_of
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 
@@ -68,14 +68,6 @@ def silhouette_of(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     return (*((p,) for p in hull.corners if p in ends), *bent)
 
 
-def _point(curve: Curve, t: float) -> Vec:
-    """Returns the point of a cubic Bézier curve at a parameter."""
-    s = 1.0 - t
-    a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
-    return a * x0 + b * x1 + c * x2 + d * x3, a * y0 + b * y1 + c * y2 + d * y3
-
-
 _SAMPLES = 16
 """Points of a curve that are tested for lying inside the hull of all."""
 
@@ -84,7 +76,7 @@ def _samples(curve: Curve) -> Sequence[Vec]:
     """Returns points of a curve, its exact ends among them."""
     if len(curve) == 2:
         return curve
-    between = [_point(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
+    between = [point_of(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
     return [curve[0], *between, curve[-1]]
 
 
@@ -183,9 +175,7 @@ class Font:
         return character in self._file
 
     def glyph(self, character: str) -> tuple[Glyph | None, float]:
-        """Returns the outline of a character at the origin (None for a blank) and its advance width.
-        Raises FontError.
-        """
+        """Returns the outline of a character (None: blank) and its advance width. Raises FontError."""
         if character not in self._made:
             self._made[character] = self._read(character)
         return self._made[character]
@@ -240,9 +230,7 @@ def described(character: str) -> str:
 
 
 def replacement(character: str) -> str | None:
-    """Returns a text to write for a character that the font lacks: spaces for a tab, a letter without its
-    accent; None for any other.
-    """
+    """Returns what stands for a missing character: spaces for a tab, a letter without accent, or None."""
     if character == "\t":
         return "    "
     known = plain_font()
@@ -314,7 +302,6 @@ def _parts(character: str) -> str:
 
 
 def _way(words: Sequence[str]) -> Iterator[Curve]:
-    """Yields the curves of a stroke."""
     is_closed = words[-1] == "z"
     corners = [_corner(word) for word in (words[:-1] if is_closed else words)]
     ring = [corners[-1], *corners, corners[0]] if is_closed else [corners[0], *corners, corners[-1]]

@@ -347,9 +347,7 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
 
 
 def _may_be_meant(name: str, other: str) -> bool:
-    """Tells whether a name is near enough to another, and similar enough in meaning, to ask if that was
-    meant.
-    """
+    """Tells whether a name is near enough to another, in letters and meaning, to be meant by it."""
     if are_opposite(name, other) or means_otherwise(name, other) or _loses_sense(name, other):
         return False
     wanted, match = fold(name), fold(other)
@@ -371,9 +369,7 @@ def _within(names: Mapping[str, str], length: int, letters: int) -> list[str]:
 
 
 def is_spelled_in(letters: str, word: str) -> bool:
-    """Tells whether the letters occur in a word in their order, as when somebody types some of them to find
-    it.
-    """
+    """Tells whether letters occur in a word in their order, as when somebody types some of them."""
     rest = iter(fold(word))
     return all(letter in rest for letter in fold(letters))
 
@@ -435,9 +431,7 @@ def _most_slips(word: str) -> int:
 
 
 def _distance(a: str, b: str) -> int:
-    """Returns the number of slips between two words; a letter that stands at most one place off counts
-    once.
-    """
+    """Returns the number of slips between two words; a letter one place off counts once."""
     above: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):

@@ -56,9 +56,7 @@ class Engine(Protocol):
         ...
 
     def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Has a call carried out within some seconds; `limit_met` tells how it broke. The task, its arguments
-        and its result must be picklable.
-        """
+        """Has a picklable call carried out within some seconds; `limit_met` tells how it broke."""
         ...
 
     def close(self) -> None:
@@ -227,9 +225,7 @@ _starting = threading.Lock()
 
 
 def prepared(preload: str | Sequence[str]) -> multiprocessing.context.BaseContext:
-    """Returns how processes are started that have loaded some modules. It begins to load them, which goes on
-    while others do other things.
-    """
+    """Returns how processes start that have loaded some modules; these load meanwhile."""
     if not hasattr(os, "fork"):
         return multiprocessing.get_context("spawn")
     from multiprocessing import forkserver

@@ -13,9 +13,7 @@ _MOST_DECIMALS = 15
 
 
 def fixed(value: float, decimals: int = 6) -> str:
-    """Returns a number with at most so many decimals, without trailing zeros and without a minus before
-    zero.
-    """
+    """Returns a number with at most so many decimals, without trailing zeros or a minus before zero."""
     text = f"{value:.{decimals}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")

@@ -51,9 +51,7 @@ def cancelled_when(unwanted: Callable[[], bool]) -> Iterator[None]:
 
 @contextmanager
 def limited_to(seconds: float) -> Iterator[None]:
-    """Makes work in this thread raise OutOfTime soon after it has taken so many seconds of the processor's
-    time, whatever else the machine does.
-    """
+    """Makes work in this thread raise OutOfTime soon after it has taken so many processor seconds."""
     before, used = _asked.deadline, time.thread_time()
     _asked.deadline, _asked.next_look = min(before, used + seconds), 0.0
     try:

@@ -65,9 +65,7 @@ class Span:
 
     @property
     def with_separator(self) -> Span:
-        """The span of a statement with the `;` or `,` behind it, and of its whole line if nothing else is on
-        it.
-        """
+        """The span of a statement with its `;` or `,`, and of its whole line if nothing else is on it."""
         text, start, end = self.source.text, self.start, self.end
         end += len(text[end:]) - len(text[end:].lstrip(" \t;,"))
         begin = text.rfind("\n", 0, start) + 1

@@ -69,9 +69,7 @@ def normalize(path: str) -> str:
 
 
 def relative_to(path: str, importer: str) -> str:
-    """Returns the path from the root for one written in the file `importer`. Raises FileError as `normalize`
-    does.
-    """
+    """Returns the path from the root of one written in `importer`. Raises FileError as `normalize` does."""
     if PurePosixPath(path).is_absolute():
         raise FileError(path, ReadFailure.OUTSIDE)
     return normalize(str(PurePosixPath(importer).parent / path))
@@ -144,9 +142,7 @@ class NotedWorld:
 
 
 class KeptWorld:
-    """The files of another world, each read once and kept as it was then, also in a pickle, which leaves the
-    other world behind.
-    """
+    """The files of another world, each read once and kept so, also in a pickle, which leaves that behind."""
 
     def __init__(self, world: World) -> None:
         self._world = world

@@ -43,9 +43,7 @@ _QUOTED = 60
 
 
 def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
-    """Returns an explanation of each group that could not be solved for reasons of its own; `trials` tries
-    remedies when they are first asked for.
-    """
+    """Returns an explanation of each group that failed by itself; `trials` tries remedies once asked."""
     own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
     found: list[Explanation] = []
     for failure in own:

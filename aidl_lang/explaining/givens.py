@@ -1,6 +1,4 @@
-"""The numbers of the text that have a share in some constraints: those written in them, and the exact ones
-behind the names that they mention.
-"""
+"""The numbers that have a share in constraints: those written in them, and exact ones behind names."""
 
 from __future__ import annotations
 

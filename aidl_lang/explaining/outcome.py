@@ -18,13 +18,9 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.staying import leaving_notes
-from aidl_lang.geometry.alone import all_geometry, region_alone
-from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import bounds, inward
-from aidl_lang.geometry.measures import area, perimeter
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
+from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
+from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution, Status
@@ -158,7 +154,7 @@ def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluat
     """Tells whether the box of an outline is off by no more than its curves are: parallel curves of cubics
     and ellipses are fitted, and true only towards the axes of the drawing, while a structure may be turned.
     """
-    from aidl_lang.geometry.strips import FIT
+    from aidl_lang.geometry.offsets import FIT
 
     assert isinstance(evaluate.measure, _Measure)
     slack = FIT * evaluate.measure.extent(outline)
@@ -196,9 +192,7 @@ def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[La
 
 
 def _stated(assertion: Assertion) -> Fix | None:
-    """Returns a fix that constrains what an assertion asks, before it; None if no `assert` of the author
-    stands there, or if it cannot be constrained.
-    """
+    """Returns a fix that constrains what an `assert` of the author asks, before it; None if impossible."""
     span, wording = assertion.span, assertion.wording
     before = span.source.text[: span.start].rstrip()
     is_own = isinstance(wording, Wording) and wording.node.span == span
@@ -217,9 +211,7 @@ def _is_measured(comparisons: Sequence[Comparison]) -> bool:
 
 
 def _can_be_stated(condition: Condition | bool) -> bool:
-    """Tells whether `constrain` takes a condition: comparisons that all hold, by relations that a solver
-    knows, of values known before everything is solved.
-    """
+    """Tells whether `constrain` takes a condition: comparisons, all to hold, of values known in solving."""
     if not isinstance(condition, Condition) or condition.operator != "and":
         return False
     parts = [part for part in condition.parts if isinstance(part, Comparison) and part.relation in RELATIONS]
@@ -286,8 +278,7 @@ class _Measure:
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
 
     def extent(self, outline: Geometry) -> float:
-        left, bottom, right, top = union_bounds([bounds(c) for c in self._curves(outline.path)])
-        return max(right - left, top - bottom)
+        return larger_side(union_bounds([bounds(c) for c in self._curves(outline.path)]))
 
     def is_drawn(self, outline: Geometry) -> bool:
         """Tells whether an outline did not come out empty, which is told by itself."""

@@ -290,9 +290,7 @@ class RemedySearch:
         return inner if self.trials.lies_flat(*both, self.failure) and self._fits(inner) else None
 
     def _other_end(self, end: _Written, change: float) -> _Written | None:
-        """Returns the other end of the numbers that fit; `end` if there is one that was not found, and None
-        if all fit that may be meant.
-        """
+        """Returns the other end of what fits; `end` if none was found, None if all that may be meant fits."""
         inside = end.value
         for part in _BEYOND:
             outside = end.value + part * change
@@ -375,9 +373,7 @@ class RemedySearch:
     # -- digits
 
     def _spelled(self, target: float, onward: float) -> Iterator[_Written]:
-        """Yields spellings of a number, the shortest first. If `onward` is not 0, numbers a little further in
-        that direction will do as well.
-        """
+        """Yields spellings, the shortest first; with `onward` those a little further in that direction."""
         for digits in range(_MEANT + 1):
             if abs(round(target, digits) - target) <= _NEAR * max(1.0, abs(target)):
                 yield self._plain(round(target, digits) + 0.0)

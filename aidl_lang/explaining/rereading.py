@@ -125,9 +125,7 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
 def elsewhere_notes(
     model: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
 ) -> Iterator[Diagnostic]:
-    """Yields notes on calls that were read differently from the first guesses, and on places found far from
-    them, each with first guesses that fit.
-    """
+    """Yields notes, with fitting first guesses, on calls read differently and on places found far off."""
     if solution.status is not Status.SOLVED:
         return
     if other is not None:

@@ -122,9 +122,7 @@ def _holds(outer: Sides, inner: Sides) -> bool:
 
 
 def _left_inside(seen: Sequence[_Seen], here: Structure) -> Iterator[Diagnostic]:
-    """Yields a warning for each thing that moved away from others that were drawn on it: inside it, and on
-    nothing that was written in between.
-    """
+    """Yields a warning for each thing that left what it was drawn on: inside it, with nothing in between."""
     left: dict[int, list[_Seen]] = {}
     for number, inner in enumerate(seen):
         below = [o for o in seen[:number] if o.extent > inner.extent and _holds(o.written, inner.written)]

@@ -172,9 +172,7 @@ class Trials:
     def _counterpart(
         self, edits: Sequence[Edit], failure: GroupFailure
     ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
-        """Returns the problem after the edits, with its numbers of the constraints and of the unknowns; None
-        if it has errors or is of another kind.
-        """
+        """Returns the edited problem, its constraints and unknowns by number; None for another kind."""
         if self.is_over or (other := self._with(edits)) is None:
             return None
         if (matched := _matched(self.lowered, other)) is None:
@@ -260,9 +258,7 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """Returns the numbers of the constraints in another problem by those in this one; None if they are not
-    stated in the same order.
-    """
+    """Returns another problem's constraints by numbers in this one; None if their order differs."""
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -294,9 +290,7 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """Returns a key for each unknown that it keeps in another problem: its path, and the number of earlier
-    unknowns with that path.
-    """
+    """Returns a key that each unknown keeps: its path, and how many before it have that path."""
     met: Counter[str] = Counter()
     found = []
     for path in lowered.problem.names:

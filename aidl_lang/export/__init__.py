@@ -171,9 +171,7 @@ class Exporter:
         return replace(made, notes=(*notes, *_unlisted(job, suffix), *unsaid, *made.notes))
 
     def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
-        """Writes each part that differs from the others by itself, flat and with its lower left corner at the
-        origin. Raises as `export` does.
-        """
+        """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
         from aidl_lang.export.cut_list import jobs_of_parts
 
         if suffix in (".json", ".csv"):
@@ -192,7 +190,6 @@ class Exporter:
 
     @cached_property
     def _grown(self) -> tuple[Job, list[Diagnostic]]:
-        """The job with its outlines widened by the cut."""
         from aidl_lang.export.sheets import grown
 
         return grown(self._job, self._progress)
@@ -264,9 +261,7 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
 
 
 def suffix_of(name: str, fallback: str | None = None) -> str:
-    """Returns the format for a file name: its own suffix, else the one asked for (`svg`). Raises ExportError
-    if neither is one.
-    """
+    """Returns a file name's own suffix, else the format asked for (`svg`). Raises ExportError if unknown."""
     own = PurePath(name).suffix.lower()
     said = f".{fallback.lower().lstrip('.')}" if fallback else ""
     for suffix in (own, said):
@@ -284,7 +279,6 @@ def file_names(name: str, count: int) -> list[str]:
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:
-    """Returns a warning if the drawing has nothing visible."""
     drawing = job.drawing
     plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
     if drawing.bodies or drawing.strokes or (plans and "plan" in job.options.show):
@@ -319,10 +313,9 @@ def _files(parts: Sequence[Exported]) -> Exported:
 
 
 def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
-    """Returns the pages of the cut list that are asked for."""
     if "list" not in jobs[0].options.show:
         return []
-    from aidl_lang.export.cut_list_files import pages
+    from aidl_lang.export.cut_list import pages
 
     return pages(jobs)
 
@@ -369,7 +362,7 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
     ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
-    ".csv": Format(_writer("cut_list_files", "to_csv"), cuts=True),
+    ".csv": Format(_writer("cut_list", "to_csv"), cuts=True),
     ".step": Format(_each("step", "to_step"), "STEP solid", "OCP", "step"),
     ".stp": Format(_each("step", "to_step"), needs="OCP", extra="step"),
     ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
@@ -386,31 +379,23 @@ PICTURES = (".svg", ".png", ".pdf")
 
 def render(picture: Picture, suffix: str, options: Options) -> bytes:
     """Writes a single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
-    if suffix == ".svg":
-        from aidl_lang.export.svg import to_svg
-
-        return to_svg(picture, units=options.units).encode()
-    if suffix == ".png":
-        from aidl_lang.export.png import to_png
-
-        return to_png(picture, options.pixels)
-    from aidl_lang.export.pdf import to_pdf
-
-    return to_pdf([picture], "AIDL")
+    return rendered([picture], suffix, options, "AIDL").data
 
 
 def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str) -> Exported:
-    """Writes pictures in the format of a file suffix among `PICTURES`: a PDF has a page for each, of others
-    there is a file for each. Raises as `export` does.
+    """Writes pictures in a format among `PICTURES`: a PDF has a page for each, else there is a file for each.
+
+    Raises as `export` does.
     """
     if suffix == ".svg":
-        data, *further = (render(page, suffix, options) for page in pages)
+        from aidl_lang.export.svg import to_svg
+
+        data, *further = (to_svg(page, units=options.units).encode() for page in pages)
         return Exported(data, tuple(further))
-    from aidl_lang.export.png import character_notes
+    from aidl_lang.export.pdf import character_notes, to_pdf, to_png
 
+    notes = character_notes(pages)
     if suffix == ".pdf":
-        from aidl_lang.export.pdf import to_pdf
-
-        return Exported(to_pdf(pages, title), notes=character_notes(pages))
-    data, *further = (render(page, suffix, options) for page in pages)
-    return Exported(data, tuple(further), character_notes(pages))
+        return Exported(to_pdf(pages, title), notes=notes)
+    data, *further = (to_png(page, options.pixels) for page in pages)
+    return Exported(data, tuple(further), notes)

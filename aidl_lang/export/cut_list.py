@@ -1,4 +1,4 @@
-"""The list of what is to be cut, with how many pieces of each, and names of files for single parts."""
+"""The list of what is to be cut, as CSV and as pages; names of files for single parts."""
 
 from __future__ import annotations
 
@@ -10,17 +10,16 @@ from pathlib import PurePath
 from typing import Protocol
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.files import csv_text
 from aidl_lang.common.names import nearest
-from aidl_lang.common.prose import did_you_mean, first_few, listed, ticked
+from aidl_lang.common.prose import did_you_mean, first_few, fixed, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, file_names
 from aidl_lang.export.cuts import outlines
+from aidl_lang.export.marks import Group, Picture
 from aidl_lang.export.profiles import CUTS, PLAIN
-from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
-
-# --- The list of what is to be cut: each part that differs from the others, and how many pieces of it.
+from aidl_lang.geometry.region import area, length
 
 # --- Parts each by itself: a job for every part that differs from the others.
 
@@ -109,9 +108,7 @@ def _item(job: Job, number: int, group: Sequence[Part], names: _Names) -> Item:
 
 
 class _Names:
-    """What bodies are called in a list: by their paths from the root, arrays that are all of one item without
-    the numbers of their members.
-    """
+    """Names of bodies in a list: paths from the root, without the indices of arrays all of one item."""
 
     def __init__(self, job: Job) -> None:
         self._root = job.model.root.path
@@ -133,9 +130,7 @@ def _stem(name: str) -> str:
 
 @record()
 class Sheet:
-    """What is on a sheet: how many pieces of which number, which share of it they are, how long all cuts
-    are, mm.
-    """
+    """What is on a sheet: how many pieces of which number, their share of it, the length of cuts, mm."""
 
     number: int
     material: str
@@ -151,20 +146,15 @@ def sheets(found: CutList, jobs: Sequence[Job]) -> Iterator[Sheet]:
     for number, job in enumerate(jobs, 1):
         pieces = Counter(found.numbers[body.path] for body in job.drawing.bodies)
         items = [(by_number[n], count) for n, count in pieces.items()]
-        first, (width, height) = items[0][0], _size(job.drawing)
+        first, (left, bottom, right, top) = items[0][0], job.drawing.box
         yield Sheet(
             number,
             first.material,
             first.thickness,
             pieces,
-            sum(item.area * count for item, count in items) / (width * height),
+            sum(item.area * count for item, count in items) / ((right - left) * (top - bottom)),
             sum(item.cut * count for item, count in items),
         )
-
-
-def _size(drawing: Drawing) -> Size:
-    left, bottom, right, top = drawing.box
-    return right - left, top - bottom
 
 
 # --- Names of files for single parts, made of a pattern such as `parts/{part}.dxf`.
@@ -220,9 +210,7 @@ class Writing(Protocol):
 def contents(
     writing: Writing, name: str, suffix: str
 ) -> tuple[list[tuple[str, bytes]], tuple[Diagnostic, ...]]:
-    """Returns all files of an output, each with its name, and diagnostics about them. Raises as `writing`
-    does.
-    """
+    """Returns all files of an output by name, and diagnostics about them. Raises as `writing` does."""
     if not is_pattern(name):
         made = writing(suffix)
         datas = (made.data, *made.further)
@@ -292,3 +280,90 @@ def _several_note(several: Sequence[str]) -> Diagnostic:
         f"a file has one piece, and several are to be cut: {listed(several, 8)}",
         hints=("`{quantity}` in the name of an output says how many: `{number}-{part}-x{quantity}`",),
     )
+
+
+# --- The cut list as CSV, and as pages of a picture.
+
+_DECIMALS, _SHOWN = 3, 1
+"""Of lengths and areas in CSV and on pages."""
+_ROWS = 42
+"""Lines of a table on a page."""
+_MARGIN, _TITLE = 10.0, 8.0
+"""Around the table on a page, and above it, mm."""
+
+_PARTS = (
+    *("number", "part", "quantity", "material", "thickness_mm"),
+    *("width_mm", "height_mm", "area_mm2", "cut_mm"),
+)
+_SHEETS = ("sheet", "material", "thickness_mm", "pieces", "numbers", "used_percent", "cut_mm")
+
+
+def to_csv(jobs: Sequence[Job]) -> Exported:
+    """Writes the list, and below it that of the sheets. Raises ExportError if there is no part."""
+    found = jobs[0].cut_list
+    if not found.items:
+        raise ExportError(
+            "E0924", "there is no part to list", "only a `solid` is cut; a `drawing` is engraved on it"
+        )
+    rows = [_PARTS, *(_line(item, _DECIMALS) for item in found.items)]
+    if jobs[0].options.sheet is not None:
+        rows += [(), _SHEETS, *(_sheet_line(sheet, _DECIMALS) for sheet in sheets(found, jobs))]
+    return Exported(csv_text(rows, end="\r\n").encode("utf-8-sig"))
+
+
+def pages(jobs: Sequence[Job]) -> list[Picture]:
+    """Returns the list as pages."""
+    found = jobs[0].cut_list
+    return [
+        *_pages(
+            "cut-list",
+            "Parts",
+            ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut"),
+            [_line(item, _SHOWN) for item in found.items],
+            frozenset({0, 2, 4, 5, 6, 7, 8}),
+        ),
+        *_pages(
+            "sheets",
+            "Sheets",
+            ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
+            [_sheet_line(sheet, _SHOWN) for sheet in sheets(found, jobs)],
+            frozenset({0, 2, 3, 5, 6}),
+        ),
+    ]
+
+
+def _line(item: Item, decimals: int) -> tuple[str, ...]:
+    lengths = (item.thickness, *item.size, item.area, item.cut)
+    numbers = (_number(value, decimals) for value in lengths)
+    return (str(item.number), item.name, str(item.quantity), item.material, *numbers)
+
+
+def _sheet_line(sheet: Sheet, decimals: int) -> tuple[str, ...]:
+    return (
+        str(sheet.number),
+        sheet.material,
+        _number(sheet.thickness, decimals),
+        str(sheet.pieces.total()),
+        " ".join(map(str, sorted(sheet.pieces))),
+        _number(100 * sheet.used, 1),
+        _number(sheet.cut, decimals),
+    )
+
+
+def _number(value: float | None, decimals: int) -> str:
+    return "" if value is None else fixed(value, decimals)
+
+
+def _pages(
+    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
+) -> Iterator[Picture]:
+    from aidl_lang.export.drafting.tables import LARGE, WIDTH, Table, written
+
+    for first in range(0, len(rows), _ROWS):
+        table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
+        width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN
+        title = written(
+            f"{title_of}: lengths in mm, areas in mm²", (_MARGIN, height - _MARGIN - LARGE), LARGE
+        )
+        groups = (Group(f"{name}-title", (title,), {"class": "table"}), table.group(_MARGIN, _MARGIN))
+        yield Picture((0.0, 0.0, width, height), groups)

@@ -15,16 +15,23 @@ from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.curves import (
+    Piece,
+    bounds,
+    ends,
+    is_closed,
+    larger_side,
+    locate,
+    point,
+    reverse,
+    union_bounds,
+)
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, point, reverse
-from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.nearness import inside, near_pairs
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld, union_bounds
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
+from aidl_lang.geometry.region import Face, Loop, Region, loop_area, loop_points
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
-from aidl_lang.geometry.tessellate import loop_points
 from aidl_lang.solver.gradients import connected
 
 # --- Joins curves end to end, for machines that draw them in one go.
@@ -190,8 +197,7 @@ def _is_closed(pieces: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _extent(pieces: Iterable[Piece]) -> float:
-    left, bottom, right, top = union_bounds([bounds(piece) for piece in pieces])
-    return max(right - left, top - bottom)
+    return larger_side(union_bounds([bounds(piece) for piece in pieces]))
 
 
 def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Outline]:

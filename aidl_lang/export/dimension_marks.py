@@ -17,10 +17,10 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
+from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, ends, point, points
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 # --- The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension
@@ -89,7 +89,7 @@ class Block:
 
 
 def _range(points: tuple[Vec, ...], axis: Vec) -> tuple[float, float]:
-    along = [_dot(p, axis) for p in points]
+    along = [dot(p, axis) for p in points]
     return min(along), max(along)
 
 
@@ -164,7 +164,7 @@ class Pen:
         def at(along: float, across: float) -> Vec:
             return along * u + across * n[0], along * v + across * n[1]
 
-        low, high = (_dot(p[0], of.along) for p in (of.start, of.end))
+        low, high = (dot(p[0], of.along) for p in (of.start, of.end))
         room, width = high - low, self.width(words)
         is_tight = room < 2.5 * HEAD * mm
         fits = room >= width + 0.5 * mm
@@ -183,7 +183,7 @@ class Pen:
         text = self.text(words, at(middle, level + RAISED * mm), angle)
         extensions = []
         for pair, along in ((of.start, low), (of.end, high)):
-            across = min((_dot(p, n) for p in pair), key=lambda c: abs(c - level))
+            across = min((dot(p, n) for p in pair), key=lambda c: abs(c - level))
             side = math.copysign(1.0, level - across)
             if abs(level - across) > 1.5 * GAP * mm:
                 extensions.append(
@@ -268,10 +268,6 @@ def _signed(value: float) -> str:
 def arc_segments(arc: Arc) -> list[Segment]:
     spots = [point(arc, k / 12) for k in range(13)]
     return list(pairwise(spots))
-
-
-def _dot(p: Vec, q: Vec) -> float:
-    return p[0] * q[0] + p[1] * q[1]
 
 
 # --- The marks on a sheet so far, and what a further dimension would cover or cross.
@@ -361,16 +357,10 @@ class Sheet:
         near = _within(self.outlines, (p[0] - reach, p[1] - reach, p[0] + reach, p[1] + reach))
         if not len(near):
             return False
-        a, d = near[:, :2], near[:, 2:] - near[:, :2]
-        square = np.maximum((d * d).sum(axis=1), 1e-300)
-        t = np.clip(((np.array(p) - a) * d).sum(axis=1) / square, 0, 1)
-        away = a + t[:, None] * d - np.array(p)
-        return bool((away * away).sum(axis=1).min() < reach * reach)
+        return bool(from_sides(np.array(p) - near[:, :2], near[:, 2:] - near[:, :2]).min() < reach)
 
     def seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
-        """Returns the points on an outline, else such points between them: the end of an edge may be
-        hidden.
-        """
+        """Returns the points on an outline, else such between them: the end of an edge may be hidden."""
         (x0, y0), (x1, y1) = points[0], points[-1]
         between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
         return next(filter(None, (tuple(filter(self.is_drawn, spots)) for spots in (points, between))), ())

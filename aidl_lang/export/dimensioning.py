@@ -15,13 +15,10 @@ from aidl_lang.common.records import record
 from aidl_lang.export import themes
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
 from aidl_lang.export.marks import Group, Text
-from aidl_lang.geometry.curves import Arc, Circle, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, larger_side, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
-from aidl_lang.geometry.dimensions.clipped import is_clipped
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
+from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, bounds, point
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 MOST = 40
@@ -40,17 +37,15 @@ _TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
 
 
 def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
-    """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
-    be read when the whole is seen.
-    """
+    """Returns the box of `box` and all dimensions, and marks for each, sized to be read in the whole."""
     wanted = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
-    size = max(box[2] - box[0], box[3] - box[1])
+    size = larger_side(box)
     if not wanted or not size > 0:
         return box, ()
     height = 1.3 * SHARE * size
     for _ in range(6):
         whole, groups = _Layout(drawing, Pen(height / HEIGHT), box).make(wanted)
-        needed = SHARE * max(whole[2] - whole[0], whole[3] - whole[1])
+        needed = SHARE * larger_side(whole)
         if height >= needed:
             break
         height = 1.05 * needed
@@ -59,9 +54,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
 
 @record()
 class Callout:
-    """A word at the end of a line that points to something. `spots`: where it may point to, with the
-    direction from which it comes.
-    """
+    """A word at the end of a line that points to one of `spots`, each with the direction to come from."""
 
     name: str
     word: str
@@ -92,9 +85,7 @@ def dimensioned_to_scale(
 def visible(
     wanted: Sequence[tuple[Dimension, ...]], model: SolvedModel, sheet: Sheet
 ) -> list[tuple[Dimension, ...]]:
-    """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts, and a
-    constraint mention what is clipped away.
-    """
+    """Drops dimensions that end where nothing is drawn, in a hole beyond what it cuts or clipped away."""
     stay = ("hand", "overall") if is_clipped(model.root) else ("hand", "overall", "constraint")
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
@@ -201,9 +192,7 @@ class _Layout:
                 return replace(found, crosses=tuple(centers), ring=ring)
 
     def _length(self, of: Length, words: str) -> PlacedDimension | None:
-        """Places a length, measured from a visible point if there is one; a cross marks an end that is
-        not.
-        """
+        """Places a length from a point that is seen, if there is one; a cross marks an end that is not."""
         start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
@@ -258,7 +247,6 @@ class _Layout:
         return best[1]
 
     def _stretch(self, placed: PlacedDimension) -> float:
-        """Returns the cost of long extension lines."""
         return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)
 
     def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[PlacedDimension, _Row] | None:
@@ -339,9 +327,7 @@ class _Layout:
 
 
 def _turn(of: Dimension) -> tuple[int, float]:
-    """Returns the sort key for placing: lengths along the axes from the shortest, then those with more
-    choice.
-    """
+    """Returns the sort key of placing: axial lengths from the shortest, then what has more choice."""
     if of.offset is not None:
         return -1, of.value
     if isinstance(of, Length):

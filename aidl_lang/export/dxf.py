@@ -21,9 +21,22 @@ from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
 from aidl_lang.geometry.arcs import as_arcs
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    ends,
+    point,
+    reverse,
+    round_range,
+)
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import TAU, ends, point, reverse, round_range
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 
@@ -362,9 +375,7 @@ class _Entities:
         return made
 
     def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
-        """Yields x, y and bulge at the start of a piece and where it is split. The bulge is tan(sweep /
-        4).
-        """
+        """Yields x, y and bulge, tan(sweep / 4), where a piece starts and where it is split."""
         if not isinstance(piece, Arc):
             yield (*self._at(ends(piece)[0]), 0.0)
             return
@@ -400,9 +411,7 @@ class _Entities:
         return self._space.add_arc(center, radius, first, last, dxfattribs=attributes)
 
     def _ellipse(self, piece: Ellipse | EllipseArc, attributes: dict[str, Any]) -> Any:
-        """Adds an ellipse. DXF has the larger half-axis first, and runs from the first eccentric anomaly to
-        the last counter-clockwise.
-        """
+        """Adds an ellipse; DXF has the larger half-axis first, and anomalies that run counter-clockwise."""
         major, minor, angle = piece.rx, piece.ry, piece.angle
         first, sweep = round_range(piece)
         if minor > major:

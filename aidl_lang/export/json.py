@@ -12,16 +12,21 @@ from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import rounded
-from aidl_lang.common.render.compact import to_dict as diagnostic_dict
+from aidl_lang.common.render.terminal import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
-from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import Measures
-from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.geometry.solved import Box, Finish, Mobility, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.tessellate import face_polygons
+from aidl_lang.geometry.region import Loop, Measures, Region, face_polygons
+from aidl_lang.geometry.solved import (
+    Box,
+    Finish,
+    Mobility,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    described,
+)
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
@@ -140,7 +145,6 @@ def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
 
 
 def _finishes(f: Finish) -> Iterator[Json]:
-    """Yields one entry for each finished corner."""
     names = ("radius",) if f.kind == "fillet" else ("size", "second")
     for at in f.corners:
         yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))

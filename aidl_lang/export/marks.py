@@ -8,8 +8,7 @@ from dataclasses import field, replace
 from typing import NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Line, Piece, Vec, image
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, image
 from aidl_lang.geometry.region import Face, Loop
 
 # --- The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards.
@@ -79,9 +78,7 @@ class Area:
 
     @property
     def is_sign(self) -> bool:
-        """True for a mark of its own, such as a letter or the head of an arrow; false for a solid without
-        outline.
-        """
+        """True for a mark of its own, as a letter or an arrowhead; false for a solid without outline."""
         return self.ink is None and self.role not in ("", HALO)
 
 
@@ -106,9 +103,7 @@ class Curves:
 
 @record()
 class Text:
-    """A line of text; `anchor` is start, middle or end, `at` lies on its baseline, which rises by `angle`
-    degrees.
-    """
+    """A line of text; `anchor` is start, middle or end; its baseline through `at` rises by `angle`°."""
 
     at: Vec
     text: str
@@ -157,9 +152,7 @@ Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 @record()
 class Group:
-    """Marks that belong together, visible only within `clip`. `name` is unique in a picture; `attributes`
-    identify it to programs.
-    """
+    """Marks seen within `clip` only. `name` is unique in a picture; `attributes` are for programs."""
 
     name: str
     marks: tuple[Mark, ...]
@@ -212,7 +205,7 @@ class Placing:
             case Area(face=face, ink=ink, gradient=gradient):
                 return replace(
                     mark,
-                    face=self.face(face),
+                    face=face.mapped(self.piece),
                     ink=None if ink is None else self.ink(ink),
                     gradient=None if gradient is None else self.gradient(gradient),
                 )
@@ -233,12 +226,6 @@ class Placing:
     def ink(self, ink: Ink) -> Ink:
         dash = None if ink.dash is None else tuple(self.factor * part for part in ink.dash)
         return replace(ink, width=self.factor * ink.width, dash=dash)
-
-    def face(self, face: Face) -> Face:
-        return Face(self.loop(face.outer), tuple(map(self.loop, face.holes)))
-
-    def loop(self, loop: Loop) -> Loop:
-        return replace(loop, pieces=tuple(map(self.piece, loop.pieces)))
 
     def piece(self, piece: Piece) -> Piece:
         return image(piece, self.point, self.factor)
@@ -267,9 +254,7 @@ def coarse(picture: Picture, pixel: float) -> Picture:
 
 
 def resolved(picture: Picture, pixel: float) -> Picture:
-    """Returns the picture with dashes that no `pixel`, mm, can show as what they look like: a paler line.
-    (Of a million dashes resvg draws none.)
-    """
+    """Returns the picture with paler lines for dashes below a `pixel`, mm: of a million resvg draws none."""
     return _redrawn(picture, lambda mark: _blurred(mark, pixel))
 
 

@@ -13,12 +13,11 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
+from aidl_lang.geometry.curves import LARGEST
 from aidl_lang.geometry.drawing import Body, Stroke
-from aidl_lang.geometry.evaluate import LARGEST
-from aidl_lang.geometry.overhanging import owner
-from aidl_lang.geometry.placement import GROUND, Plane, placement_notes, planes, thickness_of
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.tessellate import face_polygons
+from aidl_lang.geometry.legibility import owner
+from aidl_lang.geometry.parts import GROUND, Plane, placement_notes, planes, thickness_of
+from aidl_lang.geometry.region import Region, face_polygons
 
 # --- Common to the three-dimensional formats: bodies in their planes, with their thickness.
 
@@ -230,9 +229,7 @@ def _tool(
 def _extruded(
     faces: list[list[NDArray[np.float64]]], thickness: float, tools: Sequence[manifold3d.Manifold]
 ) -> manifold3d.Mesh64 | None:
-    """Extrudes faces, each given by its outline and its holes, and cuts tools out of them; returns None if
-    Manifold's numbers do not reach.
-    """
+    """Extrudes faces (outline, holes) less some tools; None if Manifold's numbers do not reach."""
     try:
         if max(map(len, faces)) > _MANY:
             solid = manifold3d.Manifold.compose([_drilled(*face, thickness=thickness) for face in faces])

@@ -14,15 +14,12 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Job, themes
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
-from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import Bounds, are_near, bounds
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.parts import COARSE
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, piece_points, region_polygons
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.tessellate import piece_points, region_polygons
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.
 
@@ -75,26 +72,16 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
     spots = spots[np.argsort(np.hypot(*((spots - spots[0]) * (width, 1.0)).T), kind="stable")]
     spots = spots[within] if (within := inside(shrunk, spots)).any() else spots[:1]
     # A square lies in a circle: where a text is as high as wide, its room is that of a square.
-    sizes = _AIR * np.sqrt(2) * _clearance(spots, np.concatenate(sides))
+    start, end = np.split(np.concatenate(sides), 2, axis=1)
+    room = np.array([from_sides(spot - start, end - start).min() for spot in spots])
+    sizes = _AIR * np.sqrt(2) * room
     best = int(np.argmax(np.minimum(sizes, SIZE)))
     x, y = spots[best] * (width, 1.0)
     return (float(x), float(y)), float(min(sizes[best], SIZE))
 
 
 def _sides(line: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns start and end of each side of a polyline, a row each."""
     return np.concatenate((line[:-1], line[1:]), axis=1)
-
-
-def _clearance(spots: NDArray[np.float64], sides: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the distance of each point to the nearest side."""
-    start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
-    square = np.maximum((way**2).sum(axis=1), 1e-30)
-    least = np.full(len(spots), np.inf)
-    for k, spot in enumerate(spots):
-        t = np.clip(((spot - start) * way).sum(axis=1) / square, 0, 1)
-        least[k] = np.hypot(*(spot - start - t[:, None] * way).T).min()
-    return least
 
 
 # Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look
@@ -211,8 +198,7 @@ def _overlap(a: Bounds, b: Bounds) -> float:
 
 
 def _bounds(structure: SolvedStructure) -> Bounds | None:
-    box = structure.box
-    return None if box is None else (box.left, box.bottom, box.right, box.top)
+    return None if structure.box is None else structure.box.bounds
 
 
 def _names(at: Explainer) -> Iterator[Mark]:
@@ -225,9 +211,7 @@ def _names(at: Explainer) -> Iterator[Mark]:
 
 
 def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
-    """Places a name in the upper left corner of a structure without parts, if it fits; else around its
-    box.
-    """
+    """Places a name in the upper left corner of a structure without parts if it fits, else around it."""
     inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, themes.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
@@ -346,9 +330,7 @@ def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
 
 
 def _box_of(structure: SolvedStructure, path: str) -> Bounds | None:
-    """Returns the box of the structure, geometry or point that a path leads to, or of its last known
-    element.
-    """
+    """Returns the box of what a path leads to, or of its last known element."""
     if path != structure.path and not path.startswith((structure.path + ".", structure.path + "[")):
         return None
     for child in structure.structures:

@@ -18,16 +18,12 @@ from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
-from aidl_lang.geometry.curves import Line, Piece, Vec
-from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, union_bounds
+from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.stacking import stacked
-from aidl_lang.geometry.styles import DASH, GAP, Style
-from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
+from aidl_lang.geometry.styles import DASH, GAP, Style, stacked
 
 if TYPE_CHECKING:
     from aidl_lang.export.svg import Halos
@@ -280,7 +276,6 @@ def pages(job: Job) -> list[Picture]:
 
 
 def _sheet(job: Job) -> Picture:
-    """Returns the picture of a sheet with parts laid on it."""
     groups = [*_drawn(job, 1.0)]
     if texts := tuple(labels(job)):
         groups.append(Group("show-labels", texts, {"class": "overlay"}))
@@ -319,10 +314,10 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 
 
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
-    """Yields all marks, with the path of the structure they belong to."""
     halos = _halos(root, drawing)
     for index, body in enumerate(drawing.bodies):
-        areas = list(_areas(body, index, size))
+        color = body.style.color or themes.body_fill(index)
+        areas = list(_filled(body.region, body.style, color, size))
         line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
         for area in (*halos.around_body(body, line), *areas) if halos else areas:
             yield body.path, area
@@ -350,10 +345,6 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     from aidl_lang.export.svg import Halos
 
     return Halos(drawing, root)
-
-
-def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
-    return _filled(body.region, body.style, body.style.color or themes.body_fill(index), size)
 
 
 def _filled(region: Region, style: Style, fill: str, size: float) -> Iterator[Area]:

@@ -39,9 +39,7 @@ class Look:
 
 @record()
 class Layer:
-    """What is done with all that is on a layer, one of `OPERATIONS` or `CUT`, and its own look if it has
-    one.
-    """
+    """What is done with all on a layer, one of `OPERATIONS` or `CUT`, and its look if it has one."""
 
     operation: str
     look: Look | None = None

@@ -13,16 +13,13 @@ from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
 from aidl_lang.export.profiles import CUTS, FILL, Profile
 from aidl_lang.export.unsaid import twice_compensated
-from aidl_lang.geometry.arcs import as_arcs, has_slivers
+from aidl_lang.geometry.arcs import WIDEST, Slit, as_arcs, has_slivers, without_slits
+from aidl_lang.geometry.curves import union_bounds
 from aidl_lang.geometry.drawing import SLIT, Drawing, Stroke
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.nesting import NestingError
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.parts import Size
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sheets import laid_out
-from aidl_lang.geometry.slits import WIDEST, Slit, without_slits
+from aidl_lang.geometry.region import Face, Loop, Region, region_bounds
+from aidl_lang.geometry.sheets import NestingError, laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
 # --- What a cutter follows, as marks of a picture: outlines and engraved areas in the order of a profile.
@@ -147,7 +144,6 @@ def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) ->
 
 
 def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
-    """Returns the warning about strokes engraved outside all parts."""
     spans = {g.path: g.span for s in model.root.walk() for geometry in s.drawn for g in geometry.walk()}
     names = list(dict.fromkeys(stroke.geometry for stroke in strays))
     return Diagnostic(

@@ -46,10 +46,21 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, round_range
-from aidl_lang.geometry.joints import jointed
-from aidl_lang.geometry.placement import Plane, placement_notes
+from aidl_lang.geometry.boolean import jointed
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    ends,
+    round_range,
+)
+from aidl_lang.geometry.parts import Plane, placement_notes
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style
 from aidl_lang.version import __version__
@@ -64,9 +75,7 @@ _WHOLE_TURN = TAU - 1e-12
 
 
 class Shapes:
-    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it. Ends meet within `tolerance`,
-    mm.
-    """
+    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it, with a `tolerance`, mm."""
 
     def __init__(self, plane: Plane, tolerance: float, thickness: float = 0.0) -> None:
         self._build = BRep_Builder()
@@ -102,11 +111,7 @@ class Shapes:
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         """Returns an edge for each piece."""
         self._vertices.clear()
-        return [self._edge(piece, *self._ends(piece)) for piece in map(_upright, pieces)]
-
-    def _ends(self, piece: Piece) -> tuple[TopoDS_Vertex, TopoDS_Vertex]:
-        start, end = ends(piece)
-        return self._vertex(start), self._vertex(end)
+        return [self._edge(piece, *map(self._vertex, ends(piece))) for piece in map(_upright, pieces)]
 
     def _wire(self, loop: Loop) -> TopoDS_Shape:
         made = TopoDS_Wire()
@@ -119,7 +124,6 @@ class Shapes:
         return made.Reversed() if loop.reversed else made
 
     def _vertex(self, p: Vec) -> TopoDS_Vertex:
-        """Returns the vertex of a place; outlines that touch share it."""
         if p not in self._vertices:
             made = self._vertices[p] = TopoDS_Vertex()
             self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
@@ -301,9 +305,7 @@ def _refusals(path: str) -> Iterator[None]:
 
 @contextmanager
 def _settings(tolerance: float) -> Iterator[None]:
-    """Sets Open CASCADE's settings, which are global to the process, and drops its messages; restores both in
-    the end.
-    """
+    """Sets Open CASCADE's settings, global to the process, drops its messages, and restores both."""
     STEPCAFControl_Controller.Init_s()
     wanted = _SETTINGS | {"write.precision.val": repr(tolerance)}
     before = {name: Interface_Static.CVal_s(name) for name in wanted}
@@ -449,7 +451,6 @@ class _File:
         return TCollection_ExtendedString(self._number(text))
 
     def _number(self, text: str) -> str:
-        """Returns the placeholder of a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
 
 

@@ -36,15 +36,26 @@ from aidl_lang.export.marks import (
     scaled,
 )
 from aidl_lang.geometry.boolean import without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Bounds,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    point,
+    points,
+    union_bounds,
+)
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.evaluate import Bounds, bounds, ends, point, points
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, region_bounds
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.stacking import stacked
-from aidl_lang.geometry.styles import Shade
+from aidl_lang.geometry.styles import Shade, stacked
 
 # --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
 
@@ -64,9 +75,7 @@ def svgwrite() -> Any:
 
 @contextmanager
 def _loaded_later(name: str, *functions: str) -> Iterator[None]:
-    """Replaces a module that is not loaded: functions imported from it meanwhile load it when they are
-    called.
-    """
+    """Replaces a module that is not loaded; functions imported from it load it when called."""
     if name in sys.modules:
         yield
         return
@@ -88,9 +97,7 @@ def _calling(name: str, function: str) -> Callable[..., Any]:
 
 
 class _StandIn(ModuleType):
-    """A placeholder module that gives way to the real one when another thread asks for anything else in
-    it.
-    """
+    """A placeholder module that gives way to the real one when another thread asks it for more."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -129,9 +136,7 @@ def loop_path(loop: Loop) -> str:
 
 
 def open_path(pieces: Sequence[Piece]) -> str:
-    """Returns curves one after the other, moving only where one does not start at the end of the one
-    before.
-    """
+    """Returns curves one after the other, moving only where one does not start at the end before."""
     return "".join(_chain(pieces))
 
 
@@ -277,9 +282,7 @@ _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str = "mm") -> str:
-    """Returns the picture as an SVG document in its true size, or so many pixels wide and high. Its
-    coordinates are in `units`.
-    """
+    """Returns the picture as SVG, in its true size or so many pixels wide and high, drawn in `units`."""
     if units != "mm":
         picture = scaled(picture, 1 / UNITS[units])
     left, _, _, top = picture.box
@@ -310,7 +313,6 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
 
 
 def _shades(picture: Picture) -> dict[Gradient, str]:
-    """Returns the names of the gradients of a picture, in order of use."""
     marks = (mark for group in picture.groups for mark in group.marks)
     used = (mark.gradient for mark in marks if isinstance(mark, Area) and mark.gradient is not None)
     return {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
@@ -347,7 +349,6 @@ def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
 
 
 def _clean(text: str) -> str:
-    """Removes the characters that XML cannot hold."""
     return _NOT_XML.sub("\ufffd", text)
 
 

@@ -22,9 +22,7 @@ _LARGEST = 1e9
 
 
 def to_3mf(job: Job) -> Exported:
-    """Writes the 3MF file. Raises ExportError as `meshes` does, and for a body that reaches too far
-    (E0918).
-    """
+    """Writes the 3MF file. Raises ExportError as `meshes` does, and for a body too far out (E0918)."""
     made, notes = meshes(job)
     wrapper = lib3mf.get_wrapper()
     model = wrapper.CreateModel()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import fixed, listed, named, ticked
@@ -35,9 +35,7 @@ _WHY: Mapping[str, str] = {
 
 
 def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    """Returns a note if the program states looks that such a file is without. `cuts`: a cutter may
-    read the format.
-    """
+    """Returns a note if a file has no place for stated looks; `cuts`: a cutter may read the format."""
     file = "cutter" if cuts and job.options.for_cutter else suffix.replace(".stp", ".step")
     lost = [name for name, files in _WITHOUT.items() if file in files.split()]
     stated = list(_stated(job.model.root, lost))
@@ -77,9 +75,7 @@ def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
 
 
 def followed_notes(job: Job) -> list[Diagnostic]:
-    """Returns notes on layers that the profile for a cutter does not know, and on areas to be engraved that
-    are none.
-    """
+    """Returns notes on layers that a cutter's profile does not know, and on areas that are none."""
     from aidl_lang.export.cuts import unfilled
     from aidl_lang.export.profiles import PLAIN
 
@@ -97,7 +93,8 @@ def followed_notes(job: Job) -> list[Diagnostic]:
         notes.append(
             Diagnostic(
                 "N0754",
-                f"the profile `{profile.name}` does not say what is done on the {_layers(names)}: "
+                f"the profile `{profile.name}` does not say what is done on the "
+                f"{'layer' if len(names) == 1 else 'layers'} {named(names)}: "
                 "parts are cut there and drawings engraved as elsewhere",
                 unknown[names[0]],
                 hints=(f'say it in a file for `--profile`: `[layers]` with `"{names[0]}" = "score"`',),
@@ -114,10 +111,6 @@ def followed_notes(job: Job) -> list[Diagnostic]:
             )
         )
     return notes
-
-
-def _layers(names: Sequence[str]) -> str:
-    return f"{'layer' if len(names) == 1 else 'layers'} {named(names)}"
 
 
 def _states(holder: SolvedStructure | SolvedGeometry, name: str) -> bool:

@@ -1,3 +1,1 @@
-"""Makes a drawing of a model and its solution: names with places, exact curves, regions and their
-measures.
-"""
+"""Makes a drawing of a model and its solution: names with places, exact curves, regions, measures."""

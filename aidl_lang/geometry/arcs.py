@@ -9,19 +9,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, point, points, reverse, round_range, turn_between
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Circle,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    ends,
+    point,
+    points,
+    reverse,
+    round_range,
+    turn_between,
+)
 from aidl_lang.geometry.finishing import direction
-from aidl_lang.geometry.measures import length
-
-Floats = NDArray[np.float64]
+from aidl_lang.geometry.nearness import from_sides
+from aidl_lang.geometry.region import Face, Loop, Region, length
 
 TOLERANCE = 0.01
 """How far arcs may be from the curves that they stand for, mm, unless something else is asked for."""
@@ -81,9 +94,7 @@ class _Stretch:
 
 
 class _Outline:
-    """Pieces end to end, to be drawn anew within a tolerance. Lines and arcs stay what they are, but short
-    ones that run on smoothly from curves.
-    """
+    """Pieces end to end, to be drawn anew within a tolerance; only short lines and arcs change."""
 
     def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
         self._whole, self._closed = tuple(pieces), closed
@@ -139,9 +150,7 @@ class _Outline:
         return found
 
     def _places(self, stretches: Sequence[_Stretch]) -> list[tuple[Vec, Vec]]:
-        """Returns the ends of the stretches. Both ends of one that is too short come to one place, where its
-        neighbours meet.
-        """
+        """Returns the ends of the stretches. Both of a too short one come to where its neighbours meet."""
         starts, count = [s.start for s in stretches], len(stretches)
         starts.append(starts[0] if self._closed else stretches[-1].end)
         short = [k for k, s in enumerate(stretches) if s.length < self._shortest]
@@ -170,7 +179,6 @@ class _Outline:
         return middle if math.dist(start, end) <= reach else None
 
     def _drawn(self, stretch: _Stretch, start: Vec, end: Vec) -> Iterator[Piece]:
-        """Yields a stretch between two places."""
         first = stretch.pieces[0]
         if len(stretch.pieces) == 1 and isinstance(first, Line):
             yield Line(start, end)
@@ -253,11 +261,7 @@ class _Fit:
         if off.max() > self._tolerance:
             return False
         probes = np.concatenate([points(arc, _PROBES) for arc in arcs])
-        starts, ways = spots[:-1], np.diff(spots, axis=0)
-        square = np.maximum((ways**2).sum(axis=1), 1e-300)
-        between = probes[:, None, :] - starts
-        t = np.clip((between * ways).sum(axis=2) / square, 0, 1)
-        gaps = np.hypot(*np.moveaxis(between - t[..., None] * ways, 2, 0)).min(axis=1)
+        gaps = from_sides(probes[:, None, :] - spots[:-1], np.diff(spots, axis=0)).min(axis=1)
         return bool(gaps.max() <= self._tolerance)
 
 
@@ -321,20 +325,96 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
 
 
 def _distances(piece: Piece, spots: Floats) -> Floats:
-    """Returns the distance of each spot from a line or an arc."""
     (x0, y0), (x1, y1) = ends(piece)
-    off: Floats
     if isinstance(piece, Line):
-        way = np.array((x1 - x0, y1 - y0))
-        from_start = spots - (x0, y0)
-        t = np.clip(from_start @ way / max(float(way @ way), 1e-300), 0, 1)
-        off = np.hypot(*(from_start - np.multiply.outer(t, way)).T)
-        return off
+        return from_sides(spots - (x0, y0), np.array((x1 - x0, y1 - y0)))
     assert isinstance(piece, Arc)
     from_center = spots - piece.center
     turned = np.arctan2(from_center[:, 1], from_center[:, 0]) - piece.start_angle
     turned = np.mod(turned * math.copysign(1.0, piece.sweep), TAU)
-    off = np.abs(np.hypot(*from_center.T) - piece.radius)
+    off: Floats = np.abs(np.hypot(*from_center.T) - piece.radius)
     at_ends = np.minimum(np.hypot(*(spots - (x0, y0)).T), np.hypot(*(spots - (x1, y1)).T))
-    off = np.where(turned <= abs(piece.sweep), off, at_ends)
-    return off
+    return np.where(turned <= abs(piece.sweep), off, at_ends)
+
+
+# --- Straight gaps about as wide as the cut of a machine, which makes them in one pass along their middle.
+
+WIDEST = 1.5
+"""Width of a gap, in cuts, up to which the second of two passes would burn most of the first again."""
+_SLENDER = 3
+"""Length of a slit in widths: a shorter gap is a hole."""
+_PARALLEL = 1e-6
+
+
+@record()
+class Slit:
+    """The way of a cut, and how wide the gap was drawn, mm."""
+
+    way: Line
+    width: float
+
+
+def without_slits(region: Region, cut: float) -> tuple[Region, list[Slit]]:
+    """Returns a region with the holes and open gaps filled that one pass of a cut makes, and these."""
+    slits: list[Slit] = []
+    faces = []
+    for face in region.faces:
+        outer, *holes = (_without(loop, cut, slits, is_hole=loop is not face.outer) for loop in face.loops)
+        assert outer is not None
+        faces.append(Face(outer, tuple(hole for hole in holes if hole is not None)))
+    return (Region(tuple(faces)) if slits else region), slits
+
+
+def _without(loop: Loop, cut: float, slits: list[Slit], *, is_hole: bool) -> Loop | None:
+    """Returns an outline without its slits, which are added to those found; None for a hole that is one."""
+    pieces = loop.pieces
+    if is_hole and len(pieces) == 4:
+        for k in (0, 1):
+            a, tip, b, end = (*pieces[k:], *pieces[:k])
+            if (slit := _slit((a, tip, b), cut, point(end, 0.5), -cut / 2)) is not None:
+                slits.append(slit)
+                return None
+    first = next((k for k in (-2, -1) if _open(pieces[k:] + pieces[:k], cut) is not None), 0)
+    rest, kept, found = list(pieces[first:] + pieces[:first])[::-1], list[Piece](), len(slits)
+    while rest:
+        opened = _open(rest[:-4:-1], cut)
+        if opened is None:
+            kept.append(rest.pop())
+            continue
+        slit, mouth = opened
+        slits.append(slit)
+        kept.append(mouth)
+        del rest[-3:]
+    return replace(loop, pieces=tuple(kept)) if len(slits) > found else loop
+
+
+def _open(pieces: Sequence[Piece], cut: float) -> tuple[Slit, Line] | None:
+    """Returns the slit that the first three pieces of an outline are, and its mouth."""
+    if len(pieces) < 3 or not isinstance(pieces[0], Line) or not isinstance(pieces[2], Line):
+        return None
+    mouth = Line(pieces[0].start, pieces[2].end)
+    slit = _slit(pieces[:3], cut, point(mouth, 0.5), cut / 2)
+    return None if slit is None else (slit, mouth)
+
+
+def _slit(sides: Sequence[Piece], cut: float, end: Vec, beyond: float) -> Slit | None:
+    """Returns the slit between two sides and the tip between them, if they are lines and near enough. Its way
+    begins half a cut within the tip, and ends beyond its other end.
+    """
+    a, tip, b = sides
+    if not isinstance(a, Line) or not isinstance(b, Line):
+        return None
+    (ax, ay), (bx, by) = ((s.end[0] - s.start[0], s.end[1] - s.start[1]) for s in (a, b))
+    long, other = math.hypot(ax, ay), math.hypot(bx, by)
+    across = (b.start[0] - a.end[0], b.start[1] - a.end[1])
+    # Material lies to the left of an outline, so that the way around a gap turns to the right.
+    width = (ay * across[0] - ax * across[1]) / long
+    if not 0 < width <= WIDEST * cut or min(long, other) < _SLENDER * max(width, cut):
+        return None
+    if abs(ax * by - ay * bx) > _PARALLEL * long * other or ax * bx + ay * by > 0:
+        return None
+    x, y = start = point(tip, 0.5)
+    far = math.dist(start, end)
+    ux, uy = (end[0] - x) / far, (end[1] - y) / far
+    ends = (x + ux * cut / 2, y + uy * cut / 2), (end[0] + ux * beyond, end[1] + uy * beyond)
+    return Slit(Line(*ends), width)

@@ -1,26 +1,21 @@
-"""Builds the bodies of the whole, bottom-up, from the faces of each structure.
-
-The region of a solid is (own faces + solid children) − holes + islands: a hole cuts all of the structure that
-holds it, a solid inside a hole is an island. An assembly keeps its solid children as separate bodies; what it
-draws itself is one more, and its holes cut them all. Where this leaves a choice:
-
-- an assembly inside a solid is united with it, all its bodies;
-- a hole inside a hole cuts what that hole cuts, and the islands beside it;
-- solids and holes inside a drawing are treated as in an assembly.
-"""
+"""The bodies of the whole, with what they are clipped to and the seams in them."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from itertools import count
 
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.curves import Piece, Vec, part
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.sections import (
     Section,
+    Traced,
     box_within,
     boxes_meet,
     covers,
@@ -29,9 +24,81 @@ from aidl_lang.geometry.sections import (
     inside_mask,
     intersection,
     is_nothing,
+    trace_all,
     union,
 )
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry
+
+# --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
+
+Clips = Mapping[str, Shape]
+"""By the path of the structure that states it, the outline that one is clipped to."""
+
+
+def clip_shapes(root: SolvedStructure, first: int) -> tuple[dict[str, Shape], list[Piece]]:
+    """Returns what structures are clipped to, with its curves: in the network, those from `first` on."""
+    shapes: dict[str, Shape] = {}
+    curves: list[Piece] = []
+    numbers = count(first)
+    for s in root.walk():
+        if s.inside is not None:
+            whole = SolvedGeometry("clip", f"{s.path}.clip", "clip", {}, None, (), False, s.span)
+            pieces = s.inside.pieces
+            leaves = (as_geometry(f"edges[{k}]", whole, piece) for k, piece in enumerate(pieces))
+            shapes[s.path] = Shape(whole, tuple(zip(leaves, numbers, strict=False)))
+            curves += pieces
+    return shapes, curves
+
+
+def clip_sections(network: Network, root: SolvedStructure, shapes: Clips) -> dict[str, Section]:
+    """Returns what each structure that is clipped, or lies in one that is, may lie in."""
+    return dict(_clip_sections(network, root, shapes, None)) if shapes else {}
+
+
+def _clip_sections(
+    network: Network, s: SolvedStructure, shapes: Clips, around: Section | None
+) -> Iterator[tuple[str, Section]]:
+    """Yields the sections of a structure and of what lies in it, which is clipped to `around`, too.
+
+    No closure, which would keep itself and what it holds: Manifold tells of sections left at the end.
+    """
+    if s.path in shapes:
+        around = union_of(own_faces(network, [shapes[s.path]]).faces)
+    if around is not None:
+        yield s.path, around
+    for child in s.structures:
+        yield from _clip_sections(network, child, shapes, around)
+
+
+def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagnostic]:
+    """Yields errors about structures of which nothing is left inside; `drawn`: paths of what is there."""
+    if root.inside is not None and not any(s.path in drawn for s in root.walk()):
+        if any(True for s in root.walk() for g in s.geometry for _ in g.curves()):
+            yield _nothing_left(root)
+        return
+    for child in root.structures:
+        yield from empty_clips(child, drawn)
+
+
+def _nothing_left(s: SolvedStructure) -> Diagnostic:
+    of = f"the material of `{s.ground}`" if s.ground is not None else named([g.name for g in s.clip])
+    return Diagnostic(
+        "E0339",
+        f"nothing of `{s.path}` lies inside {of}, to which it is clipped",
+        s.span,
+        "nothing is drawn of this",
+        hints=("place the two so that they overlap, as they shall in the drawing",),
+    )
+
+
+# --- Builds the bodies of the whole, bottom-up, from the faces of each structure.
+#
+# The region of a solid is (own faces + solid children) − holes + islands: a hole cuts all of the structure
+# that holds it, a solid inside a hole is an island. An assembly keeps its solid children as separate bodies;
+# what it draws itself is one more, and its holes cut them all. Where this leaves a choice:
+#
+# - an assembly inside a solid is united with it, all its bodies; - a hole inside a hole cuts what that hole
+# cuts, and the islands beside it; - solids and holes inside a drawing are treated as in an assembly.
 
 _FEW_HOLES, _FEW_VERTICES = 8, 200
 """Numbers below which each hole is compared with the whole material."""
@@ -244,7 +311,6 @@ class Bodies:
     def _united(
         self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
     ) -> list[Mass]:
-        """Returns the one mass of a solid; none if its holes take away all of it."""
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         taken = union([c.section for c in cuts])
@@ -278,9 +344,7 @@ class Bodies:
     def _voids(
         self, holder: SolvedStructure, material: Section, cuts: Sequence[Cut], taken: Section
     ) -> list[Void]:
-        """Returns the material that each hole removes, of all that is taken; reports holes that remove
-        nothing.
-        """
+        """Returns the material that each hole removes, of all taken; reports holes that remove nothing."""
         voids = []
         near = _around(material, [hole.section for cut in cuts for hole in cut.holes], taken)
         for cut in cuts:
@@ -326,3 +390,63 @@ def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iter
         if i < len(parts) <= j:
             beside[j - len(parts)].append(parts[i])
     yield from map(union, beside)
+
+
+# --- The edges of united structures and geometries that run inside their body: fine lines in pictures,
+# nothing in cutting formats.
+
+
+def visible_seams(
+    network: Network, mass: Mass, traced: Mapping[str, Traced]
+) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+    """Yields the edges of each united structure inside the body, by its path, each drawn once."""
+    outline = traced[mass.structure.path].edges
+    candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
+    mask = inside_mask(mass.section, network.midpoints(candidates))
+    left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
+    for path in mass.inner:
+        edges = sorted(traced[path].edges & left)
+        left.difference_update(edges)
+        if edges:
+            yield path, tuple(_merged(network, edges))
+
+
+def inner_seams(
+    network: Network,
+    mass: Mass,
+    traced: Mapping[str, Traced],
+    sections: Mapping[str, Section],
+    faces: Mapping[str, Sequence[OwnFace]],
+) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+    """Yields the edges of the faces that some structures of a body draw, as far as they lie inside it and no
+    later face of the structure, and no structure in it, lies over them; by the path of the structure, each
+    drawn once.
+    """
+    taken = {edge for path in (*mass.inner, mass.structure.path) for edge in traced[path].edges}
+    for path in (*mass.inner, mass.structure.path):
+        own = [face.section for face in faces.get(path, ())]
+        over = union([sections[inner] for inner in mass.inner if inner.startswith(f"{path}.")])
+        found: set[int] = set()
+        outlines = trace_all(network, own)
+        for section, outline in zip(reversed(own), reversed(outlines), strict=True):
+            candidates = sorted(outline.edges - taken)
+            spots = network.midpoints(candidates)
+            seen = inside_mask(mass.section, spots) & ~inside_mask(over, spots)
+            found.update(edge for edge, is_seen in zip(candidates, seen, strict=True) if is_seen)
+            taken.update(candidates)
+            over = union([over, section])
+        if found:
+            yield path, tuple(_merged(network, sorted(found)))
+
+
+def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
+    """Yields edges that follow each other on one curve as one piece."""
+    start = None
+    for number, after in zip(edges, [*edges[1:], None], strict=True):
+        edge, start = network.edges[number], network.edges[number] if start is None else start
+        following = network.edges[after] if after is not None else None
+        if following and following.curve == edge.curve and following.t0 == edge.t1:
+            continue
+        curve, nodes = network.curves[edge.curve], network.nodes
+        yield part(curve, start.t0, edge.t1, nodes[start.start], nodes[edge.end])
+        start = None

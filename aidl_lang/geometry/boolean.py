@@ -1,24 +1,181 @@
-"""Booleans on finished regions, for those who ask about true outlines: `overlaps`, `clearance`."""
+"""Questions about finished regions: booleans, distances, contacts, and curves cut to their inside."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from itertools import accumulate
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field
+from itertools import accumulate, combinations, pairwise
+from typing import Literal
 
 import numpy as np
 
-from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.distance import region_distance
-from aidl_lang.geometry.evaluate import is_closed
-from aidl_lang.geometry.intersect import meet
-from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.nearness import near_rows
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import Section, difference, fill, intersection, union
-from aidl_lang.geometry.separation import Hulls
-from aidl_lang.geometry.tables import Table
-from aidl_lang.geometry.trace import trace
+from aidl_lang.common.records import record
+from aidl_lang.common.running import Later, checkpoint
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bounds,
+    Circle,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    derivative,
+    ends,
+    is_closed,
+    locate,
+    nearest,
+    part,
+    point,
+    points,
+    reverse,
+    second_derivative,
+)
+from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
+from aidl_lang.geometry.nearness import inside, near_pairs, near_rows
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Region, area, region_bounds, region_polygons
+from aidl_lang.geometry.sections import (
+    NEGLIGIBLE,
+    Section,
+    difference,
+    filled,
+    intersection,
+    is_nothing,
+    trace,
+    union,
+)
+
+# --- Least distances between outlines, exact for lines, arcs and circles.
+
+_SAMPLES = np.linspace(0, 1, 49)
+Closest = tuple[float, Vec, Vec]
+"""A distance and the points on either side where it is found."""
+
+
+def region_distance(a: Region, b: Region) -> Closest | None:
+    """Returns the distance between the outlines of two regions that do not overlap; None if one is empty."""
+    if not (a and b):
+        return None
+    away = _apart(a.boxes, b.boxes).ravel()
+    # Pairs of pieces, those first whose boxes are nearest; few are nearer than the first two pieces.
+    first = int(np.argmin(away))
+    best = _between(a, b, first)
+    near = np.flatnonzero(away < best[0])
+    for k in near[np.argsort(away[near], kind="stable")].tolist():
+        if away[k] >= best[0]:
+            break
+        checkpoint()
+        if k != first and (found := _between(a, b, k))[0] < best[0]:
+            best = found
+    return best
+
+
+def lie_within(a: Region, b: Region, reach: float) -> bool:
+    """Tells whether the outlines of two regions that do not overlap come as close to each other as that."""
+    away = _apart(a.boxes, b.boxes).ravel()
+    near = np.flatnonzero(away <= reach)
+    return any(_between(a, b, k)[0] <= reach for k in near[np.argsort(away[near], kind="stable")].tolist())
+
+
+def nearest_region(ours: Sequence[Region], others: Sequence[Region]) -> tuple[float, int]:
+    """Returns the least distance of outlines on either side, and the place of the other one's region."""
+    best = math.inf, 0
+    away = _apart(*(np.array([region_bounds(region) for region in side]) for side in (ours, others)))
+    for pair in np.argsort(away, axis=None, kind="stable").tolist():
+        i, j = divmod(pair, len(others))
+        if away[i, j] >= best[0]:
+            break
+        if (found := region_distance(ours[i], others[j])) is not None and found[0] < best[0]:
+            best = found[0], j
+    return best
+
+
+def _apart(a: Floats, b: Floats) -> Floats:
+    """Returns the distance of each box of a table from each of another."""
+    gaps = np.maximum(np.maximum(a[:, None, :2] - b[:, 2:], b[:, :2] - a[:, None, 2:]), 0.0)
+    return np.hypot(gaps[..., 0], gaps[..., 1])
+
+
+def _between(a: Region, b: Region, pair: int) -> Closest:
+    i, j = divmod(pair, len(b.pieces))
+    return piece_distance(a.pieces[i], b.pieces[j])
+
+
+def piece_distance(a: Piece, b: Piece) -> Closest:
+    """Returns the least distance between two curves that do not cross."""
+    candidates = [_to(b, p) for p in _candidates(a, b)]
+    candidates += [(d, q, p) for d, p, q in (_to(a, p) for p in _candidates(b, a))]
+    return min(candidates, key=lambda c: c[0])
+
+
+def _to(curve: Piece, p: Vec) -> Closest:
+    q = point(curve, nearest(curve, p))
+    return math.dist(p, q), p, q
+
+
+def _candidates(a: Piece, b: Piece) -> list[Vec]:
+    """Returns points of `a` nearest to `b` if any are: its ends, and those where the normals agree."""
+    if not isinstance(a, Line | Arc | Circle) or not isinstance(b, Line | Arc | Circle):
+        return _sampled_candidates(a, b)
+    spots = [] if is_closed(a) else list(ends(a))
+    if isinstance(b, Line):
+        return spots
+    if isinstance(a, Line):
+        return [*spots, point(a, nearest(a, b.center))]
+    dx, dy = b.center[0] - a.center[0], b.center[1] - a.center[1]
+    d = math.hypot(dx, dy)
+    ux, uy = (dx / d, dy / d) if d else (1.0, 0.0)
+    for sign in (-1, 1):
+        p = a.center[0] + sign * a.radius * ux, a.center[1] + sign * a.radius * uy
+        spots.append(point(a, nearest(a, p)))
+    return spots
+
+
+def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
+    """Returns the ends of a, and the nearest of a sampling, polished."""
+    away = ((points(a, _SAMPLES)[:, None, :] - points(b, _SAMPLES)[None, :, :]) ** 2).sum(axis=2)
+    i, j = divmod(int(np.argmin(away)), len(_SAMPLES))
+    t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))
+    if t is not None:
+        return [*ends(a), point(a, t)]
+    if {i, j} & {0, len(_SAMPLES) - 1} and not is_closed(a) and not is_closed(b):
+        return list(ends(a))  # an end is nearest, of one or of the other
+    p = point(a, float(_SAMPLES[i]))
+    for _ in range(50):  # by projecting to and fro
+        before, p = p, point(a, nearest(a, point(b, nearest(b, p))))
+        if p == before:
+            break
+    return [*ends(a), p]
+
+
+def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
+    """Returns the parameter on `a` at which the way to `b` is at right angles to both, by Newton on e·a' = 0
+    and e·b' = 0 with e = b - a from parameters nearby. None if that leads off the curves, or to no minimum.
+    """
+    for _ in range(30):
+        (x, y), (u, v) = point(a, t), point(b, s)
+        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
+        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
+        ex, ey = u - x, v - y
+        f, g = -(ex * ax + ey * ay), ex * bx + ey * by
+        ftt = ax * ax + ay * ay - ex * cx - ey * cy
+        fss = bx * bx + by * by + ex * dx + ey * dy
+        fts = -(ax * bx + ay * by)
+        determinant = ftt * fss - fts * fts
+        if not (ftt > 0 and determinant > 0):
+            return None
+        dt, ds = (fts * g - fss * f) / determinant, (fts * f - ftt * g) / determinant
+        t, s = t + dt, s + ds
+        if not (0 <= t <= 1 and 0 <= s <= 1):
+            return None
+        if abs(dt) + abs(ds) < 1e-14:
+            return t
+    return None
+
+
+# --- Booleans on finished regions, for those who ask about true outlines: `overlaps`, `clearance`.
 
 
 def united(*regions: Region) -> Region:
@@ -47,9 +204,7 @@ def overlap_area(a: Region, b: Region) -> float:
 
 
 def clearance(a: Region, b: Region) -> float:
-    """Returns the least distance between two regions, mm; 0 where they touch or overlap, infinite if one is
-    empty.
-    """
+    """Returns the least distance of two regions, mm; 0 where they meet, infinite if one is empty."""
     if not _lie_apart(a, b) and overlap_area(a, b) > 0:
         return 0.0
     closest = region_distance(a, b)
@@ -88,19 +243,243 @@ def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> R
     firsts = accumulate([0, *counts][:-1])
 
     def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:
-        return trace(network, operation(*(section_of(network, r, first) for r, first in placed))).region
+        return trace(
+            network,
+            operation(*(filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)),
+        ).region
 
     return with_finer_chords(network, traced)
 
 
-def section_of(network: Network, region: Region, number: int) -> Section:
-    """Returns a region as polygons; its pieces are the curves of the network from `number` on."""
-    polygons = []
-    for loop in region.loops:
-        uses = [use for k in range(len(loop.pieces)) for use in network.uses[number + k]]
-        number += len(loop.pieces)
-        if not uses:  # too small to be seen beside the rest
-            continue
-        polygons.append(network.polyline(uses))
-        assert loop.is_whole or not any(map(is_closed, loop.pieces))
-    return fill(polygons, "EvenOdd")
+# --- Outlines that touch each other in a point, with a joint there: boundary representations want a vertex
+# where two outlines of a face meet.
+
+
+def jointed(face: Face) -> Face:
+    """Returns the face with the pieces of its outlines divided where these touch."""
+    network = Network([piece for loop in face.loops for piece in loop.pieces])
+    number, loops = 0, []
+    for loop in face.loops:
+        numbers = range(number, number + len(loop.pieces))
+        number = numbers.stop
+        pieces = [network.piece(use) for k in numbers for use in network.uses[k]]
+        if loop.reversed and len(pieces) > 1:
+            loops.append(Loop(tuple(reverse(piece) for piece in reversed(pieces))))
+        else:
+            loops.append(Loop(tuple(pieces), loop.reversed))
+    return Face(loops[0], tuple(loops[1:]))
+
+
+# --- Curves cut to the inside of a region, each by itself: they are not cut where they cross each other.
+
+
+@record(slots=True)
+class Clipped:
+    """The parts of a curve that lie inside, and the others; `is_whole` if none of these is off the border."""
+
+    inner: tuple[Piece, ...]
+    outer: tuple[Piece, ...]
+    is_whole: bool
+
+
+@record(slots=True)
+class Stretch:
+    """The part of a curve from one cut to the next; its parameters may run past 1 on a closed curve."""
+
+    t0: float
+    t1: float
+    start: Vec
+    end: Vec
+    on_border: bool
+
+    @property
+    def middle(self) -> float:
+        return (self.t0 + self.t1) / 2
+
+
+def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool = False) -> list[Clipped]:
+    """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
+    if not curves or not region:
+        return [Clipped((), (curve,), is_whole=False) for curve in curves]
+    boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
+    size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
+    tolerance = RELATIVE_TOLERANCE * size
+    stretches = stretches_beside(curves, region.pieces, boxes, tolerance)
+    spots = [point(c, s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
+    polygons = region_polygons(region, CHORD * size)
+    within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
+    return [
+        _clipped(c, of, [next(within) for _ in of], with_border)
+        for c, of in zip(curves, stretches, strict=True)
+    ]
+
+
+def stretches_beside(
+    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats | Sequence[Bounds], tolerance: float
+) -> list[list[Stretch]]:
+    """Returns the parts of each curve between some borders; `boxes`: of the curves, then the borders."""
+    every, count = [*curves, *borders], len(curves)
+    near = near_rows(boxes, tolerance)
+    near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
+    table = Table(every)
+    pairs = Hulls(table, tolerance).meeting(near)
+    found: list[tuple[list[Piece], list[Crossing]]] = [([], []) for _ in curves]
+    for (i, j), crossings in zip(pairs.tolist(), all_intersections(table, pairs, tolerance), strict=True):
+        found[i][0].append(every[j])
+        found[i][1].extend(crossings)
+    return [_stretches(c, *own, tolerance) for c, own in zip(curves, found, strict=True)]
+
+
+def _stretches(
+    curve: Piece, borders: Sequence[Piece], crossings: Sequence[Crossing], tolerance: float
+) -> list[Stretch]:
+    """Returns a curve in parts between the places where it meets the border."""
+    checkpoint()
+    cuts = [(t, p) for t, _, p in crossings]
+    spots = (p for border in borders for p in ends(border))
+    cuts += [(t, p) for p in spots if (t := locate(curve, p, tolerance)) is not None]
+    start, end = ends(curve)
+    cuts.sort(key=lambda cut: cut[0])
+    if not is_closed(curve):
+        cuts = [(0.0, start), *cuts, (1.0, end)]
+    elif cuts:
+        cuts.append((cuts[0][0] + 1, cuts[0][1]))
+    else:
+        cuts = [(0.0, start), (1.0, end)]
+    apart = cuts[:1]
+    for t, p in cuts[1:]:
+        t0, before = apart[-1]
+        if max(math.dist(before, point(curve, (t0 + t) / 2)), math.dist(before, p)) > tolerance:
+            apart.append((t, p))
+        elif t == cuts[-1][0] and len(apart) > 1:
+            apart[-1] = (t, p)
+    return [_stretch(curve, *before, *after, borders, tolerance) for before, after in pairwise(apart)]
+
+
+def _stretch(
+    curve: Piece, t0: float, start: Vec, t1: float, end: Vec, borders: Sequence[Piece], tolerance: float
+) -> Stretch:
+    middle = point(curve, (t0 + t1) / 2)
+    on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
+    return Stretch(t0, t1, start, end, on_border)
+
+
+def _clipped(
+    curve: Piece, stretches: Sequence[Stretch], within: Sequence[bool], with_border: bool
+) -> Clipped:
+    sides: tuple[list[Stretch], list[Stretch]] = ([], [])
+    for stretch, is_within in zip(stretches, within, strict=True):
+        same = sides[0 if (with_border if stretch.on_border else is_within) else 1]
+        if same and same[-1].t1 == stretch.t0:
+            before = same.pop()
+            stretch = Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
+        same.append(stretch)
+    for same in sides if is_closed(curve) else ():
+        if len(same) > 1 and same[-1].t1 == same[0].t0 + 1:
+            last, first = same.pop(), same[0]
+            same[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
+    is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
+    inner, outer = (
+        tuple(curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in same)
+        for same in sides
+    )
+    return Clipped(inner, outer, is_whole)
+
+
+# --- The contacts between the bodies of a drawing: touching, apart or overlapping.
+#
+# All is worked out when it is asked for: which pairs touch or overlap, which takes little, and how far apart
+# they are, or by how much they overlap. Up to `ALL_PAIRS` bodies every pair is listed. In larger drawings
+# only pairs whose boxes are closer than `NEAR` times the size of the drawing are, so that hundreds of bodies
+# stay cheap; a pair that is not listed is apart.
+
+ALL_PAIRS = 24
+NEAR = 0.05
+UNNOTICED = 1e-3
+"""A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
+_THIN = 100 * NEGLIGIBLE
+"""Width of an area below which it may be but the difference of curves and chords, so that it is traced."""
+
+Relation = Literal["touching", "apart", "overlapping"]
+
+
+@record(slots=True)
+class Contact:
+    """The contact of two bodies, by paths; `gap` (mm) if they are apart, `area` (mm²) of an overlap."""
+
+    a: str
+    b: str
+    relation: Relation
+    gap: float | None = None
+    area: float | None = None
+
+
+@record()
+class Solid:
+    """A body, or an area that others lie on: its region, also as polygons of the network, its place in the
+    order of drawing, and its colour, if it has one. One that `is_clear` hides nothing.
+    """
+
+    path: str
+    region: Region
+    section: Section = field(repr=False, compare=False)
+    box: Bounds
+    place: float
+    color: str | None
+    is_clear: bool
+
+
+@record()
+class Contacts:
+    """The pairs of some bodies, in order: those `near` touch or overlap; of `all` see above."""
+
+    bodies: Sequence[tuple[str, Region]] = ()
+    near: Callable[[], tuple[tuple[str, str], ...]] = field(default=tuple, repr=False, compare=False)
+    all: Callable[[], tuple[Contact, ...]] = field(default=tuple, repr=False, compare=False)
+
+    def nearest(self, path: str) -> tuple[float, str]:
+        """Returns the distance (mm) from a body to the nearest other, and its path."""
+        own = [region for name, region in self.bodies if name == path]
+        others = [(name, region) for name, region in self.bodies if name != path]
+        gap, place = nearest_region(own, [region for _, region in others])
+        return gap, others[place][0]
+
+
+def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
+    """Returns the contacts between some bodies, whose sections are those of a network."""
+
+    def near() -> tuple[tuple[str, str], ...]:
+        reach = max(UNNOTICED, network.tolerance)
+        pairs = sorted(near_pairs([solid.box for solid in solids], reach + network.tolerance))
+        couples = ((solids[i], solids[j]) for i, j in pairs)
+        return tuple(
+            (a.path, b.path)
+            for a, b in couples
+            if _shared(network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
+        )
+
+    def everything() -> tuple[Contact, ...]:
+        pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
+        if len(solids) > ALL_PAIRS:
+            pairs = sorted(near_pairs([solid.box for solid in solids], NEAR * network.size))
+        return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+
+    return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
+
+
+def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
+    """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
+    common = intersection(a.section, b.section)
+    if is_nothing(common):
+        return 0.0
+    left, bottom, right, top = common.bounds()
+    thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
+    return common.area() if common.area() > thin and not exactly else area(trace(network, common).region)
+
+
+def _compare(network: Network, a: Solid, b: Solid) -> Contact:
+    if (shared := _shared(network, a, b, exactly=True)) > 0:
+        return Contact(a.path, b.path, "overlapping", area=shared)
+    closest = region_distance(a.region, b.region)
+    gap = closest[0] if closest and closest[0] > network.tolerance else None
+    return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)

@@ -1,10 +1,7 @@
-"""The drawing of a solved model: bodies with exact outlines, strokes, seams, contacts. Exporters read
-this.
-"""
+"""The drawing of a solved model: bodies with exact outlines, strokes, seams, contacts."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -16,41 +13,71 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
-from aidl_lang.geometry.bodies import Bodies, IdleHole, InnerLoop, LooseCurves, Mass
-from aidl_lang.geometry.clips import Clips, clip_sections, clip_shapes, empty_clips
-from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
-from aidl_lang.geometry.crossings import crossing_notes
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, all_bounds, bounds, is_finite
-from aidl_lang.geometry.faces import Shape, own_faces, region_of, union_of
+from aidl_lang.geometry.bodies import (
+    Bodies,
+    Clips,
+    IdleHole,
+    InnerLoop,
+    LooseCurves,
+    Mass,
+    clip_sections,
+    clip_shapes,
+    empty_clips,
+    inner_seams,
+    visible_seams,
+)
+from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.curves import (
+    Bounds,
+    Piece,
+    all_bounds,
+    bounds,
+    has_extent,
+    is_finite,
+    larger_side,
+    union_bounds,
+    usable,
+)
+from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
-from aidl_lang.geometry.imported_notes import finding_notes
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
-    StackedBody,
     covered_note,
+    crossing_notes,
     lettering_note,
+    overhanging_notes,
     unseen_note,
 )
 from aidl_lang.geometry.letters import lettered_region
-from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import GRID, Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import detached_notes, gap_note, stroked_note, unusable_note, upright_note
-from aidl_lang.geometry.overhanging import overhanging_notes
-from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
-from aidl_lang.geometry.region import Face, Region
-from aidl_lang.geometry.seams import inner_seams, visible_seams
-from aidl_lang.geometry.sections import Section, fill, intersection
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.geometry.stacking import idle_orders, stacked
-from aidl_lang.geometry.styles import Style, idle_areas, idle_looks, is_filled, styled, styles_of
-from aidl_lang.geometry.tessellate import region_polygons
-from aidl_lang.geometry.trace import Traced, trace, trace_all
-from aidl_lang.geometry.tracing import ENGRAVED
+from aidl_lang.geometry.network import GRID, Network, with_finer_chords
+from aidl_lang.geometry.notes import (
+    detached_notes,
+    finding_notes,
+    gap_note,
+    stroked_note,
+    unusable_note,
+    upright_note,
+)
+from aidl_lang.geometry.pieces import LETTERING, piece_notes
+from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
+from aidl_lang.geometry.sections import Section, Traced, fill, intersection, trace, trace_all
+from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.styles import (
+    Style,
+    idle_areas,
+    idle_looks,
+    idle_orders,
+    is_filled,
+    stacked,
+    styled,
+    styles_of,
+)
 
 SLIT = "slit"
 _Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
+_Shapes: TypeAlias = dict[str, list[Shape]]
+_Arranged: TypeAlias = tuple[Bodies, list[Mass], dict[str, Traced]]
 
 
 @record()
@@ -100,9 +127,7 @@ class Stroke:
 
 @record()
 class _Area:
-    """An area with a look of its own: as a section on the grid of the network, and as a region; and what of
-    its geometry bounds nothing.
-    """
+    """An area with a look of its own, on the grid and as a region; `loose`: what bounds none of it."""
 
     section: Section
     region: Region
@@ -152,7 +177,7 @@ class Drawing:
     @property
     def size(self) -> float:
         """The larger side of the box, 1 for an empty drawing."""
-        return max(self.box[2] - self.box[0], self.box[3] - self.box[1]) or 1.0
+        return larger_side(self.box) or 1.0
 
 
 @record()
@@ -172,13 +197,19 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
-    network, walk, masses, traced, gaps = _closed(root, network, shapes, clips, blind)
+    network, walk, masses, traced, gaps = _closed(
+        root, network, shapes, partial(_arranged, root, shapes, clips, blind)
+    )
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
-    solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
+    order = {structure.path: place for place, structure in enumerate(stacked(root))}
+    solids = [
+        Solid(b.path, b.region, m.section, b.box, order[b.path], b.style.color, b.style.is_clear)
+        for b, m in zip(bodies, masses, strict=True)
+    ]
     touching = contacts(network, solids)
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
@@ -192,14 +223,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    order = {structure.path: place for place, structure in enumerate(stacked(root))}
-    lying = [
-        StackedBody(b.path, order[b.path], b.style.color, m.section, b.region, b.box, b.style.is_clear)
-        for b, m in zip(bodies, masses, strict=True)
-    ]
     material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
     areas = dict(_areas(root, shapes, network, material, ink[0]))
-    lying += _lying_areas(stacked(root), styles, areas)
+    lying = [*solids, *_lying_areas(stacked(root), styles, areas)]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
@@ -220,13 +246,12 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not is_seen:
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += loose_piece_notes(root, walk, masses, solids, touching.near())
+        notes += piece_notes(root, walk, masses, solids, touching.near())
         notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground, order)
-        notes += fallen_piece_notes(root, walk, masses, solids, touching.near())
         notes += overhanging_notes(root, bodies, strokes)
         if any(body.style.material for body in bodies):
-            from aidl_lang.geometry.thin import thin_wall_notes
+            from aidl_lang.geometry.walls import thin_wall_notes
 
             notes += thin_wall_notes(root, [(b.path, b.region, b.style.material) for b in bodies])
         loose = {g.path for f in walk.findings if isinstance(f, LooseCurves) for g, _ in f.curves}
@@ -234,7 +259,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += idle_orders(root, paths)
         return ordered(by_statement([*notes, *empty]))
 
-    plans = tuple(_plans(root))
+    plans = tuple(PlanBox(s.path, s.name, s.box.bounds) for s in root.walk() if s.is_empty and s.box)
     boxes = [b.box for b in bodies]
     boxes += all_bounds(piece for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
@@ -244,18 +269,15 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 def _closed(
     root: SolvedStructure,
     network: Network,
-    shapes: dict[str, list[Shape]],
-    clips: Clips,
-    blind: Collection[str],
+    shapes: _Shapes,
+    arranged: Callable[[Network], _Arranged],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
-    """Returns the network after small gaps between curves are closed, what the curves enclose, and these
-    gaps.
-    """
-    found = with_finer_chords(network, lambda: _arranged(root, network, shapes, clips, blind))
+    """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
+    found = with_finer_chords(network, partial(arranged, network))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps), box=network.box)
-        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes, clips, blind))
+        then = with_finer_chords(joined, partial(arranged, joined))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -266,12 +288,8 @@ def _closed(
 
 
 def _arranged(
-    root: SolvedStructure,
-    network: Network,
-    shapes: dict[str, list[Shape]],
-    clips: Clips,
-    blind: Collection[str],
-) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
+    root: SolvedStructure, shapes: _Shapes, clips: Clips, blind: Collection[str], network: Network
+) -> _Arranged:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
     walk = Bodies(network, shapes, clip_sections(network, root, clips), blind)
     masses = _root_masses(walk, root)
@@ -282,17 +300,15 @@ def _arranged(
     return walk, [m for m in masses if traced[m.structure.path].region], traced
 
 
-def _collect(
-    root: SolvedStructure, notes: list[Diagnostic]
-) -> tuple[_Curves, _Curves, dict[str, list[Shape]], dict[str, list[Shape]]]:
+def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _Curves, _Shapes, _Shapes]:
     """Returns all curves that can be drawn, numbered, with their boxes: those that bound material, and those
     of strokes, which nothing is cut by. And by structure the shapes they belong to, and the outlines that a
     file says are engraved.
     """
     solid: _Curves = ([], [])
     ink: _Curves = ([], [])
-    shapes: dict[str, list[Shape]] = {}
-    engraved: dict[str, list[Shape]] = {}
+    shapes: _Shapes = {}
+    engraved: _Shapes = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.drawn:
@@ -302,10 +318,10 @@ def _collect(
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            found = [(leaf, _usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
+            found = [(leaf, usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
             around = iter(all_bounds(curve for _, curve in found if curve is not None))
             for leaf, curve in found:
-                if curve is None or not _has_extent(box := next(around)):
+                if curve is None or not has_extent(box := next(around)):
                     vanished.append(leaf)
                     continue
                 curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
@@ -330,28 +346,6 @@ def _collect(
 def _has_strokes(geometry: SolvedGeometry) -> bool:
     """Tells whether there are letters of strokes in what is drawn of a geometry."""
     return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
-
-
-def _usable(curve: Piece) -> Piece | None:
-    """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
-    if not is_finite(curve):
-        return None
-    if isinstance(curve, Circle):
-        curve = Circle(curve.center, abs(curve.radius))
-    elif isinstance(curve, Ellipse):
-        curve = Ellipse(curve.center, abs(curve.rx), abs(curve.ry), curve.angle)
-    elif isinstance(curve, Arc):
-        curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
-    if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
-        return None
-    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
-
-
-def _has_extent(box: Bounds) -> bool:
-    """Tells whether a curve can be drawn that has this box."""
-    if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
-        return False
-    return math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
@@ -383,8 +377,8 @@ def _covered_letters(
 
 def _strokes(
     root: SolvedStructure,
-    shapes: dict[str, list[Shape]],
-    engraved: dict[str, list[Shape]],
+    shapes: _Shapes,
+    engraved: _Shapes,
     walk: Bodies,
     areas: _Areas,
     styles: dict[str, Style],
@@ -444,11 +438,9 @@ def _inked(
 
 
 def _unseen(
-    root: SolvedStructure, shapes: dict[str, list[Shape]], styles: dict[str, Style], ground: Ground
+    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: Ground
 ) -> Iterator[Diagnostic]:
-    """Yields warnings on strokes in the colour of what they lie on, and on those under a body unless others
-    of the same array are seen.
-    """
+    """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
     drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
     for at, drawing in drawings:
@@ -478,14 +470,12 @@ def _unseen(
 
 def _areas(
     root: SolvedStructure,
-    shapes: dict[str, list[Shape]],
+    shapes: _Shapes,
     network: Network,
     material: dict[str, Section],
     ink: Sequence[Piece],
 ) -> Iterator[tuple[str, _Area]]:
-    """Yields the areas with looks of their own, with the path of the geometry: what it encloses, in a body of
-    its material.
-    """
+    """Yields the paths and areas of geometry with a look of its own: what it encloses of its body."""
     for structure in root.walk():
         of = material.get(structure.path, fill([], "NonZero"))
         for shape in shapes[structure.path] if structure.kind != "hole" else ():
@@ -507,21 +497,22 @@ def _areas(
 
 def _lying_areas(
     order: Iterable[SolvedStructure], styles: dict[str, Style], areas: _Areas
-) -> Iterator[StackedBody]:
+) -> Iterator[Solid]:
     """Yields the areas as what others lie on."""
     for at, structure in enumerate(order):
         places = _places(structure, at)
         for g in structure.drawn:
             if (area := areas.get(g.path)) is not None:
-                look, box = styled(styles[structure.path], g), region_bounds(area.region)
-                section, region = area.section, area.region
-                yield StackedBody(g.path, places[g.path], look.color, section, region, box, look.is_clear)
+                look, box, place = (
+                    styled(styles[structure.path], g),
+                    region_bounds(area.region),
+                    places[g.path],
+                )
+                yield Solid(g.path, area.region, area.section, box, place, look.color, look.is_clear)
 
 
 def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
-    """Returns the places of the geometry of a structure in the order of drawing: above the structure itself,
-    below the next one.
-    """
+    """Returns the places of a structure's geometry in the order of drawing: between it and the next one."""
     count = len(structure.drawn) + 1
     return {g.path: at + k / count for k, g in enumerate(structure.drawn, 1)}
 
@@ -569,7 +560,15 @@ def _colored_drawings(root: SolvedStructure) -> set[str]:
     }
 
 
-def _plans(root: SolvedStructure) -> Iterator[PlanBox]:
-    for structure in root.walk():
-        if structure.is_empty and (box := structure.box) is not None:
-            yield PlanBox(structure.path, structure.name, box.bounds)
+def region_alone(root: SolvedStructure, path: str) -> Region:
+    """Returns the region that a geometry would cover as a solid of its own."""
+    found = (g for g in all_geometry(root) if g.path == path)
+    geometry = tuple(replace(g, construction=False) for g in found)
+    frame = Frame(0.0, 0.0, 0.0)
+    alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, None)
+    return draw(SolvedModel("solved", alone))[0].regions.get("it", Region(()))
+
+
+def all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
+    """Yields every piece of geometry under a structure, as it is drawn, with the parts of each."""
+    return (g for structure in root.walk() for drawn in structure.drawn for g in drawn.walk())

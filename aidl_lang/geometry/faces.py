@@ -1,37 +1,228 @@
-"""The faces that a structure draws itself.
-
-A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating.
-Free-standing curves are chained across names: what lies inside their outlines is filled, dangling ends are
-trimmed. Free curves that close only together with the outline of a closed geometry (an arc on top of a
-rectangle) add what they enclose outside of it.
-"""
+"""The faces that a structure draws itself."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from aidl_lang.building.model import Geometry
+from aidl_lang.common.drawings.drawing import Bow, Element, Stroke
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.common.running import checkpoint
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    image,
+)
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
-from aidl_lang.geometry.solved import SolvedGeometry
-from aidl_lang.geometry.tessellate import polygon_area
-from aidl_lang.geometry.trace import trace
-from aidl_lang.geometry.tracing import CONTOURS, Crossing, enclosed
+from aidl_lang.geometry.region import Region, polygon_area
+from aidl_lang.geometry.sections import (
+    Section,
+    difference,
+    fill,
+    inside_mask,
+    intersection,
+    is_nothing,
+    trace,
+    union,
+)
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
+
+# --- Outlines of drawings of other programs, as exact curves, and what they enclose.
+#
+# A shape of a file is filled by its own rule, and shapes that cross are united. What lies in another without
+# crossing it alternates, as the outlines of parts do: a circle in a plate is a hole, and one in that is
+# material again.
+
+_WINDING = "winding_contours"
+CONTOURS = ("contours", _WINDING)
+ENGRAVED = "engraved_contours"
+"""The types of a part that is one shape of a file: filled by alternation, or by the non-zero rule."""
+
+Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
+"""A shape of a file, and the places where it crosses itself."""
+
+_ROUND = 1e-8
+"""Difference of the radii of an ellipse, relative to them, below which it is a circle."""
+_FLAT = 1e-12
+
+
+# --- Curves ----------------------------------------------------------------------------------------
+
+
+def curve_of(stroke: Stroke) -> Piece:
+    """Returns the exact curve of a stroke."""
+    if not isinstance(stroke, Bow):
+        return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
+    (ux, uy), (vx, vy) = stroke.u, stroke.v
+    # Conjugate half-diameters become those of the axes by a shift of the parameter.
+    shift = 0.5 * math.atan2(2 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
+    c, s = math.cos(shift), math.sin(shift)
+    long, short = (ux * c + vx * s, uy * c + vy * s), (vx * c - ux * s, vy * c - uy * s)
+    sense = math.copysign(1.0, long[0] * short[1] - long[1] * short[0])
+    rx, ry = math.hypot(*long), math.hypot(*short)
+    if ry <= _FLAT * rx:
+        return Line(stroke.start, stroke.end)
+    angle, sweep = math.atan2(long[1], long[0]), sense * stroke.sweep
+    if rx - ry <= _ROUND * rx:
+        radius = (rx + ry) / 2
+        if stroke.is_whole:
+            return Circle(stroke.center, radius)
+        return Arc(stroke.center, radius, stroke.start, stroke.end, sweep)
+    if stroke.is_whole:
+        return Ellipse(stroke.center, rx, ry, angle)
+    first = sense * (stroke.first - shift)
+    return EllipseArc(stroke.center, rx, ry, angle, stroke.start, stroke.end, first, sweep)
+
+
+def parts_of(
+    g: Geometry, at: Callable[[Vec], Vec], unit: float, direction: float, sense: float
+) -> tuple[SolvedGeometry, ...]:
+    """Returns the shapes of a drawing in place, each with its curves as parts. `at` maps points, `unit` is
+    that of lengths, `direction` the turn in radians, and `sense` negative if it is turned over.
+    """
+    assert g.trace is not None
+
+    def turned(angle: float) -> float:
+        return direction + sense * angle
+
+    return tuple(
+        _contours(
+            g,
+            f"{element.names[-1] if element.names else g.trace.name}[{k}]",
+            [image(curve_of(s), at, unit, turned, sense) for s in element.strokes],
+            element,
+        )
+        for k, element in enumerate(g.trace.elements)
+    )
+
+
+def _contours(g: Geometry, name: str, curves: Sequence[Piece], element: Element) -> SolvedGeometry:
+    checkpoint()
+    path = f"{g.path}.{name}"
+    edges = tuple(edge_of(g, f"{name}.edge[{k}]", curve) for k, curve in enumerate(curves))
+    kind, is_filled = CONTOURS[element.is_winding], g.filled
+    looks: dict[str, tuple[Scalar, ...]] = {}
+    if (engraving := element.engraving) is not None:
+        kind, is_filled = ENGRAVED, is_filled or engraving.is_area
+        looks = {k: (v,) for k, v in (("layer", engraving.layer), ("color", engraving.color)) if v}
+    made = SolvedGeometry(name, path, kind, {}, None, edges, g.construction, g.span, filled=is_filled)
+    return replace(made, attributes=looks)
+
+
+def edge_of(of: Geometry, path: str, curve: Piece) -> SolvedGeometry:
+    """Returns one of the curves that a primitive is made of, by its path in it."""
+    kind, values = described(curve)
+    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
+    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
+
+
+def is_winding(shape: SolvedGeometry) -> bool:
+    """Tells whether a shape of a file is filled by the non-zero rule."""
+    return shape.type == _WINDING
+
+
+# --- What they enclose -----------------------------------------------------------------------------
+
+
+def enclosed(
+    network: Network,
+    shapes: Iterable[tuple[SolvedGeometry, Sequence[int]]],
+    closed: set[Use],
+    alternating: Callable[[Network, list[Use]], Section],
+) -> tuple[Section, list[Crossing]]:
+    """Returns the area of shapes of a file, each given with the numbers of its curves, and those that cross
+    themselves; `closed` are the edges that lead to no open end.
+    """
+    sections: list[Section] = []
+    crossed: list[Crossing] = []
+    nodes: list[set[int]] = []
+    for shape, numbers in shapes:
+        checkpoint()
+        uses = [use for number in numbers for use in network.uses[number] if use in closed]
+        if not uses:
+            continue
+        if is_winding(shape):
+            sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
+        else:
+            sections.append(alternating(network, uses))
+        nodes.append(set(_ends(network, uses)))
+        if places := _crossings(network, uses):
+            crossed.append((shape, tuple(network.nodes[node] for node in places)))
+    groups = [union([sections[k] for k in group]) for group in _crossing(sections, nodes)]
+    return fill([polygon for group in groups for polygon in group.to_polygons()], "EvenOdd"), crossed
+
+
+def _ends(network: Network, uses: Iterable[Use]) -> Iterator[int]:
+    for number, _ in uses:
+        yield network.edges[number].start
+        yield network.edges[number].end
+
+
+def _crossings(network: Network, uses: Sequence[Use]) -> list[int]:
+    """Returns the nodes that one contour passes more than once."""
+    passed = (Counter(_ends(network, walk)) for walk in _walks(network, uses))
+    return list(dict.fromkeys(node for ends in passed for node, count in ends.items() if count > 2))
+
+
+def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
+    """Yields the runs of edges of which each begins where the one before it ends, as the file has them."""
+    walk: list[Use] = []
+    here = -1
+    for number, forward in uses:
+        edge = network.edges[number]
+        start, end = (edge.start, edge.end) if forward else (edge.end, edge.start)
+        if walk and start != here:
+            yield walk
+            walk = []
+        walk.append((number, forward))
+        here = end
+    yield walk
+
+
+def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> list[list[int]]:
+    """Returns the numbers of sections in groups of those that cross one another, directly or by others."""
+    owners: Mapping[int, list[int]] = defaultdict(list)
+    for k, own in enumerate(nodes):
+        for node in own:
+            owners[node].append(k)
+    pairs = {(i, j) for at in owners.values() for i in at for j in at if i < j}
+    joined = Joined()
+    for i, j in sorted(pairs):
+        if joined.root(i) != joined.root(j) and _cross(sections[i], sections[j]):
+            joined.join(i, j)
+    return joined.groups(range(len(sections)))
+
+
+def _cross(a: Section, b: Section) -> bool:
+    """Tells whether two areas have something in common, and each something that the other has not."""
+    checkpoint()
+    if is_nothing(intersection(a, b)):
+        return False
+    return not is_nothing(difference(a, b)) and not is_nothing(difference(b, a))
+
+
+# --- The faces that a structure draws itself.
+#
+# A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating. Free-
+# standing curves are chained across names: what lies inside their outlines is filled, dangling ends are
+# trimmed. Free curves that close only together with the outline of a closed geometry (an arc on top of a
+# rectangle) add what they enclose outside of it.
 
 
 @record()
 class Shape:
-    """A named geometry of a structure: its primitives that have curves, with the numbers of these in the
-    network.
-    """
+    """A named geometry of a structure: its primitives with curves, and their numbers in the network."""
 
     geometry: SolvedGeometry
     leaves: tuple[tuple[SolvedGeometry, int], ...]
@@ -51,9 +242,7 @@ class OwnFace:
 
 @record(frozen=False)
 class OwnFaces:
-    """The faces of a structure, the primitives that bound none, and imported outlines that cross
-    themselves.
-    """
+    """The faces of a structure, primitives that bound none, and imported outlines that cross themselves."""
 
     faces: list[OwnFace] = field(default_factory=list)
     loose: list[tuple[SolvedGeometry, int]] = field(default_factory=list)
@@ -61,9 +250,7 @@ class OwnFaces:
 
 
 def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
-    """Returns the faces of the shapes of one structure, in order of writing, those of free curves after
-    them.
-    """
+    """Returns the faces of the shapes of a structure in order of writing, those of free curves last."""
     result = OwnFaces()
     free: list[tuple[SolvedGeometry, int]] = []
     outlines: list[Use] = []
@@ -146,7 +333,6 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
 
 
 def _degrees(network: Network, uses: Iterable[Use]) -> Counter[int]:
-    """Returns how many edges end in each node."""
     edges = [network.edges[number] for number, _ in uses]
     return Counter([*(edge.start for edge in edges), *(edge.end for edge in edges)])
 
@@ -162,9 +348,7 @@ def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
 
 
 def _alternating(network: Network, uses: list[Use]) -> Section:
-    """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
-    enclosed.
-    """
+    """Returns the loops of one shape by the even-odd rule; at a node of odd degree, all enclosed."""
     if any(d % 2 for d in _degrees(network, uses).values()):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
@@ -197,7 +381,7 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
     return loop
 
 
-def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.float64]], set[int]]:
+def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Floats], set[int]]:
     """Returns the outer outline of each connected part of a planar graph, and the edges that bound some face
     of it.
 
@@ -206,7 +390,7 @@ def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.fl
     edges = list(dict.fromkeys(edge for edge, _ in uses))
     turn = _next_clockwise(network, edges)
     cycle_of: dict[Use, int] = {}
-    polygons: list[NDArray[np.float64]] = []
+    polygons: list[Floats] = []
     for start in ((edge, forward) for edge in edges for forward in (True, False)):
         if start in cycle_of:
             continue
@@ -236,7 +420,6 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 
 def _direction(network: Network, use: Use) -> float:
-    """Returns the angle at which the polyline of an edge leaves its start."""
     inner = network.inner(use)
     target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
     dx, dy = target - network.node_grid[first_node(network, use)]
@@ -269,9 +452,7 @@ def _chain_free(
 def _close_with_outlines(
     network: Network, rest: list[tuple[SolvedGeometry, int]], outlines: list[Use], result: OwnFaces
 ) -> set[int]:
-    """Adds the areas that the remaining curves enclose outside the closed shapes; returns the edges that took
-    part.
-    """
+    """Adds what the other curves enclose outside the closed shapes; returns the edges with a part in it."""
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)
@@ -291,9 +472,7 @@ def _close_with_outlines(
 def region_of(
     geometry: Iterable[tuple[SolvedGeometry, Sequence[tuple[SolvedGeometry, Piece]]]],
 ) -> tuple[Region, list[SolvedGeometry]]:
-    """Returns the region that geometries enclose together, each given with its primitives and their curves,
-    and the primitives that bound nothing.
-    """
+    """Returns the region of geometries with their primitives, and primitives that bound nothing."""
     curves: list[Piece] = []
     shapes = []
     for g, leaves in geometry:

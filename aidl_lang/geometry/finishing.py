@@ -9,14 +9,28 @@ Newton's method, following the radius up from 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from functools import partial
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse, turn_between
+from aidl_lang.common.running import checkpoint
+from aidl_lang.geometry.curves import (
+    Arc,
+    Circle,
+    Line,
+    Piece,
+    Vec,
+    derivative,
+    ends,
+    is_closed,
+    part,
+    point,
+    reverse,
+    turn_between,
+)
 from aidl_lang.geometry.intersect import circle_circle, line_circle
-from aidl_lang.geometry.measures import length
+from aidl_lang.geometry.region import length
 
 SMOOTH = 1e-7
 """Curves whose directions differ by less, in radians, run on smoothly: there is no corner."""
@@ -80,9 +94,7 @@ class Finished:
 
 @record(slots=True)
 class TooLarge:
-    """A finish that does not fit: its corner has room for `largest`, or it runs into `other` on the curve of
-    that `number`.
-    """
+    """A finish that does not fit: there is room for `largest`, or it meets `other` on curve `number`."""
 
     work: Work
     largest: float
@@ -110,9 +122,7 @@ def direction(curve: Piece, t: float) -> Vec:
 
 
 def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
-    """Returns the arms of all curves that end at a point, those that arrive there (in their own direction)
-    first.
-    """
+    """Returns the arms of all curves that end at a point, first those that arrive there."""
     found = []
     for number, curve in enumerate(curves):
         if is_closed(curve):
@@ -167,7 +177,6 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
 
 
 def _misfit(work: Work) -> TooLarge:
-    """Returns a finish that an arm is too short for."""
     return TooLarge(work, largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes)))
 
 
@@ -177,10 +186,10 @@ def sized(work: Work, size: float) -> Work:
     return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
 
 
-def largest(fits: Callable[[float], bool], too_large: float) -> float:
+def largest(fits: Callable[[float], bool], too_large: float, halvings: int = _HALVINGS) -> float:
     """Returns the largest size below one that is too large, by halving."""
     low, high = 0.0, too_large
-    for _ in range(_HALVINGS):
+    for _ in range(halvings):
         middle = (low + high) / 2
         low, high = (middle, high) if fits(middle) else (low, middle)
     return low
@@ -277,9 +286,7 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 
 
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
-    """Returns the carrier (the endless line or whole circle) of all points at a distance to the left of a
-    curve.
-    """
+    """Returns the endless line or whole circle of all points at a distance to the left of a curve."""
     if isinstance(curve, Line):
         dx, dy = direction(curve, 0.0)
         (x0, y0), (x1, y1) = curve.start, curve.end
@@ -311,12 +318,10 @@ def _foot(curve: Line | Arc, p: Vec) -> float | None:
 
 
 def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[float, float, Vec] | None:
-    """Follows the touching points from the corner as the radius grows; returns None once one leaves its
-    arm.
-    """
+    """Follows the touching points from the corner as the radius grows; None once one leaves its arm."""
 
     def gap(u: float, v: float, r: float) -> Vec:
-        p, q = _beside(a, u, side * r), _beside(b, v, -side * r)
+        p, q = parallel(a, u, side * r), parallel(b, v, -side * r)
         return p[0] - q[0], p[1] - q[1]
 
     u = v = 0.0
@@ -336,9 +341,79 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
                 break
         if not (math.hypot(*gap(u, v, r)) < _EXACT * max(1.0, radius) and min(u, v) >= 0 and max(u, v) <= 1):
             return None
-    return u, v, _beside(a, u, side * radius)
+    return u, v, parallel(a, u, side * radius)
 
 
-def _beside(curve: Piece, t: float, left: float) -> Vec:
+def parallel(curve: Piece, t: float, left: float) -> Vec:
+    """Returns the point at a distance to the left of that at a parameter."""
     (x, y), (dx, dy) = point(curve, t), direction(curve, t)
     return x - left * dy, y + left * dx
+
+
+# --- Fillets and chamfers as large as fits: the sizes that `max` stands for.
+
+_DOUBLINGS = 40
+_SAME = 1e-8
+_NOTHING = 1e-6
+_MORE = 1e-6
+"""A size that may not grow by this share does not grow."""
+
+
+def fitted(curves: Sequence[Piece], works: Sequence[Work], runs: Sequence[int], extent: float) -> list[Work]:
+    """Returns works with sizes: all of a run have the largest that fits, 0 if none does; those of run 0 have
+    one already. Runs grow together, and each until one of its corners has no more room.
+    """
+    sizes: dict[int, float] = {}
+    while growing := sorted({run for run in runs if run and run not in sizes}):
+        trial = partial(_fit, curves, works, runs, sizes)
+        size = _largest(partial(_level, trial, growing), extent)
+        level = dict.fromkeys(growing, size)
+        larger = max(size * (1 + _MORE), 2 * _NOTHING * extent)
+        stuck = [run for run in growing if not trial(level | {run: larger}, [run])]
+        sizes |= dict.fromkeys(stuck or growing, size)
+    return _sized(works, runs, sizes)
+
+
+def _level(fits: Callable[[dict[int, float], list[int]], bool], runs: list[int], size: float) -> bool:
+    """Tells whether runs fit that all have one size."""
+    return fits(dict.fromkeys(runs, size), runs)
+
+
+def _sized(works: Sequence[Work], runs: Sequence[int], sizes: Mapping[int, float]) -> list[Work]:
+    return [
+        replace(work, sizes=(sizes[run], sizes[run])) if run else work
+        for work, run in zip(works, runs, strict=True)
+    ]
+
+
+def _fit(
+    curves: Sequence[Piece],
+    works: Sequence[Work],
+    runs: Sequence[int],
+    known: Mapping[int, float],
+    tried: Mapping[int, float],
+    asked: Iterable[int],
+) -> bool:
+    """Tells whether nothing of the runs that are asked for fails or runs into another."""
+    checkpoint()
+    sized = [
+        (w, r) for w, r in zip(_sized(works, runs, {**known, **tried}), runs, strict=True) if w.sizes[0] > 0
+    ]
+    asked_for = set(asked)
+    own = {id(work) for work, run in sized if run in asked_for}
+    failures = finish(curves, [work for work, _ in sized]).failures
+    return not any(id(f.work) in own or id(f.other) in own for f in failures)
+
+
+def _largest(fits: Callable[[float], bool], extent: float) -> float:
+    """Returns the largest size that fits, by doubling and halving: a short number if it is one."""
+    high = extent
+    for _ in range(_DOUBLINGS):
+        if not fits(high):
+            break
+        high *= 2
+    found = largest(fits, high)
+    if found <= _NOTHING * extent:
+        return 0.0
+    short = float(f"{found:.6g}")
+    return short if abs(short - found) <= _SAME * found and fits(short) else found

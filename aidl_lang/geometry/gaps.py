@@ -16,8 +16,7 @@ from dataclasses import replace
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Finding, LooseCurves
-from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, bounds, ends, is_closed, larger_side
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -97,9 +96,7 @@ def welded_gaps(
     structures: Iterable[SolvedStructure],
     shapes: Mapping[str, Sequence[Shape]],
 ) -> Iterator[Gap]:
-    """Yields gaps between ends in the outlines of single curves that are not quite the same and became one
-    node.
-    """
+    """Yields gaps between ends, in outlines of single curves, that became one node without quite meeting."""
     gaps = []
     for structure in structures:
         if structure.kind not in ("solid", "hole"):
@@ -145,11 +142,8 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
-    """Returns a curve of the same kind whose end lies elsewhere; None if that would change more than its
-    end.
-    """
-    left, bottom, right, top = bounds(curve)
-    if max(right - left, top - bottom) <= 10 * widest:
+    """Returns such a curve with its end elsewhere; None if that would change more than its end."""
+    if larger_side(bounds(curve)) <= 10 * widest:
         return None
     start, end = ends(curve)
     start, end = (start, kept.at) if is_last else (kept.at, end)

@@ -1,33 +1,214 @@
-"""The points where two curves meet: closed forms for lines and circles, `carriers` for one of those and
-another curve, Newton from a sampling for two others. Of the last two kinds many pairs are worked out at once.
-
-A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here; what
-they share begins and ends at end points, which `network` places on both.
-"""
+"""The points where curves meet, of many pairs at once."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.carriers import on_carriers
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import ends, is_closed, locate, point
-from aidl_lang.geometry.tables import Floats, Ints, Table, cross, dot, long
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Floats,
+    Ints,
+    Line,
+    Mask,
+    Piece,
+    Vec,
+    ends,
+    is_closed,
+    locate,
+    point,
+    round_range,
+)
 
-_STEPS = 64
+# --- Many curves as a table of numbers, for points on all of them at once.
+
+_POWERS = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
+"""Coefficients of 1, t, t² and t³ of a cubic, from its control points."""
+
+
+class Table:
+    """Curves by row: the coefficients of a cubic, or centre, half-axes, their turn, first angle, sweep."""
+
+    def __init__(self, curves: Sequence[Piece]) -> None:
+        self.curves = curves
+        self.is_round = np.array([not isinstance(curve, Line | Bezier) for curve in curves], dtype=np.bool_)
+        self.is_closed = np.array([is_closed(curve) for curve in curves], dtype=np.bool_)
+        self.rows = np.array([_row(curve) for curve in curves]).reshape(-1, 8)
+        cubic = ~self.is_round
+        self.rows[cubic] = (_POWERS @ self.rows[cubic].reshape(-1, 4, 2)).reshape(-1, 8)
+
+    def at(self, curves: Ints, t: Floats, order: int = 0) -> Floats:
+        """Returns the points at parameters of some curves and their derivatives up to an order, by it."""
+        found = np.empty((order + 1, len(t), 2))
+        is_round = self.is_round[curves]
+        if not is_round.all():
+            c, u = self.rows[curves[~is_round]].reshape(-1, 4, 2), t[~is_round, None]
+            found[0, ~is_round] = ((c[:, 3] * u + c[:, 2]) * u + c[:, 1]) * u + c[:, 0]
+            if order:
+                found[1, ~is_round] = (3 * c[:, 3] * u + 2 * c[:, 2]) * u + c[:, 1]
+            if order > 1:
+                found[2, ~is_round] = 6 * c[:, 3] * u + 2 * c[:, 2]
+        if is_round.any():
+            x, y, rx, ry, cos, sin, first, sweep = self.rows[curves[is_round]].T
+            u = first + sweep * t[is_round]
+            for k in range(order + 1):
+                far = sweep**k
+                along, across = far * rx * np.cos(u + k * math.pi / 2), far * ry * np.sin(u + k * math.pi / 2)
+                found[k, is_round] = np.stack(
+                    (cos * along - sin * across, sin * along + cos * across), axis=1
+                )
+            found[0, is_round] += np.stack((x, y), axis=1)
+        return found
+
+    def within(self, curves: Ints, t: Floats) -> Floats:
+        """Returns parameters brought back onto curves: round closed ones, to the ends of others."""
+        return np.where(self.is_closed[curves], t % 1.0, np.clip(t, 0.0, 1.0))
+
+
+def cross(u: Floats, v: Floats) -> Floats:
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def dot(u: Floats, v: Floats) -> Floats:
+    return u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1]
+
+
+def long(u: Floats) -> Floats:
+    return np.hypot(u[..., 0], u[..., 1])
+
+
+def _row(curve: Piece) -> tuple[float, ...]:
+    if isinstance(curve, Line):
+        (x, y), (u, v) = curve.start, curve.end
+        return x, y, x + (u - x) / 3, y + (v - y) / 3, u - (u - x) / 3, v - (v - y) / 3, u, v
+    if isinstance(curve, Bezier):
+        return *curve.p0, *curve.p1, *curve.p2, *curve.p3
+    if isinstance(curve, Arc | Circle):
+        return *curve.center, curve.radius, curve.radius, 1.0, 0.0, *round_range(curve)
+    turn = math.cos(curve.angle), math.sin(curve.angle)
+    return *curve.center, curve.rx, curve.ry, *turn, *round_range(curve)
+
+
+# --- Where curves meet the endless lines or the whole circles that carry others: their distance from these
+# is a function of their parameter alone, which has one zero at most between two extremes.
+
+Function = Callable[[Ints, Floats], Floats]
+_STEPS = 32
+"""Steps along a curve, in each of which the rate of its distance has one extreme at most."""
+_LAST = 1e-13
+"""Step of a secant after which the next one is beneath the last digit."""
+
+
+def on_carriers(
+    carriers: Sequence[Line | Arc | Circle], table: Table, curves: Ints, tolerance: float
+) -> list[list[float]]:
+    """Returns where each curve crosses, or comes within the tolerance of, what carries another."""
+    is_line = np.array([isinstance(carrier, Line) for carrier in carriers], dtype=np.bool_)
+    origin, way, radius = np.split(np.array([_row_carriers(carrier) for carrier in carriers]), [2, 4], axis=1)
+
+    def height(k: Ints, t: Floats) -> Floats:
+        e = table.at(curves[k], t)[0] - origin[k]
+        return np.where(is_line[k], cross(way[k], e), long(e) - radius[k, 0])
+
+    def rise(k: Ints, t: Floats) -> Floats:
+        spots, ways = table.at(curves[k], t, 1)
+        return np.where(is_line[k], cross(way[k], ways), dot(spots - origin[k], ways))
+
+    def bend(k: Ints, t: Floats) -> Floats:
+        spots, ways, turns = table.at(curves[k], t, 2)
+        return np.where(is_line[k], cross(way[k], turns), dot(ways, ways) + dot(spots - origin[k], turns))
+
+    every = np.arange(len(curves))
+    marks = np.repeat(every, _STEPS + 1), np.tile(np.linspace(0, 1, _STEPS + 1), len(curves))
+    k, turns = _zeros(rise, *_merged(*marks, *_zeros(bend, *marks)))
+    inner = (turns > 0) & (turns < 1)
+    row, at = _merged(np.repeat(every, 2), np.tile((0.0, 1.0), len(curves)), k[inner], turns[inner])
+    high = height(row, at)
+    is_near, is_inner = np.abs(high) <= tolerance, (at > 0) & (at < 1)
+    touches = is_near & (is_inner | ((at == 0) & table.is_closed[curves[row]]))
+    k, roots = _zeros(height, row, at, ~(is_near & is_inner))
+    found: list[list[float]] = [[] for _ in carriers]
+    numbers, places = np.concatenate((row[touches], k)), np.concatenate((at[touches], roots))
+    for number, t in zip(numbers.tolist(), places.tolist(), strict=True):
+        found[number].append(t)
+    return found
+
+
+def _row_carriers(carrier: Line | Arc | Circle) -> tuple[float, ...]:
+    """Returns a point, the direction of a line, and a radius."""
+    if isinstance(carrier, Line):
+        (x, y), (u, v) = carrier.start, carrier.end
+        size = math.dist(carrier.start, carrier.end)
+        return x, y, (u - x) / size, (v - y) / size, 0.0
+    return *carrier.center, 0.0, 0.0, carrier.radius
+
+
+def _merged(row: Ints, at: Floats, *more: NDArray[Any]) -> tuple[Ints, Floats]:
+    """Returns places on curves, with the numbers of these, in order with some more."""
+    row, at = np.concatenate((row, more[0])), np.concatenate((at, more[1]))
+    order = np.lexsort((at, row))
+    return row[order], at[order]
+
+
+def _zeros(of: Function, row: Ints, at: Floats, asked: Mask | None = None) -> tuple[Ints, Floats]:
+    """Returns where functions change their sign between neighbours in order, both of them asked for."""
+    is_above = of(row, at) > 0
+    changes = (row[1:] == row[:-1]) & (is_above[1:] != is_above[:-1])
+    if asked is not None:
+        changes &= asked[1:] & asked[:-1]
+    before = np.flatnonzero(changes)
+    return row[before], _roots(of, row[before], at[before], at[before + 1])
+
+
+def _roots(of: Function, k: Ints, low: Floats, high: Floats) -> Floats:
+    """Returns where functions that change their sign between two places are zero, by secants through them;
+    the value at a place that stays twice counts half (the Illinois method).
+    """
+    below, above = of(k, low), of(k, high)
+    t = np.where(below == 0, low, high)
+    left = np.flatnonzero((below != 0) & (above != 0))
+    low, high, before = low.copy(), high.copy(), low.copy()
+    stays_low = np.zeros(len(k), dtype=np.bool_)
+    for _ in range(100):
+        if not len(left):
+            break
+        a, b = above[left], below[left]
+        t[left] = high[left] - a * (high[left] - low[left]) / (a - b)
+        value = of(k[left], t[left])
+        is_upper = (value > 0) == (a > 0)
+        up, down = left[is_upper], left[~is_upper]
+        below[up[stays_low[up]]] /= 2
+        above[down[~stays_low[down]]] /= 2
+        high[up], above[up], stays_low[up] = t[up], value[is_upper], True
+        low[down], below[down], stays_low[down] = t[down], value[~is_upper], False
+        goes_on = (value != 0) & (np.abs(t[left] - before[left]) > _LAST)
+        before[left] = t[left]
+        left = left[goes_on]
+    return t
+
+
+# --- The points where two curves meet: closed forms for lines and circles, `carriers` for one of those and
+# another curve, Newton from a sampling for two others. Of the last two kinds many pairs are worked out at
+# once.
+#
+# A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here;
+# what they share begins and ends at end points, which `network` places on both.
+
+_STEPS_INTERSECT = 64
 """Steps along a curve between its samples."""
-_LAST = 1e-11
+_LAST_INTERSECT = 1e-11
 """Step of Newton's method after which the next one is beneath the last digit."""
 _AT_ONCE, _SAMPLED_AT_ONCE = 1024, 64
 """Pairs that are compared in one step, which bounds the memory."""
 Crossing = tuple[float, float, Vec]
-Mask = NDArray[np.bool_]
 Step = Callable[[Floats, Floats], tuple[Floats, Floats]]
 
 
@@ -143,10 +324,8 @@ def circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Ve
 
 
 def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int, float, float]]:
-    """Yields crossings and touches, each with the number of its pair, from those of the two polylines and
-    from where these come nearest.
-    """
-    marks = np.linspace(0, 1, _STEPS + 1)
+    """Yields crossings and touches with the numbers of their pairs, from polylines and nearest samples."""
+    marks = np.linspace(0, 1, _STEPS_INTERSECT + 1)
     p, q = (
         table.at(np.repeat(own, len(marks)), np.tile(marks, len(own)))[0].reshape(len(own), -1, 2)
         for own in pairs.T
@@ -223,27 +402,23 @@ def _crossed(p: Floats, q: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
         # The curves bulge beyond their chords: look a little past each segment.
         hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2) & asked[:, None, None]
     k, i, j = np.nonzero(hit)
-    return k, (i + t[hit]) / _STEPS, (j + s[hit]) / _STEPS
+    return k, (i + t[hit]) / _STEPS_INTERSECT, (j + s[hit]) / _STEPS_INTERSECT
 
 
 def _nearest_samples(away: Floats, step: Floats, asked: Mask) -> tuple[Ints, Floats, Floats]:
-    """Returns where samples are nearer than those beside them, and no further apart than neighbours are,
-    in the form of `_crossed`.
-    """
+    """Returns where samples are nearest, and no further apart than neighbours, as `_crossed` does."""
     padded = np.pad(away, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
     n = away.shape[1]
     beside = [padded[:, i : i + n, j : j + n] for i in range(3) for j in range(3)]
     near = (away <= step[:, None, None]) & asked[:, None, None]
     k, i, j = np.nonzero(near & (away <= np.min(beside, axis=0)))
-    return k, i / _STEPS, j / _STEPS
+    return k, i / _STEPS_INTERSECT, j / _STEPS_INTERSECT
 
 
 def _improved(
     table: Table, pairs: Ints, t: Floats, s: Floats, tolerance: float, step: Step
 ) -> tuple[Floats, Floats, Mask]:
-    """Returns parameters on pairs of curves after steps of Newton's method, and which are crossings, or
-    touches, within the tolerance.
-    """
+    """Returns parameters after steps of Newton's method, and which are crossings, or touches."""
     a, b = pairs.T
     t, s = table.within(a, t), table.within(b, s)
     left, order = np.arange(len(t)), 2 if step is _to_touch else 1
@@ -254,7 +429,7 @@ def _improved(
         moves = np.isfinite(dt)
         left, dt, ds = left[moves], dt[moves], ds[moves]
         t[left], s[left] = table.within(a[left], t[left] + dt), table.within(b[left], s[left] + ds)
-        left = left[np.abs(dt) + np.abs(ds) >= _LAST]
+        left = left[np.abs(dt) + np.abs(ds) >= _LAST_INTERSECT]
     ours, theirs = table.at(a, t, 1), table.at(b, s, 1)
     meets = long(ours[0] - theirs[0]) <= tolerance
     if step is _to_touch:

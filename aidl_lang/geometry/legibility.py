@@ -1,23 +1,43 @@
-"""Finds strokes that cannot be seen on a ground of their colour, and lettering that parts cover."""
+"""What cannot be seen of a drawing, what reaches out of its part, and outlines that cross themselves."""
 
 from __future__ import annotations
 
+import math
+import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from aidl_lang.common.colors import look_alike
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.prose import named
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.common.records import record
-from aidl_lang.geometry.clipping import stretches_beside
-from aidl_lang.geometry.curves import Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, are_near, part, point
-from aidl_lang.geometry.measures import length
-from aidl_lang.geometry.network import GRID, Network, union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.common.source import Span
+from aidl_lang.geometry.boolean import Solid, stretches_beside
+from aidl_lang.geometry.curves import (
+    NO_LENGTH,
+    Bounds,
+    Line,
+    Piece,
+    Vec,
+    are_near,
+    derivative,
+    part,
+    point,
+    points,
+    union_bounds,
+)
+from aidl_lang.geometry.faces import Shape, first_node, last_node
+from aidl_lang.geometry.intersect import meet
+from aidl_lang.geometry.nearness import from_sides, inside
+from aidl_lang.geometry.network import GRID, Network, Use
+from aidl_lang.geometry.notes import at, local
+from aidl_lang.geometry.region import Region, length, loop_points
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -29,24 +49,15 @@ from aidl_lang.geometry.sections import (
 )
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
+if TYPE_CHECKING:
+    from aidl_lang.geometry.drawing import Body, Stroke
+
+
+# --- Finds strokes that cannot be seen on a ground of their colour, and lettering that parts cover.
+
 COVERED = 0.1
 """Part of the letters that may be covered: they can be read though the hand of a clock lies over them."""
 _WHOLE = 0.995
-
-
-@record()
-class StackedBody:
-    """A body with its path, its place in the order of drawing, and its colour, if it has one. One that
-    `is_clear` hides nothing.
-    """
-
-    path: str
-    place: float
-    color: str | None
-    section: Section
-    region: Region
-    box: Bounds
-    is_clear: bool = False
 
 
 @record()
@@ -56,14 +67,12 @@ class Ground:
     """
 
     network: Network
-    bodies: Sequence[StackedBody]
+    bodies: Sequence[Solid]
     curves: Sequence[Piece]
     boxes: Sequence[Bounds]
 
     def hides(self, color: str | None, curves: Sequence[int], place: float, *, wholly: bool) -> bool:
-        """Tells whether the body below some curves drawn at a place has nearly their colour: all along them,
-        or else somewhere.
-        """
+        """Tells whether the body below some curves has nearly their colour: all along them, or somewhere."""
         count = bisect_left(self._places, place)
         below = self._around(curves, range(count))
         seen = ((k, self.bodies[k].color) for k in below)
@@ -86,9 +95,7 @@ class Ground:
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
 
     def covered_part(self, curves: Sequence[int], place: float) -> tuple[float, list[str]]:
-        """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
-        bodies.
-        """
+        """Returns the share of the length of some curves that later bodies cover, and these bodies."""
         parts = [(length(piece), over) for piece, over in self._parts(curves, self._above(curves, place))]
         by = sorted({k for long, over in parts for k in over if long > 0})
         covered = sum(long for long, over in parts if over)
@@ -100,14 +107,11 @@ class Ground:
         return self._around(curves, [k for k in later if not self.bodies[k].is_clear])
 
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
-        """Returns those of some bodies whose boxes meet that of some curves."""
         box = union_bounds([self.boxes[curve] for curve in curves])
         return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
 
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
-        """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
-        faces is an inlay and shows them.
-        """
+        """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
         above = [b for b in self.bodies if b.place > place and not b.is_clear]
         above = [b for b in above if boxes_meet(b.section, faces)]
         above = [b for b in above if not covers(faces, b.section)]
@@ -120,9 +124,7 @@ class Ground:
         return [body.place for body in self.bodies]
 
     def _parts(self, curves: Sequence[int], bodies: Sequence[int]) -> list[tuple[Piece, list[int]]]:
-        """Returns the parts of some curves between the outlines of some bodies, each with those of these that
-        it lies in; none without bodies.
-        """
+        """Returns the parts of curves between outlines of some bodies, each with the bodies it lies in."""
         if not bodies:
             return []
         own, boxes = [self.curves[k] for k in curves], [self.boxes[k] for k in curves]
@@ -139,7 +141,6 @@ class Ground:
 
     @cached_property
     def _at_middles(self) -> list[list[int]]:
-        """The bodies that the middle of each curve lies in."""
         return self._holders([point(curve, 0.5) for curve in self.curves], range(len(self.bodies)))
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
@@ -207,3 +208,262 @@ def unseen_note(drawing: SolvedStructure, names: Sequence[str], color: str) -> D
             "with no `@color` of its own it gets one that shows",
         ),
     )
+
+
+# --- Drawings that reach out of the part that they are engraved on.
+
+UNSEEN = 0.05
+"""mm that a drawing may reach out without a word."""
+_TIMES = np.linspace(0, 1, 5)
+_MOST = 400
+"""Spots outside of a part of which the distance to it is measured."""
+
+
+class Holders:
+    """Finds the body that a stroke is drawn in."""
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        self._bodies = {body.path: body for body in bodies}
+        self._around = {owner(self._bodies, body.path.rpartition(".")[0]) for body in bodies}
+
+    def of(self, stroke: Stroke) -> Body | None:
+        """Returns that body; None if there is none, or others are in it, on which the stroke may be."""
+        path = owner(self._bodies, stroke.path)
+        return None if path is None or path in self._around else self._bodies[path]
+
+
+def owner(bodies: Mapping[str, Body], path: str) -> str | None:
+    """Returns the nearest body at a path or above it."""
+    while path and path not in bodies:
+        path = path.rpartition(".")[0]
+    return path or None
+
+
+def overhang(pieces: Sequence[Piece], region: Region) -> float:
+    """Returns how far curves reach out of the outer outlines of a region, mm, by samples; 0 for none."""
+    size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max(initial=0.0))
+    polygons = [loop_points(face.outer, 1e-5 * size) for face in region.faces]
+    spots = np.concatenate([points(piece, _TIMES) for piece in pieces])
+    spots = spots[~inside(polygons, spots)]
+    spots = spots[:: len(spots) // _MOST + 1]
+    if not len(spots):
+        return 0.0
+    start = np.concatenate(polygons)
+    way = np.concatenate([np.roll(p, -1, axis=0) - p for p in polygons])
+    furthest = max(float(from_sides(spot - start, way).min()) for spot in spots)
+    return furthest if furthest > max(UNSEEN, 1e-3 * size) else 0.0
+
+
+def overhanging_notes(
+    root: SolvedStructure, bodies: Sequence[Body], strokes: Sequence[Stroke]
+) -> Iterator[Diagnostic]:
+    """Yields a warning for each geometry that is drawn in a part of some stock, and reaches out of it."""
+    if not any(body.style.thickness or body.style.material for body in bodies):
+        return
+    holders = Holders(bodies)
+    spans = {g.path: g.span for s in root.walk() for drawn in s.drawn for g in drawn.walk()}
+    found: dict[str, tuple[Body, float]] = {}
+    for stroke in strokes:
+        body = holders.of(stroke) if stroke.role == "drawing" else None
+        if body is None or not (body.style.thickness or body.style.material):
+            continue
+        far = max(overhang(stroke.pieces, body.region), found.get(stroke.geometry, (body, 0.0))[1])
+        if far:
+            found[stroke.geometry] = body, far
+    for path, (body, far) in found.items():
+        yield Diagnostic(
+            "W0763",
+            f"`{path}` reaches {rough(round(far, 2))} mm out of `{body.path}`, on which it is engraved",
+            spans.get(path),
+            hints=(
+                "make it smaller or move it inwards: a cutter burns what lies beside the part, too",
+                f"or have it end at the edge: `@clip({body.path.rpartition('.')[2]})` before the drawing",
+            ),
+        )
+
+
+# --- Outlines that cross themselves: their parts alternate, so what should be material may be open.
+#
+# The crossings are those of the arrangement: nodes that a way goes through twice, changing sides.
+
+_WAYS = frozenset({"path", "polygon", "polyline", "spline"})
+"""Types of outlines that are drawn point by point."""
+_FLAT = 1e-6
+"""Angle in radians below which two ways run alike: they touch, or follow each other."""
+_MOST_CORNERS = 24
+"""Corners up to which an order without crossings is looked for."""
+
+
+_NUMBER = r"[-+]?[\d.]+(?:mm|cm|m|in|ft)?"
+_POINT = rf"\(\s*{_NUMBER}\s*,\s*{_NUMBER}\s*\)"
+_POLYGON = re.compile(rf"polygon\(\s*(?:points\s*:\s*)?\[?((?:\s*{_POINT}\s*,?)+)")
+_TURNED = re.compile(r"\b(wave_to|zigzag_to)\(")
+
+
+@record()
+class Crossing:
+    """A place at which an outline crosses itself, and the parts of it that do."""
+
+    place: Vec
+    parts: tuple[SolvedGeometry, SolvedGeometry]
+
+
+@record()
+class _Pass:
+    """Where a way goes through a node: the uses of edges by which it leaves, backwards and onwards."""
+
+    node: int
+    back: Use
+    on: Use
+    part: SolvedGeometry
+
+
+def crossing_notes(
+    network: Network, root: SolvedStructure, shapes: Mapping[str, Sequence[Shape]]
+) -> list[Diagnostic]:
+    """Returns a warning for each statement of closed outlines that cross themselves, in what is filled."""
+    told: dict[object, Diagnostic] = {}
+    paths: set[str] = set()
+    for structure in root.walk():
+        for shape in shapes[structure.path] if structure.kind != "drawing" else ():
+            numbers = {id(leaf): number for leaf, number in shape.leaves}
+            for way in _ways(shape.geometry):
+                found = [c for ring in _rings(network, way, numbers) for c in _crossings(network, ring)]
+                if found and way.source not in paths:
+                    told.setdefault(way.span or way.path, _note(structure, way, found))
+                if found:
+                    paths.add(way.path)
+    return list(told.values())
+
+
+def _ways(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    """Yields the outlines in a geometry that are drawn point by point."""
+    if geometry.type in _WAYS:
+        yield geometry
+        return
+    for inner in geometry.parts:
+        yield from _ways(inner)
+
+
+def _rings(network: Network, way: SolvedGeometry, numbers: Mapping[int, int]) -> Iterator[list[_Pass]]:
+    """Yields how each closed round of a way goes through its nodes."""
+    leaves = [leaf for leaf in way.walk() if id(leaf) in numbers and network.uses[numbers[id(leaf)]]]
+    ring: list[tuple[Use, SolvedGeometry]] = []
+    for place, leaf in enumerate(leaves):
+        uses = network.uses[numbers[id(leaf)]]
+        if ring and last_node(network, ring[-1][0]) not in _ends(network, uses):
+            yield from _closed(network, ring)
+            ring = []
+        if ring:
+            is_turned = first_node(network, uses[0]) != last_node(network, ring[-1][0])
+        else:  # a curve may be drawn against the way: the next one begins where it ends
+            following = network.uses[numbers[id(leaves[place + 1])]] if place + 1 < len(leaves) else uses
+            is_turned = last_node(network, uses[-1]) not in _ends(network, following)
+        ring += [(use, leaf) for use in (map(_back, reversed(uses)) if is_turned else uses)]
+    yield from _closed(network, ring)
+
+
+def _closed(network: Network, ring: list[tuple[Use, SolvedGeometry]]) -> Iterator[list[_Pass]]:
+    """Yields the passes of a round if it ends where it begins, and comes to a node twice."""
+    nodes = {first_node(network, use) for use, _ in ring}
+    if len(nodes) < len(ring) and first_node(network, ring[0][0]) == last_node(network, ring[-1][0]):
+        rolled = [*ring[1:], ring[0]]
+        yield [
+            _Pass(first_node(network, on), _back(use), on, leaf)
+            for (use, leaf), (on, _) in zip(ring, rolled, strict=True)
+        ]
+
+
+def _ends(network: Network, uses: Sequence[Use]) -> tuple[int, int]:
+    return first_node(network, uses[0]), last_node(network, uses[-1])
+
+
+def _back(use: Use) -> Use:
+    return use[0], not use[1]
+
+
+def _crossings(network: Network, ring: list[_Pass]) -> Iterator[Crossing]:
+    """Yields where a closed round crosses itself, in the order of its way."""
+    meeting: dict[int, list[_Pass]] = defaultdict(list)
+    for one in ring:
+        meeting[one.node].append(one)
+    for one in ring:
+        others = meeting[one.node]
+        for other in others[others.index(one) + 1 :]:
+            if _do_cross(network, one, other):
+                # without what rounding left of a 0
+                x, y = (0.0 if abs(c) < network.tolerance else c for c in network.nodes[one.node])
+                yield Crossing((x, y), (one.part, other.part))
+
+
+def _do_cross(network: Network, one: _Pass, other: _Pass) -> bool:
+    """Tells whether two ways through a node change sides; what touches, or runs along, does not."""
+    ways = (derivative(network.piece(use), 0) for use in (one.back, one.on, other.back, other.on))
+    base, *rest = (math.atan2(dy, dx) for dx, dy in ways)
+    on, *others = ((angle - base) % math.tau for angle in rest)
+    if any(min(abs(a - b), math.tau - abs(a - b)) < _FLAT for a in others for b in (0.0, on)):
+        return False
+    return (others[0] < on) != (others[1] < on)
+
+
+# --- What is said ---
+
+
+def _note(structure: SolvedStructure, way: SolvedGeometry, found: Sequence[Crossing]) -> Diagnostic:
+    first, *more = found
+    one, other = (local(structure, part) for part in first.parts)
+    times = f" {counted(len(found), 'time')}, first" if more else ""
+    crosses = f"`{one}` crosses `{other}`" if one != other else f"`{one}` crosses itself"
+    turned = _TURNED.search(way.span.text) if way.span and way.type == "path" else None
+    amount = "amplitude" if turned and turned[1] == "wave_to" else "height"
+    usual = (
+        f"`{turned[1]}` goes first to the left of its way: turn the sign of `{amount}`, or make it smaller"
+        if turned
+        else "look at the order of the points: each must follow the one before it around the outline"
+    )
+    return Diagnostic(
+        "W0728",
+        f"`{local(structure, way)}` in {structure.kind} `{structure.path}` crosses itself{times} at "
+        f"{at(first.place)}: {crosses}",
+        way.span or structure.span,
+        "its parts alternate between filled and open",
+        hints=(usual, f'if that is meant, say so: `@allow("W0728")` before `{way.name}`'),
+        fix=_order_fix(way) if way.type == "polygon" else None,
+        points=tuple(crossing.place for crossing in found[:1]),
+    )
+
+
+def _order_fix(way: SolvedGeometry) -> Fix | None:
+    """Returns the fix that swaps neighbouring corners of a literal polygon, if just one has no crossings."""
+    written = _POLYGON.search(way.span.text) if way.span else None
+    sides = list(way.curves())
+    corners = [side.start for side in sides if isinstance(side, Line)]
+    literals = list(re.finditer(_POINT, written[1])) if written else []
+    if not (written and way.span and len(literals) == len(corners) == len(sides) <= _MOST_CORNERS):
+        return None
+    found: dict[frozenset[frozenset[Vec]], tuple[int, int]] = {}
+    for k in range(len(corners)):
+        swap = (k, (k + 1) % len(corners))
+        others = _sides(corners, swap)
+        if _is_simple(others):
+            found.setdefault(frozenset(frozenset((side.start, side.end)) for side in others), swap)
+    if len(found) != 1:
+        return None
+    (swap,) = found.values()
+    at = way.span.start + written.start(1)
+    spans = [Span(way.span.source, at + literals[k].start(), at + literals[k].end()) for k in swap]
+    edits = [Edit(span, literals[k][0]) for span, k in zip(spans, reversed(swap), strict=True)]
+    return Fix(f"swap the corners {literals[swap[0]][0]} and {literals[swap[1]][0]}", tuple(edits))
+
+
+def _sides(corners: Sequence[Vec], swap: tuple[int, int]) -> list[Line]:
+    order = list(corners)
+    order[swap[0]], order[swap[1]] = corners[swap[1]], corners[swap[0]]
+    return [Line(*ends) for ends in zip(order, [*order[1:], order[0]], strict=True)]
+
+
+def _is_simple(sides: Sequence[Line]) -> bool:
+    """Tells whether only neighbours among the sides of a polygon meet."""
+    last = len(sides) - 1
+    apart = (pair for pair in combinations(range(last + 1), 2) if pair[1] - pair[0] not in (1, last))
+    return not any(meet(sides[i], sides[j], NO_LENGTH) for i, j in apart)

@@ -12,14 +12,20 @@ from itertools import pairwise
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import common, without
-from aidl_lang.geometry.curves import Bezier, Line, Piece
-from aidl_lang.geometry.evaluate import all_bounds, ends, reverse
-from aidl_lang.geometry.measures import loop_area, region_bounds
+from aidl_lang.geometry.curves import (
+    Bezier,
+    Line,
+    Piece,
+    all_bounds,
+    ends,
+    larger_side,
+    reverse,
+    union_bounds,
+)
 from aidl_lang.geometry.nearness import near_rows
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import fill
-from aidl_lang.geometry.trace import closed_loop, faces_of, first_point, trace
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Region, loop_area, region_bounds
+from aidl_lang.geometry.sections import closed_loop, faces_of, filled, first_point, trace
 
 
 def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
@@ -27,8 +33,7 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
     """
     boxes = [union_bounds(all_bounds(letter)) for letter in letters]
-    left, bottom, right, top = union_bounds(boxes)
-    tolerance = RELATIVE_TOLERANCE * max(right - left, top - bottom)
+    tolerance = RELATIVE_TOLERANCE * larger_side(union_bounds(boxes))
     if len(near_rows(boxes, tolerance)):
         return None
     faces: list[Face] = []
@@ -49,12 +54,9 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
 def united(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
     """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
     network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
-    numbers = {id(curve): number for number, curve in enumerate(network.curves)}
-    contours = [[numbers[id(piece)] for piece in contour] for contour in _contours(network.curves)]
 
     def traced() -> Region:
-        uses = [[use for number in contour for use in network.uses[number]] for contour in contours]
-        return trace(network, fill([network.polyline(u) for u in uses if u], "NonZero")).region
+        return trace(network, filled(network, _contours(network.curves), 0, "NonZero")).region
 
     return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
 

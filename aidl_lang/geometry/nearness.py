@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.running import checkpoint, give_up
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Floats, Ints, Mask
 
 _AT_ONCE = 1 << 20
 """Number of candidates looked at in one step, which bounds the memory."""
@@ -17,14 +16,9 @@ _AT_ONCE = 1 << 20
 _MOST_PAIRS = 2_000_000
 """Pairs of boxes that meet, beyond which no drawing is worked out in time."""
 
-Ints = NDArray[np.intp]
-Floats = NDArray[np.float64]
-
 
 def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
-    """Yields pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to
-    right.
-    """
+    """Yields pairs i < j whose boxes come closer than the margin, in a sweep from left to right."""
     yield from ((i, j) for i, j in near_rows(boxes, margin).tolist())
 
 
@@ -38,7 +32,7 @@ def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
     sweeps = [_sweep(b, axis, margin) for axis in (0, 1)]
     along, stops = min(sweeps, key=lambda sweep: int((sweep[1] - np.arange(len(b))).sum()))
     found, total = [], 0
-    for one, other in _windows(np.arange(1, len(b) + 1), stops):
+    for one, other in windows(np.arange(1, len(b) + 1), stops):
         first, second = np.minimum(along[one], along[other]), np.maximum(along[one], along[other])
         meets = (b[first, 2:] + margin >= b[second, :2]).all(axis=1) & (b[first, 1] - margin <= b[second, 3])
         found.append((first[meets], second[meets]))
@@ -53,21 +47,19 @@ def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
 
 
 def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
-    """Returns the boxes in the order of their beginnings on an axis; for each place the one up to which they
-    meet.
-    """
+    """Returns boxes in order of their beginnings on an axis, and for each place up to which they meet."""
     along = np.argsort(b[:, axis], kind="stable")
     return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
 
 
-def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
+def windows(low: Ints, high: Ints, at_once: int = _AT_ONCE) -> Iterator[tuple[Ints, Ints]]:
     """Yields every number k with every place in `low[k]:high[k]`, a part of them at a time."""
     sizes = np.maximum(0, high - low)
     ends = np.cumsum(sizes)
     begin = 0
     while begin < len(sizes):
         done = int(ends[begin - 1]) if begin else 0
-        stop = max(begin + 1, int(np.searchsorted(ends, done + _AT_ONCE, side="right")))
+        stop = max(begin + 1, int(np.searchsorted(ends, done + at_once, side="right")))
         size = sizes[begin:stop]
         number = np.repeat(np.arange(begin, stop), size)
         within = np.arange(len(number)) - np.repeat(np.cumsum(size) - size, size)
@@ -76,9 +68,7 @@ def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
 
 
 class Sides:
-    """Straight sides (x0, y0, x1, y1 in a row), found by place: sorted by their left ends, in classes of like
-    width.
-    """
+    """Straight sides (x0, y0, x1, y1 in a row), found by place: by left ends, in classes of width."""
 
     def __init__(self, sides: Floats) -> None:
         self._start, self._way = sides[:, :2], sides[:, 2:] - sides[:, :2]
@@ -95,14 +85,14 @@ class Sides:
         for of_size, left, width in self._classes:
             low = np.searchsorted(left, x - width - reach)
             high = np.searchsorted(left, x + reach, side="right")
-            for place, window in _windows(low, high):
+            for place, window in windows(low, high):
                 yield place, of_size[window]
 
     def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
         """Returns all sides that pass a spot at most at the given distance: spot, side and distance."""
         found = [(np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), np.zeros(0))]
         for spot, side in self.beside(spots[:, 0], reach):
-            away = self._distance(spots[spot], side)
+            away = from_sides(spots[spot] - self._start[side], self._way[side])
             kept = away <= reach
             found.append((spot[kept], side[kept], away[kept]))
         spot, side, away = (np.concatenate([f[k] for f in found]) for k in range(3))
@@ -119,15 +109,16 @@ class Sides:
             reach *= 1000
         return result
 
-    def _distance(self, spots: Floats, side: Ints) -> Floats:
-        gap, way = spots - self._start[side], self._way[side]
-        square = np.maximum((way**2).sum(axis=1), 1e-300)
-        t = np.clip((gap * way).sum(axis=1) / square, 0, 1)
-        away: Floats = np.hypot(*(gap - t[:, None] * way).T)
-        return away
+
+def from_sides(gap: Floats, way: Floats) -> Floats:
+    """Returns the distances of spots from sides, by the ways from the starts to spots and ends of these."""
+    square = np.maximum((way**2).sum(axis=-1), 1e-300)
+    t = np.clip((gap * way).sum(axis=-1) / square, 0, 1)
+    away: Floats = np.hypot(*np.moveaxis(gap - t[..., None] * way, -1, 0))
+    return away
 
 
-def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
+def inside(polygons: Sequence[Floats], spots: Floats) -> Mask:
     """Returns the mask of points inside an odd number of polygons, by the crossings of rays to the right."""
     crossings = np.zeros(len(spots), dtype=np.intp)
     if polygons and len(spots):
@@ -140,5 +131,5 @@ def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
             straddle = (ay > py) != (by > py)
             x = ax + (py - ay) / np.where(straddle, by - ay, 1.0) * (bx - ax)
             crossings += np.bincount(spot[straddle & (x > px)], minlength=len(spots))
-    odd: NDArray[np.bool_] = crossings % 2 == 1
+    odd: Mask = crossings % 2 == 1
     return odd

@@ -1,11 +1,4 @@
-"""All curves of a drawing cut at the points where they meet: the exact arrangement under the booleans.
-
-Ends and crossings closer than the tolerance (1e-6 of the drawing's size) become one node, so gaps that
-rounding left are closed and neighbours share their ends to the last digit. Between nodes run edges; curves
-that lie on each other share them. Each edge also has a polyline on an integer grid, fine enough to have the
-topology of the curve. Booleans work on these polylines, and because their vertices are known here, every edge
-of a result leads back to the curve it came from (`trace`).
-"""
+"""The exact arrangement under the booleans."""
 
 from __future__ import annotations
 
@@ -13,20 +6,153 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint, give_up
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, Bounds, bounds, ends, is_closed, locate, part, point, round_range
-from aidl_lang.geometry.intersect import all_intersections, self_crossing, sorted_cuts
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bezier,
+    Bounds,
+    Circle,
+    Floats,
+    Ints,
+    Line,
+    Mask,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    is_closed,
+    larger_side,
+    locate,
+    part,
+    point,
+    round_range,
+    union_bounds,
+)
+from aidl_lang.geometry.intersect import Table, all_intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_rows
-from aidl_lang.geometry.separation import Hulls
-from aidl_lang.geometry.tables import Table
+
+# --- Proofs, for many pairs of curves at once, that two curves meet at most in an end that they share.
+#
+# Every curve is cut into `PARTS` parts, each within the hull of four points. Two curves are apart where no
+# boxes of their parts meet; beside a shared end they are where a straight line through it has all of one on
+# one side and all of the other on the other. In a drawing this is so of nearly every pair, and no crossing
+# need be sought (`intersect`).
+
+PARTS = 8
+_NO_PLACES = np.zeros((0, 2))
+_ANGLE = 0.2
+"""Radians that must be free beyond a straight angle, for curves to be apart on both sides of an end."""
+_MARGIN = 4
+"""Distance in tolerances that boxes must have: a crossing may be that far from where both curves are."""
+_AT_ONCE = 1 << 14
+"""Pairs that are compared in one step, which bounds the memory."""
+_REACHES = (PARTS, PARTS // 2, 1)
+"""Numbers of parts beside a shared end that a line through it separates."""
+
+
+class Hulls:
+    """The hulls of all parts of some curves, and the boxes of these."""
+
+    def __init__(self, table: Table, tolerance: float) -> None:
+        self._hulls = _hulls(table)
+        self._least = 2 * tolerance
+        margin = _MARGIN * tolerance / 2
+        # One axis after the other: a reduction over an axis of length two is slow.
+        self._low = np.moveaxis(self._hulls.min(axis=2) - margin, 2, 0).copy()
+        self._high = np.moveaxis(self._hulls.max(axis=2) + margin, 2, 0).copy()
+
+    def meeting(self, pairs: Ints, nodes: Ints | None = None, places: Floats = _NO_PLACES) -> Ints:
+        """Returns those of some pairs of curves that may meet in more than an end they share.
+
+        nodes   by curve, which points its two ends are; without it they share none
+        places  where these points are
+        """
+        if nodes is None:
+            nodes = np.arange(2 * len(self._hulls)).reshape(-1, 2)
+        kept = np.zeros(len(pairs), dtype=np.bool_)
+        for begin in range(0, len(pairs), _AT_ONCE):
+            checkpoint()
+            rows = slice(begin, begin + _AT_ONCE)
+            kept[rows] = self._may_meet(pairs[rows, 0], pairs[rows, 1], nodes, places)
+        found: Ints = pairs[kept]
+        return found
+
+    def may_hold(self, curves: Ints, spots: Floats) -> Mask:
+        """Tells of some curves whether each may pass a spot."""
+        inside = np.ones((len(curves), PARTS), dtype=np.bool_)
+        for low, high, place in zip(self._low, self._high, spots.T, strict=True):
+            inside &= (low[curves] <= place[:, None]) & (place[:, None] <= high[curves])
+        return np.asarray(inside.any(axis=1), dtype=np.bool_)
+
+    def _may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
+        meets = np.ones((len(one), PARTS, PARTS), dtype=np.bool_)
+        for low, high in zip(self._low, self._high, strict=True):
+            meets &= low[one][:, :, None] <= high[other][:, None]
+            meets &= low[other][:, None] <= high[one][:, :, None]
+        for end, across in product((0, 1), (0, 1)):
+            shared = nodes[one, end]
+            rows = np.flatnonzero(shared == nodes[other, across])
+            for reach in _REACHES:
+                rows = rows[meets[rows].any(axis=(1, 2))] if len(rows) else rows
+                if not len(rows):
+                    break
+                ours, theirs = _beside(end, reach), _beside(across, reach)
+                a, b = self._hulls[one[rows], ours], self._hulls[other[rows], theirs]
+                apart = rows[self._on_two_sides(a, b, places[shared[rows]])]
+                meets[apart, ours, theirs] = False
+        return np.asarray(meets.any(axis=(1, 2)), dtype=np.bool_)
+
+    def _on_two_sides(self, ours: Floats, theirs: Floats, spots: Floats) -> Mask:
+        """Tells whether a straight line through a spot tells some parts from others. Points that are as good
+        as the spot itself are on either side.
+        """
+        at = spots[:, None, None]
+        ways = np.concatenate((at - ours, theirs - at), axis=1)
+        ways = ways.reshape(len(ways), ways.shape[1] * 4, 2)
+        angles = np.arctan2(ways[..., 1], ways[..., 0])
+        counts = np.hypot(ways[..., 0], ways[..., 1]) > self._least
+        some = np.take_along_axis(angles, counts.argmax(axis=1)[:, None], axis=1)
+        angles = np.sort(np.where(counts, angles, some), axis=1)
+        free = np.diff(angles, axis=1, append=angles[:, :1] + 2 * math.pi).max(axis=1)
+        apart: Mask = (free > math.pi + _ANGLE) & counts.any(axis=1)
+        return apart
+
+
+def _beside(end: int, reach: int) -> slice:
+    """Returns the parts of a curve that lie beside its start (0) or its end (1)."""
+    return slice(PARTS - reach, PARTS) if end else slice(0, reach)
+
+
+def _hulls(table: Table) -> Floats:
+    """Returns the four points around each part of each curve: its ends, and on the tangents in them the inner
+    control points of a cubic, or twice the meeting of the tangents of a round curve.
+    """
+    count, marks = len(table.curves), np.arange(PARTS + 1) / PARTS
+    found = table.at(np.repeat(np.arange(count), len(marks)), np.tile(marks, count), 1)
+    spots, ways = found.reshape(2, count, len(marks), 2)
+    if count:  # what was stored is where it ends
+        spots[:, 0], spots[:, -1] = np.array([ends(c) for c in table.curves]).transpose(1, 0, 2)
+    sweep = np.where(table.is_round, table.rows[:, 7], 1.0)
+    reach = np.where(table.is_round, np.tan(sweep / (2 * PARTS)) / sweep, 1 / (3 * PARTS))
+    off = reach[:, None, None] * ways
+    starts, stops = spots[:, :-1], spots[:, 1:]
+    return np.stack((starts, starts + off[:, :-1], stops - off[:, 1:], stops), axis=2)
+
+
+# --- All curves of a drawing cut at the points where they meet: the exact arrangement under the booleans.
+#
+# Ends and crossings closer than the tolerance (1e-6 of the drawing's size) become one node, so gaps that
+# rounding left are closed and neighbours share their ends to the last digit. Between nodes run edges; curves
+# that lie on each other share them. Each edge also has a polyline on an integer grid, fine enough to have
+# the topology of the curve. Booleans work on these polylines, and because their vertices are known here,
+# every edge of a result leads back to the curve it came from (`trace`).
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
@@ -41,7 +167,6 @@ GRID = 1e-8
 NODE, UNKNOWN = -1, -2
 
 T = TypeVar("T")
-Ints = NDArray[np.intp]
 Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
@@ -92,9 +217,7 @@ class Weld:
         self._cells: dict[tuple[int, int], list[int]] = {}
 
     def number(self, p: Vec) -> int:
-        """Returns the number of p, a new one if no point is near. Looks into the four cells the tolerance can
-        reach.
-        """
+        """Returns the number of p, a new one if none is near in the four cells the tolerance can reach."""
         step = 2 * self.tolerance
         column, row = math.floor(p[0] / step), math.floor(p[1] / step)
         beside = column + (1 if p[0] - column * step > self.tolerance else -1)
@@ -123,7 +246,7 @@ class Network:
         self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
         self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
-        self.size = max(right - left, top - bottom) or 1.0
+        self.size = larger_side(self.box) or 1.0
         self.tolerance = RELATIVE_TOLERANCE * self.size
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
@@ -139,7 +262,7 @@ class Network:
         self.uses: list[list[Use]] = self._arrange()
         self._draw_polylines()
 
-    def to_grid(self, xy: NDArray[np.float64]) -> Ints:
+    def to_grid(self, xy: Floats) -> Ints:
         grid: Ints = np.rint((xy - np.array(self.middle)) * (self.scale / GRID)).astype(np.int64)
         return grid
 
@@ -178,7 +301,7 @@ class Network:
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
 
     def _ends_on_others(
-        self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: NDArray[np.float64]
+        self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: Floats
     ) -> Iterator[tuple[int, int]]:
         """Yields the curves that may pass an end of one they are paired with, and the node there."""
         for one, other in (pairs.T, pairs.T[::-1]):
@@ -195,8 +318,7 @@ class Network:
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
-            left, bottom, right, top = self.boxes[number]
-            is_large = max(right - left, top - bottom) > 4 * self.tolerance
+            is_large = larger_side(self.boxes[number]) > 4 * self.tolerance
             whole = is_closed(curve) or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
@@ -225,9 +347,7 @@ class Network:
     # -- polylines and the way back ------------------------------------------------------------------------
 
     def _draw_polylines(self) -> None:
-        """Finds the points within each edge, then makes a sorted table of all grid points with the edge that
-        they lie inside of (-1 for nodes).
-        """
+        """Finds the points in each edge, and sorts all grid points with their edge (-1 for nodes)."""
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
@@ -264,7 +384,7 @@ class Network:
         self.blurred = set()
         self._draw_polylines()
 
-    def polyline(self, uses: Sequence[Use]) -> NDArray[np.float64]:
+    def polyline(self, uses: Sequence[Use]) -> Floats:
         """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
         rows: list[Ints] = []
         for number, forward in uses:
@@ -286,17 +406,17 @@ class Network:
         t0, t1, start, end = ways[0] if use[1] else ways[1]
         return part(self.curves[edge.curve], t0, t1, self.nodes[start], self.nodes[end])
 
-    def midpoints(self, numbers: Sequence[int]) -> NDArray[np.float64]:
+    def midpoints(self, numbers: Sequence[int]) -> Floats:
         """Returns a point about halfway along each of some edges, in grid units."""
         edges = np.array(numbers, dtype=np.intp)
         count = self._sizes[edges]
         nodes = [(self.edges[k].start, self.edges[k].end) for k in numbers]
         straight = self.node_grid[np.array(nodes, dtype=np.intp).reshape(-1, 2)].sum(axis=1) * (GRID / 2)
         inner = self._grid[np.where(count, self._offset[edges] + count // 2, 0)] * GRID
-        halfway: NDArray[np.float64] = np.where(count[:, None] > 0, inner, straight)
+        halfway: Floats = np.where(count[:, None] > 0, inner, straight)
         return halfway
 
-    def look_up(self, polygon: NDArray[np.float64]) -> tuple[Ints, Ints]:
+    def look_up(self, polygon: Floats) -> tuple[Ints, Ints]:
         """Returns for each vertex of a result the edge it lies inside of, and its place there.
 
         For a node the edge is NODE and the place its number; for a vertex of no edge it is UNKNOWN.
@@ -307,17 +427,17 @@ class Network:
         place = self._number[at] - np.where(owner >= 0, self._offset[np.maximum(owner, 0)], 0)
         return owner, place
 
-    def position(self, vertex: NDArray[np.float64]) -> Vec:
+    def position(self, vertex: Floats) -> Vec:
         """Returns a vertex of a result in millimetres."""
         x, y = vertex / self.scale + np.array(self.middle)
         return float(x), float(y)
 
-    def nearest_edges(self, spots: NDArray[np.float64]) -> Ints:
+    def nearest_edges(self, spots: Floats) -> Ints:
         """Returns for each spot on a result the edge whose polyline passes nearest."""
         numbers, sides = self._all_sides()
         return numbers[sides.nearest(spots, 4 * GRID)]
 
-    def blur(self, vertices: NDArray[np.float64]) -> None:
+    def blur(self, vertices: Floats) -> None:
         """Notes the curves whose chords pass a vertex that none of them owns."""
         numbers, sides = self._all_sides()
         _, near, _ = sides.near(vertices, 4 * GRID)
@@ -374,10 +494,3 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
     sweep = abs(round_range(curve)[1]) * share
     step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(radius, chord))))
     return max(2, min(2000, math.ceil(sweep / step)))
-
-
-def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
-    if not boxes:
-        return 0.0, 0.0, 0.0, 0.0
-    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
-    return min(lefts), min(bottoms), max(rights), max(tops)

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache
+from itertools import combinations, islice
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.prose import named, rough, ticked
+from aidl_lang.common.prose import counted, named, rough, ticked
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, IdleHole, InnerLoop, LooseCurves, OwnFinding
-from aidl_lang.geometry.contacts import Contacts
-from aidl_lang.geometry.curves import Bezier, Piece, Vec
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
+from aidl_lang.geometry.bodies import (
+    CoveredHoles,
+    CrossedOutline,
+    FilledHole,
+    Finding,
+    IdleHole,
+    InnerLoop,
+    LooseCurves,
+    OwnFinding,
+)
+from aidl_lang.geometry.boolean import Contacts
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
+from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
@@ -80,9 +91,7 @@ def _words(text: str) -> Counter[str]:
 
 
 def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) -> Fix | None:
-    """Returns the fix that wraps the definition into a hole; None if something else in the program refers to
-    it.
-    """
+    """Returns the fix that makes the definition a hole; None if anything else refers to it."""
     geometry = geometries[0]
     span = geometry.span
     if span is None or not re.fullmatch(rf"{re.escape(geometry.name)}\s*=\s*\w+\(.*\)", span.text, re.DOTALL):
@@ -144,9 +153,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
 
 
 def _lost(finding: LooseCurves, message: str, network: Network) -> Diagnostic:
-    """Returns the diagnostic on curves too small for the drawing to tell apart: their ends are as good as one
-    point.
-    """
+    """Returns the diagnostic on curves too small for the drawing: their ends are as good as one point."""
     return Diagnostic(
         "W0702",
         f"{message}: too small beside the drawing, which measures {rough(network.size)} mm",
@@ -175,14 +182,13 @@ def _partly_closed(finding: LooseCurves) -> SolvedGeometry | None:
 
 
 def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
-    is_seen = geometry.curve is not None and not geometry.construction and not _is_a_point(geometry.curve)
+    is_seen = (
+        geometry.curve is not None
+        and not geometry.construction
+        and not larger_side(bounds(geometry.curve)) < NO_LENGTH
+    )
     own = [geometry.path] if is_seen else []
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
-
-
-def _is_a_point(curve: Piece) -> bool:
-    left, bottom, right, top = bounds(curve)
-    return max(right - left, top - bottom) < NO_LENGTH
 
 
 End = tuple[SolvedGeometry, Vec, str]
@@ -237,7 +243,6 @@ def gap_note(gap: Gap) -> Diagnostic:
 
 
 def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
-    """Returns the constraint before the closing brace of the structure."""
     span = structure.span
     if span is None or not span.text.endswith("}"):
         return None
@@ -419,9 +424,7 @@ def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic
 
 
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
-    """Returns the diagnostic on a curve without extent or finite coordinates; `whole` is the geometry not
-    drawn.
-    """
+    """Returns the diagnostic on a curve without extent or place; `whole` is the geometry not drawn."""
     name, curve = local(structure, whole), leaf.curve
     if curve is not None and not is_finite(curve):
         what = "has no place"
@@ -442,3 +445,89 @@ def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: Solve
 
 _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
 """Measures by which a geometry may be held open."""
+
+
+# --- Diagnostics on imported outlines: open ones in solids and holes, and such as cross themselves.
+
+_AGAIN = "mend it in the program that drew it"
+_MOST_ENDS = 100
+"""Open ends of one outline among which the two nearest are sought."""
+
+
+def finding_notes(finding: Finding, network: Network) -> Iterator[Diagnostic]:
+    """Yields the warnings about a finding, what is imported apart."""
+    if isinstance(finding, CrossedOutline):
+        yield _crossed(finding)
+        return
+    if isinstance(finding, LooseCurves) and finding.structure.kind != "assembly":
+        imported = {g.path: g for top in finding.structure.geometry for g in top.walk() if g.type == "traced"}
+        own = [curve for curve in finding.curves if curve[0].piece_of in imported]
+        if own:
+            yield _open(finding, own, imported[own[0][0].piece_of or ""], network)
+            finding = replace(finding, curves=tuple(c for c in finding.curves if c not in own))
+            if not finding.curves:
+                return
+    if (note := finding_note(finding, network)) is not None:
+        yield note
+
+
+def _label(path: str) -> str:
+    """Returns what a shape of a file is called there, by its path."""
+    return path.rpartition(".")[2].rpartition("[")[0]
+
+
+def _open(
+    finding: LooseCurves,
+    curves: Sequence[tuple[SolvedGeometry, int]],
+    drawing: SolvedGeometry,
+    network: Network,
+) -> Diagnostic:
+    s = finding.structure
+    meeting = network.meeting(finding.numbers)
+    outlines: dict[str, list[Vec]] = defaultdict(list)
+    for leaf, number in curves:
+        loose = [p for p in ends(network.curves[number]) if meeting[network.node(p)] <= 1]
+        outlines[leaf.path.rpartition(".")[0]] += loose
+    name, loose = min(outlines.items(), key=lambda item: _apart(_nearest(item[1])))
+    gap = _nearest(loose)
+    place = ""
+    if gap is not None:
+        away = f"{rough(_apart(gap))} mm from there at {at(gap[1])}"
+        place = f": `{_label(name)}` ends at {at(gap[0])}, and {away}"
+    what = counted(len(outlines), "outline")
+    called = drawing.path.removeprefix(f"{s.path}.").removesuffix(".art")
+    enclose = "encloses" if len(outlines) == 1 else "enclose"
+    names = named(_label(path) for path in outlines)
+    return Diagnostic(
+        "W0751",
+        f"{what} of `{called}` {enclose} nothing in {s.kind} `{s.path}`{place}",
+        drawing.span or s.span,
+        f"{names} {'is' if len(outlines) == 1 else 'are'} open",
+        hints=(f"{_AGAIN}, so that its ends meet", "in a `drawing` open lines are engraved as they are"),
+        points=gap or (),
+    )
+
+
+def _nearest(found: Sequence[Vec]) -> tuple[Vec, Vec] | None:
+    pairs = combinations(islice(found, _MOST_ENDS), 2)
+    return min(pairs, key=_apart, default=None)
+
+
+def _apart(pair: tuple[Vec, Vec] | None) -> float:
+    return math.inf if pair is None else math.dist(*pair)
+
+
+def _crossed(finding: CrossedOutline) -> Diagnostic:
+    s, outline = finding.structure, finding.outline
+    first, *more = sorted(finding.places)
+    further = f" and in {counted(len(more), 'more place')}" if more else ""
+    rule = "a winding that is not 0" if is_winding(outline) else "every second area"
+    return Diagnostic(
+        "W0753",
+        f"`{_label(outline.path)}`, imported into {s.kind} `{s.path}`, crosses itself at "
+        f"{at(first)}{further}",
+        outline.span or s.span,
+        f"filled is {rule}",
+        hints=(_AGAIN, "crossing lines come out of a cutter as separate pieces"),
+        points=(first, *more[:9]),
+    )

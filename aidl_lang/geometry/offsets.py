@@ -1,32 +1,210 @@
-"""Regions grown, shrunk and drawn with a thick pen: exact sums of curves and discs.
-
-Every offset is the region with its strips and wedges (see `strips`) united or cut off by the booleans that
-all drawings use. So whatever crosses itself, splits or vanishes comes out as it must.
-"""
+"""Regions grown, shrunk, drawn with a thick pen, and the hulls of curves."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
-from aidl_lang.geometry.boolean import section_of
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed
-from aidl_lang.geometry.finishing import direction
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
+import numpy as np
+
+from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    derivative,
+    ends,
+    extreme_parameters,
+    is_closed,
+    larger_side,
+    nearest,
+    part,
+    point,
+    points,
+    reverse,
+    second_derivative,
+    turn_between,
+    union_bounds,
+)
+from aidl_lang.geometry.finishing import direction, parallel
+from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import difference, fill, union
-from aidl_lang.geometry.strips import Strip, beside, cap, disc, wedge
-from aidl_lang.geometry.trace import trace
+from aidl_lang.geometry.sections import difference, filled, trace, union
+
+# --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
+#
+# What lies within a distance of a curve is swept by its normals. A point is nearest to the inside of a
+# curve, where the normal leads to it, or to a corner; so strips along all curves and wedges at all corners
+# cover exactly the points within the distance (but for caps). A strip need not reach beyond the centre of
+# curvature, where other points of the curve are nearer. Each strip is bounded by exact curves, except beside
+# Bézier curves and ellipses: their parallel curves are fitted by cubics.
+
+Outline = tuple[Piece, ...]
+Strip = tuple[Outline, ...]
+"""A closed outline, or an outer and an inner one."""
+
+FIT = 1e-5
+"""Largest error of a fitted parallel curve, relative to its distance plus the extent of the curve."""
+_DEEPEST = 6
+_SHORTEST = 1e-6
+"""Shares of a curve that are no part of their own."""
+_BEND = 0.3
+"""Radians that a part may turn under a straight top."""
+_SHARPEST = math.radians(168.5)
+"""Corners that turn further are rounded: their point would stand out more than ten times the distance."""
+
+
+def beside(curve: Piece, left: float) -> Iterator[Strip]:
+    """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
+    if isinstance(curve, Line):
+        yield (_between(curve, Line(parallel(curve, 0.0, left), parallel(curve, 1.0, left))),)
+    elif isinstance(curve, Circle):
+        other = curve.radius - left
+        yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
+    elif isinstance(curve, Arc):
+        yield (_beside_arc(curve, left),)
+    else:
+        yield from _beside_free(curve, left)
+
+
+def _between(curve: Piece, other: Piece) -> Outline:
+    """Returns the outline from a curve to one beside it and back."""
+    (a, b), (c, d) = ends(curve), ends(other)
+    return tuple(
+        p
+        for p in (curve, Line(b, d), reverse(other), Line(c, a))
+        if not isinstance(p, Line) or p.start != p.end
+    )
+
+
+def _beside_arc(arc: Arc, left: float) -> Outline:
+    radius = arc.radius - math.copysign(left, left * arc.sweep)
+    if radius <= 0:
+        return (arc, Line(arc.end, arc.center), Line(arc.center, arc.start))
+    start, end = (_scaled(arc, p, radius) for p in (arc.start, arc.end))
+    return _between(arc, Arc(arc.center, radius, start, end, arc.sweep))
+
+
+def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
+    share = radius / arc.radius
+    return arc.center[0] + share * (p[0] - arc.center[0]), arc.center[1] + share * (p[1] - arc.center[1])
+
+
+# --- Curves whose parallels are no curves of their kind ------------------------------------------------
+
+
+def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
+    """Yields strips in parts short enough to fit; their far side is straight where the curve bends closer
+    than the distance. A part ends where the curve is level or upright, and there the fit is exact: the box of
+    the parallel curve is that of the curve moved out.
+    """
+    x0, y0, x1, y1 = bounds(curve)
+    scale = abs(left) + max(x1 - x0, y1 - y0)
+    inner = sorted(t for t in extreme_parameters(curve) if _SHORTEST < t < 1 - _SHORTEST)
+    cuts = [t for t, after in pairwise([*inner, 1.0]) if after - t > _SHORTEST]
+    stack = [(t0, t1, 0) for t0, t1 in pairwise([0.0, *cuts, 1.0])][::-1]
+    while stack:
+        t0, t1, depth = stack.pop()
+        bent = [_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)]
+        top: Piece
+        if not any(bent):
+            top = _fitted(curve, t0, t1, left)
+            is_fine = _error(curve, t0, t1, left, top) <= FIT * scale
+        else:
+            top = Line(*(_reached(curve, t, left) for t in (t0, t1)))
+            is_fine = all(bent) and abs(turn_between(direction(curve, t0), direction(curve, t1))) < _BEND
+        if is_fine or depth >= _DEEPEST:
+            yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), top),)
+        else:
+            half = (t0 + t1) / 2
+            stack += [(half, t1, depth + 1), (t0, half, depth + 1)]
+
+
+def _reached(curve: Piece, t: float, left: float) -> Vec:
+    """Returns the end of a normal a little beyond the centre of curvature, but within the distance."""
+    stretch = _stretch(curve, t, left)
+    return parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
+
+
+def _stretch(curve: Piece, t: float, left: float) -> float:
+    """Returns the length of a step on the parallel curve for one on the curve: 1 - left · curvature."""
+    (dx, dy), (ax, ay) = derivative(curve, t), second_derivative(curve, t)
+    speed = math.hypot(dx, dy)
+    return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
+
+
+def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
+    """Returns the cubic with the ends and the derivatives of the parallel curve."""
+    p, q = parallel(curve, t0, left), parallel(curve, t1, left)
+    (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
+    u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
+    return Bezier(p, (p[0] + u * ax, p[1] + u * ay), (q[0] - v * bx, q[1] - v * by), q)
+
+
+def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> float:
+    """Returns the greatest distance of the fitted curve from the parallel one, along the normals of that."""
+    worst = 0.0
+    for s in (0.2, 0.35, 0.5, 0.65, 0.8):
+        t = t0 + s * (t1 - t0)
+        (px, py), (qx, qy), (dx, dy) = parallel(curve, t, left), point(fitted, s), direction(curve, t)
+        worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
+    return worst
+
+
+# --- Corners and ends ----------------------------------------------------------------------------
+
+
+def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Strip | None:
+    """Returns the strip that a corner adds on its outer side; None if that is not the side asked for.
+    `arriving` and `leaving` are unit directions.
+    """
+    turn = turn_between(arriving, leaving)
+    if abs(turn) < 1e-9 or (turn * left >= 0 and abs(turn) < math.pi - 1e-9):
+        return None
+    p = at[0] - left * arriving[1], at[1] + left * arriving[0]
+    q = at[0] - left * leaving[1], at[1] + left * leaving[0]
+    if sharp and abs(turn) < _SHARPEST:
+        reach = math.tan(turn / 2) * -left
+        tip = p[0] + reach * arriving[0], p[1] + reach * arriving[1]
+        return ((Line(at, p), Line(p, tip), Line(tip, q), Line(q, at)),)
+    sweep = -math.copysign(abs(turn), left)
+    return ((Line(at, p), Arc(at, abs(left), p, q, sweep), Line(q, at)),)
+
+
+def cap(at: Vec, outward: Vec, half: float, form: str) -> Strip | None:
+    """Returns the strip that an end adds to both sides: `round`, `square`, or None for `butt`."""
+    p = at[0] + half * outward[1], at[1] - half * outward[0]
+    q = at[0] - half * outward[1], at[1] + half * outward[0]
+    if form == "butt":
+        return None
+    if form == "round":
+        return ((Arc(at, half, p, q, math.pi), Line(q, p)),)
+    x, y = half * outward[0], half * outward[1]
+    a, b = (p[0] + x, p[1] + y), (q[0] + x, q[1] + y)
+    return ((Line(p, a), Line(a, b), Line(b, q), Line(q, p)),)
+
+
+def disc(at: Vec, radius: float) -> Strip:
+    return ((Circle(at, radius),),)
+
+
+# --- Regions grown, shrunk and drawn with a thick pen: exact sums of curves and discs.
+#
+# Every offset is the region with its strips and wedges (see `strips`) united or cut off by the booleans that
+# all drawings use. So whatever crosses itself, splits or vanishes comes out as it must.
 
 NEAR = 1e-6
 """Ends that are closer, relative to the size of what they belong to, are one point."""
 
 
 def offset(region: Region, distance: float, sharp: bool = True) -> Region:
-    """Returns all points within a distance of the region; for a negative one, the region without its
-    border.
-    """
+    """Returns all within a distance of the region; for a negative one, the region without its border."""
     if distance == 0 or not region:
         return region
     strips: list[Strip] = []
@@ -56,12 +234,9 @@ def _along(
 
 
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
-    """Returns the region that a pen of a width draws along curves; where more than two meet, the joint is
-    round.
-    """
+    """Returns what a pen of a width draws along curves; where more than two meet, the joint is round."""
     half = width / 2
-    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
-    near = NEAR * (max(right - left, top - bottom) or 1.0)
+    near = NEAR * (larger_side(union_bounds([bounds(c) for c in curves])) or 1.0)
     strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
     for at, leaving in _joints(curves, near):
         if len(leaving) > 2:
@@ -94,25 +269,227 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
-    """Returns a region with strips added to it or taken off."""
-    pieces = [p for loop in region.loops for p in loop.pieces]
-    number = len(pieces)
-    pieces += [p for strip in strips for outline in strip for p in outline]
-    network = Network(pieces)
+    strokes = (p for strip in strips for outline in strip for p in outline)
+    network = Network([*region.pieces, *strokes])
 
     def traced() -> Region:
-        place = number
-        sections = []
+        place, sections = len(region.pieces), []
         for strip in strips:
-            polygons = []
-            for outline in strip:
-                uses = [u for k in range(len(outline)) for u in network.uses[place + k]]
-                place += len(outline)
-                if uses:
-                    polygons.append(network.polyline(uses))
             # Normals of a curve that bends closely cross: all that a single outline goes around counts.
-            sections.append(fill(polygons, "NonZero" if len(strip) == 1 else "EvenOdd"))
-        base, added = section_of(network, region, 0), union(sections)
+            sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
+            place += sum(map(len, strip))
+        base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
         return trace(network, difference(base, added) if cut else union([base, added])).region
 
     return with_finer_chords(network, traced)
+
+
+# --- The convex hull of curves: parts of the curves themselves, and the straight lines that touch two of
+# them.
+#
+# A fine sampling tells which curves the hull runs along, and in which order; the points of touch are then
+# found exactly: in closed form for points, arcs and circles, by alternating projection for the others.
+
+_SAMPLES = 720
+_NEAR = 1e-9
+"""Points closer than this, relative to the size, are one."""
+
+
+@record(slots=True)
+class _HullContact:
+    """A curve along the hull, about from `t0` to `t1` (past 1 on a closed curve), or only its end there."""
+
+    curve: Piece
+    t0: float
+    t1: float
+
+
+def hull(curves: Sequence[Piece]) -> Region:
+    """Returns the least convex region around the curves; empty if they lie on one line."""
+    contacts = _contacts(_distinct(curves))
+    if len(contacts) == 1 and is_closed(contacts[0].curve):
+        return Region((Face(Loop((contacts[0].curve,))),))
+    spots = [_touch(a, b) for a, b in zip(contacts, contacts[1:] + contacts[:1], strict=True)]
+    pieces: list[Piece] = []
+    for k, contact in enumerate(contacts):
+        arrived, left = spots[k - 1][1], spots[k][0]
+        p, q = point(contact.curve, arrived), point(contact.curve, left)
+        if arrived != left:
+            # the hull runs round closed ones forwards
+            stop = arrived + (left - arrived) % 1.0 if is_closed(contact.curve) else left
+            pieces.append(part(contact.curve, arrived, stop, p, q))
+        pieces.append(Line(q, point(contacts[(k + 1) % len(contacts)].curve, spots[k][1])))
+    size = max((math.dist(ends(a)[0], ends(pieces[0])[0]) for a in pieces), default=0.0)
+    kept = [p for p in pieces if math.dist(*ends(p)) > _NEAR * size]
+    return Region((Face(Loop(tuple(_joined(kept)))),)) if len(kept) > 1 else Region()
+
+
+def _distinct(curves: Sequence[Piece]) -> list[Piece]:
+    """Returns each curve once, without those in the disc of a circle, where no line touches two."""
+    kept: list[Piece] = []
+    for curve in sorted(dict.fromkeys(curves), key=lambda c: -c.radius if isinstance(c, Circle) else 0.0):
+        if not (isinstance(curve, Arc | Circle) and any(_holds(c, curve) for c in kept)):
+            kept.append(curve)
+    return kept
+
+
+def _holds(outer: Piece, inner: Arc | Circle) -> bool:
+    """Tells whether one curve is a circle in whose disc the other lies."""
+    if not isinstance(outer, Circle):
+        return False
+    return math.dist(outer.center, inner.center) + inner.radius <= outer.radius * (1 + _NEAR)
+
+
+def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
+    """Returns the stretches of curves that the hull of the samples touches, counter-clockwise."""
+    samples = [_spread(curve) for curve in curves]
+    owner = [number for number, ts in enumerate(samples) for _ in ts]
+    place = [k for ts in samples for k in range(len(ts))]
+    around = _convex(np.concatenate([points(c, ts) for c, ts in zip(curves, samples, strict=True)]))
+    if len(around) < 3:
+        return []
+    runs: list[list[int]] = []
+
+    def follows(a: int, b: int) -> bool:
+        count = len(samples[owner[a]])
+        step = abs(place[a] - place[b])
+        around_end = is_closed(curves[owner[a]]) and step == count - 1
+        return owner[a] == owner[b] and not isinstance(curves[owner[a]], Line) and (step == 1 or around_end)
+
+    for k in around:
+        if runs and follows(runs[-1][-1], k):
+            runs[-1].append(k)
+        else:
+            runs.append([k])
+    if len(runs) > 1 and follows(runs[-1][-1], runs[0][0]):
+        runs[0] = runs.pop() + runs[0]
+    return [
+        _HullContact(curves[owner[run[0]]], *(float(samples[owner[k]][place[k]]) for k in (run[0], run[-1])))
+        for run in runs
+    ]
+
+
+def _spread(curve: Piece) -> Floats:
+    if isinstance(curve, Line):
+        return np.array([0.0, 1.0])
+    return np.arange(_SAMPLES + (not is_closed(curve))) / _SAMPLES
+
+
+def _convex(p: Floats) -> list[int]:
+    """Numbers of the points of the convex hull, counter-clockwise (Andrew's monotone chain)."""
+    order = np.lexsort((p[:, 1], p[:, 0])).tolist()
+    xy = p.tolist()
+
+    def half(numbers: list[int]) -> list[int]:
+        chain: list[int] = []
+        for k in numbers:
+            while len(chain) > 1:
+                (ax, ay), (bx, by), (cx, cy) = xy[chain[-2]], xy[chain[-1]], xy[k]
+                if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 0:
+                    break
+                chain.pop()
+            chain.append(k)
+        return chain
+
+    return half(order)[:-1] + half(order[::-1])[:-1]
+
+
+def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
+    """Returns where the line from one contact to the next leaves the one and reaches the other."""
+    t, s = a.t1, b.t0
+    one, other = _disc(a.curve, t), _disc(b.curve, s)
+    while one is not None and other is not None and (ways := _tangent(*one, *other)) is not None:
+        # A point of touch beyond the end of an arc: the hull touches the end itself.
+        u, v = (_parameter(c.curve, p, at) for c, p, at in ((a, ways[0], t), (b, ways[1], s)))
+        if u is None:
+            one = point(a.curve, t), 0.0
+        if v is None:
+            other = point(b.curve, s), 0.0
+        if u is not None and v is not None:
+            found = u if one[1] else t, v if other[1] else s
+            if _is_near(a.curve, found[0], t) and _is_near(b.curve, found[1], s):
+                return found
+            break  # discs that all but coincide are touched anywhere
+    for _ in range(100):
+        before = t, s
+        t = _tangent_from(a.curve, point(b.curve, s), t)
+        s = _tangent_from(b.curve, point(a.curve, t), s)
+        if abs(t - before[0]) + abs(s - before[1]) < 1e-14:
+            break
+    return t, s
+
+
+def _is_near(curve: Piece, t: float, sampled: float) -> bool:
+    """Tells whether a parameter lies between the samples around the one that the sampling told."""
+    away = abs(t - sampled)
+    return min(away, 1 - away if is_closed(curve) else away) < 2 / _SAMPLES
+
+
+def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
+    """Returns a centre and a radius; the end of a line is a disc without extent."""
+    if isinstance(curve, Line):
+        return point(curve, t), 0.0
+    return (curve.center, curve.radius) if isinstance(curve, Arc | Circle) else None
+
+
+def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
+    """Returns where the line with both discs on its left touches; None if one lies in the other."""
+    x, y = d[0] - c[0], d[1] - c[1]
+    square = x * x + y * y
+    rest = square - (r - s) ** 2
+    if min(r, s) == 0 and abs(rest) <= 2 * _NEAR * square:
+        rest = 0.0  # a point on the circle is where it is touched: the root of a rounding error is none
+    elif rest <= 0:
+        return None
+    if square == 0:
+        return None
+    # The outward normal n has length 1 and n·(d - c) = r - s.
+    k, h = (r - s) / square, math.sqrt(rest) / square
+    n = k * x + h * y, k * y - h * x
+    return (c[0] + r * n[0], c[1] + r * n[1]), (d[0] + s * n[0], d[1] + s * n[1])
+
+
+def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
+    """Returns where a curve passes a point of its circle; None if beyond the end that the hull touches."""
+    if isinstance(curve, Line):
+        return about
+    t = nearest(curve, p)
+    size = curve.radius if isinstance(curve, Arc | Circle) else 1.0
+    if is_closed(curve) or about not in (0.0, 1.0):
+        return t
+    if math.dist(point(curve, about), p) <= _NEAR * size:
+        return about
+    # A point off the arc, or one elsewhere on it, where the same circle is touched from another side.
+    on_arc = math.dist(point(curve, t), p) <= _NEAR * size
+    return t if on_arc and _is_near(curve, t, about) else None
+
+
+def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
+    """Returns the parameter near t where the tangent passes through a point; an end stays an end."""
+    if isinstance(curve, Line):
+        return t
+
+    def across(t: float) -> float:
+        (x, y), (dx, dy) = point(curve, t), derivative(curve, t)
+        return dx * (p[1] - y) - dy * (p[0] - x)
+
+    low, high = t - 1.5 / _SAMPLES, t + 1.5 / _SAMPLES
+    if not is_closed(curve):
+        low, high = max(0.0, low), min(1.0, high)
+    first = across(low)
+    if first * across(high) > 0:
+        return t
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if across(middle) * first > 0 else (low, middle)
+    return (low + high) / 2
+
+
+def _joined(pieces: list[Piece]) -> list[Piece]:
+    """Returns the pieces with each starting where the one before it ends."""
+    result: list[Piece] = []
+    for k, piece in enumerate(pieces):
+        start = ends(pieces[k - 1])[1]
+        end = ends(piece)[1]
+        result.append(Line(start, end) if isinstance(piece, Line) else part(piece, 0.0, 1.0, start, end))
+    return result

@@ -10,20 +10,35 @@ from dataclasses import field, replace
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
-from aidl_lang.geometry.boolean import common, united, without
-from aidl_lang.geometry.clipping import clipped_each
-from aidl_lang.geometry.curves import Line, Piece, Vec
-from aidl_lang.geometry.described import as_geometry
-from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
+from aidl_lang.geometry.boolean import clipped_each, common, united, without
+from aidl_lang.geometry.curves import (
+    LARGEST,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    is_finite,
+    larger_side,
+    reverse,
+    union_bounds,
+)
+from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
-from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
-from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.misfits import Misfit, merged_notes, misfits
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.offsets import NEAR, offset, thick
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
+from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
+from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
+from aidl_lang.geometry.region import Region, area, length
+from aidl_lang.geometry.solved import (
+    Box,
+    Finish,
+    Leaves,
+    Recipe,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    as_geometry,
+)
 from aidl_lang.geometry.styles import is_filled
 from aidl_lang.geometry.tiling import (
     MOST,
@@ -33,9 +48,6 @@ from aidl_lang.geometry.tiling import (
     tiled_bars,
     tiled_strokes,
 )
-
-Leaves = Sequence[tuple[SolvedGeometry, Piece]]
-"""Primitives that are drawn, with their curves."""
 
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
@@ -51,9 +63,7 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
-    """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
-    out.
-    """
+    """Yields the primitives of a geometry that is drawn, with their curves, if they have a place."""
     for leaf in g.leaves():
         if (curve := leaf.curve) and is_finite(curve, LARGEST):
             yield leaf, curve
@@ -111,9 +121,7 @@ class _Outliner:
         )
 
     def _inside(self, s: SolvedStructure, around: Region | None) -> Region | None:
-        """Returns what the outline around a structure encloses within those around it; that of the latter if
-        it encloses nothing.
-        """
+        """Returns what the outline around a structure encloses in those around it; theirs if it is open."""
         own = _region(self._operand(s.clip))
         if not own:
             self.notes.append(notes.open_clip(s))
@@ -211,7 +219,7 @@ class _Outliner:
         if not lattice.is_possible:
             self.notes.append(notes.no_lattice(g, recipe))
             return []
-        cell, area = [lattice.turned(c) for c in first], lattice.turned_region(_region(groups[0]))
+        cell, area = [lattice.turned(c) for c in first], _region(groups[0]).mapped(lattice.turned)
         whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
         try:
             if area:
@@ -294,12 +302,10 @@ class _Outliner:
     def _fitted(
         self, leaves: Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
     ) -> tuple[list[Work], list[Finish]]:
-        """Returns the works with the sizes of those that are to be as large as fits, without those of which
-        nothing does.
-        """
+        """Returns the works with the sizes of those as large as fits, without those that do not fit."""
         if all(f.sizes for f in reasons):
             return works, reasons
-        from aidl_lang.geometry.fitting import fitted
+        from aidl_lang.geometry.finishing import fitted
 
         curves = [c for _, c in leaves]
         works = fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
@@ -312,7 +318,6 @@ class _Outliner:
     def _own(
         self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
     ) -> Iterator[tuple[Finish, Corner]]:
-        """Yields the finishes of these curves with their corners."""
         for f in finishes:
             if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
                 continue
@@ -323,9 +328,7 @@ class _Outliner:
                 yield from ((f, corner) for corner in corners)
 
     def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
-        """Yields the finishes that a copy has from its source: of corners between the same curves, with sizes
-        in proportion.
-        """
+        """Yields a copy's finishes from its source: of the same corners, with sizes in proportion."""
         sources, curves = [(self._source(g), c) for g, c in leaves], [c for _, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
             if not any(g is not None for g, _ in sources):
@@ -346,9 +349,7 @@ class _Outliner:
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
-        """Returns the geometry that a copy was made from; None for what is no copy or goes by the name of its
-        copy.
-        """
+        """Returns what a copy was made from; None for what is no copy, or has the name of its copy."""
         return self.index.get(g.source) if g.source is not None and g.source != g.path else None
 
 
@@ -358,7 +359,6 @@ def _is_of(path: str, of: Iterable[str]) -> bool:
 
 
 def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
-    """Returns the corners that a finish is about, among these curves."""
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
         found = corners_of([leaves[n][1] for n in own], near)
@@ -377,9 +377,7 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
 
 
 def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
-    """Returns the geometry with its new curves; a new one belongs to the parts that both its neighbours
-    belong to.
-    """
+    """Returns the geometry with its new curves, which belong to what both their neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
     free: list[SolvedGeometry] = []
@@ -427,22 +425,44 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
 
 
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:
-    """Returns the region that some geometry encloses together."""
     found = ((g, list(_leaves(g))) for g in geometry)
     return region_of((g, leaves) for g, leaves in found if leaves)[0]
 
 
 def _extent(curves: Sequence[Piece]) -> float:
-    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
-    return max(right - left, top - bottom) or 1.0
+    return larger_side(union_bounds([bounds(c) for c in curves])) or 1.0
 
 
 def _deepest(region: Region, too_deep: float) -> float:
-    """Returns the distance by which an outline can be moved inwards before nothing is left, to about seven
-    digits.
-    """
-    low, high = 0.0, too_deep
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if offset(region, -middle) else (low, middle)
-    return low
+    """Returns how far an outline can move inwards before nothing is left, to about seven digits."""
+    return largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
+
+
+# --- Drawings that are clipped to the material of a solid, once that is known.
+
+
+def on_material(model: SolvedModel, drawing: Drawing) -> SolvedModel:
+    """Returns a model with its drawings cut to the solids they are clipped to, by the `drawing` without."""
+    return replace(model, root=_inked(model.root, drawing, None))
+
+
+def _inked(s: SolvedStructure, drawing: Drawing, around: Region | None) -> SolvedStructure:
+    """Returns a structure with its drawings clipped; `around`: the material that those around it lie on."""
+    ground = around
+    if s.ground is not None:
+        ground = _material(drawing, s.ground)
+        ground = ground if around is None else common(ground, around)
+    children = tuple(_inked(child, drawing, ground) for child in s.structures)
+    if ground is None:
+        return replace(s, structures=children)
+    inside = s.inside if s.ground is None else ground
+    return replace(s, structures=children, finished=tuple(clipped_ink(s.drawn, ground)), inside=inside)
+
+
+def _material(drawing: Drawing, path: str) -> Region:
+    """Returns what is left of a solid in the end: the bodies around it have holes, too."""
+    region = drawing.regions.get(path, Region())
+    for body in drawing.bodies:
+        if f"{path}.".startswith(f"{body.path}.") and body.path != path:
+            region = common(region, body.region)
+    return region

@@ -30,8 +30,7 @@ def pictured(
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings]:
     """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
     from aidl_lang.geometry.drawing import Findings, draw
-    from aidl_lang.geometry.placeless import with_places
-    from aidl_lang.geometry.readout import read_out
+    from aidl_lang.geometry.readout import read_out, with_places
 
     with watch("read out"):
         model, evaluator = read_out(built, lowered, solution, freedom)
@@ -44,7 +43,7 @@ def pictured(
             notes += more
         drawing, found = draw(model)
         if any(s.ground is not None for s in model.root.walk()):
-            from aidl_lang.geometry.grounds import on_material
+            from aidl_lang.geometry.outlines import on_material
 
             model = on_material(model, drawing)
             drawing, found = draw(model)

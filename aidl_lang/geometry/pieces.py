@@ -15,15 +15,13 @@ from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.contacts import UNNOTICED, Solid
-from aidl_lang.geometry.distance import lie_within, nearest_region
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
+from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.faces import OwnFace
-from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, region_bounds
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -32,10 +30,10 @@ from aidl_lang.geometry.sections import (
     holes_of,
     intersection,
     is_nothing,
+    trace_all,
     union,
 )
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.trace import trace_all
 
 _RING = 3
 """Outlines that a solid has at least where a piece of it lies in an opening of another."""
@@ -60,15 +58,16 @@ class _Piece:
         return lie_within(self.region, region, UNNOTICED)
 
 
-def loose_piece_notes(
+def piece_notes(
     root: SolvedStructure,
     walk: Bodies,
     masses: Sequence[Mass],
     solids: Sequence[Solid],
     pairs: Sequence[tuple[str, str]],
 ) -> Iterator[Diagnostic]:
-    """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest. A solid that
-    is the whole program is a drawing without parts, in which gaps are as good as lines.
+    """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest, and for each
+    hole that cuts pieces free which nothing holds, as the inside of an O. A solid that is the whole program
+    is a drawing without parts, in which gaps are as good as lines.
     """
     free = marked_detached(root)
     known = {solid.path: solid for solid in solids}
@@ -78,13 +77,20 @@ def loose_piece_notes(
             pieces = _pieces(walk, mass)
             groups = _groups(pieces, known[solid.path], known, pairs) if len(pieces) > 1 else []
             yield from _notes(solid, groups)
+    held, holes = _held_by_others(known, pairs), _holes(root, masses)
+    for mass in masses:
+        path = mass.structure.path
+        if path not in free and mass.section.num_contour() > 1:
+            yield from _cut_free(walk, mass, holes.get(path, ()), held.get(path, ()))
+
+
+def _faces(walk: Bodies, structures: Iterable[SolvedStructure]) -> list[OwnFace]:
+    return [face for s in structures for face in walk.faces.get(s.path, ())]
 
 
 def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
-    """Returns the pieces that a solid, and those in it, cover before anything is cut out; none if they are
-    all alike.
-    """
-    faces = [f for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
+    """Returns the pieces that a solid covers before anything is cut out; none if they are all alike."""
+    faces = _faces(walk, _material(mass.structure))
     if len(faces) < 2:
         return []
     sections = union([*(f.section for f in faces), *(v.section for v in mass.voids)]).decompose()
@@ -149,9 +155,7 @@ def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterat
 
 
 def _traits(piece: _Piece) -> Iterator[object]:
-    """Yields the traits that make pieces alike: their area, and the place where they are written, in a
-    loop.
-    """
+    """Yields what makes pieces alike: their area, and the statement, in a loop, that makes them."""
     yield _area(piece.section)
     yield from {g.span for f in piece.faces for g in f.geometries if g.span}
 
@@ -184,38 +188,25 @@ def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece
 # --- Cut free ------------------------------------------------------------------------------------
 
 
-def fallen_piece_notes(
-    root: SolvedStructure,
-    walk: Bodies,
-    masses: Sequence[Mass],
-    solids: Sequence[Solid],
-    pairs: Sequence[tuple[str, str]],
+def _cut_free(
+    walk: Bodies, mass: Mass, holes: Sequence[SolvedStructure], others: Sequence[Solid]
 ) -> Iterator[Diagnostic]:
-    """Yields a warning for each hole that cuts pieces free which nothing else holds, as the inside of an
-    O.
-    """
-    free = marked_detached(root)
-    held = _held_by_others(solids, pairs)
-    known, holes = {s.path: s for s in root.walk()}, _holes(root, masses)
-    for mass, solid in zip(masses, solids, strict=True):
-        if mass.structure.path in free or mass.section.num_contour() < 2:
-            continue
-        others = held.get(solid.path, ())
-        islands = union([f.section for s in _islands(mass.structure) for f in walk.faces.get(s.path, ())])
-        yield from _severed(walk, mass, holes.get(mass.structure.path, ()), others, islands)
-        if mass.section.num_contour() < _RING:
-            continue
-        loose: dict[str, _Loose] = {}
-        for piece, gap in _enclosed(mass.section.decompose()):
-            if not is_nothing(intersection(piece, islands)):
-                continue  # put there on purpose
-            if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
-                for path, around in _cutting(walk, holes.get(mass.structure.path, ()), gap, piece):
-                    fallen = loose.setdefault(path, _Loose([], {}))
-                    fallen.pieces.append(piece)
-                    fallen.around.update(around)
-        for path, fallen in loose.items():
-            yield _fallen(known[path], mass.structure, walk, fallen)
+    """Yields the warnings on pieces that holes cut off a body, and that neither it nor others hold."""
+    islands = union([face.section for face in _faces(walk, _islands(mass.structure))])
+    yield from _severed(walk, mass, holes, others, islands)
+    if mass.section.num_contour() < _RING:
+        return
+    loose: dict[str, _Loose] = {}
+    for piece, gap in _enclosed(mass.section.decompose()):
+        if not is_nothing(intersection(piece, islands)):
+            continue  # put there on purpose
+        if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
+            for hole, around in _cutting(walk, holes, gap, piece):
+                fallen = loose.setdefault(hole.path, _Loose(hole, [], {}))
+                fallen.pieces.append(piece)
+                fallen.around.update(around)
+    for fallen in loose.values():
+        yield _fallen(mass.structure, walk, fallen)
 
 
 def _severed(
@@ -230,18 +221,15 @@ def _severed(
     pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
     enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
     beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
-    faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
-    for whole in union(faces).decompose():
+    faces = _faces(walk, _material(mass.structure))
+    for whole in union([face.section for face in faces]).decompose():
         parts = [piece for piece in beside if covers(whole, piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
-        cut = [h for h in holes if apart and _links(walk.sections[h.path], parts)]
+        # Those with which filled again pieces would hang together.
+        filled = ((h, union([walk.sections[h.path], *parts])) for h in holes if apart)
+        cut = [h for h, whole in filled if len(whole.decompose()) < len(parts)]
         if cut:
             yield _cut_through(walk, mass.structure, cut, [parts[0], *apart])
-
-
-def _links(hole: Section, pieces: Sequence[Section]) -> bool:
-    """Tells whether pieces would hang together if a hole were filled."""
-    return len(union([hole, *pieces]).decompose()) < len(pieces)
 
 
 def _cut_through(
@@ -269,6 +257,7 @@ def _cut_through(
 class _Loose:
     """The pieces that a hole cuts free, and the names of its geometries that are around them."""
 
+    hole: SolvedStructure
     pieces: list[Section]
     around: dict[str, None]
 
@@ -296,9 +285,7 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
     return found
 
 
-def _held_by_others(solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
-    """Returns for each body those that touch or overlap it."""
-    known = {solid.path: solid for solid in solids}
+def _held_by_others(known: dict[str, Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
     held: dict[str, list[Solid]] = {}
     for a, b in pairs:
         held.setdefault(a, []).append(known[b])
@@ -321,10 +308,8 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 
 
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
-    """Tells whether a piece was connected with the material around the opening before anything was cut
-    out.
-    """
-    faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
+    """Tells whether a piece was part of the material around the opening before the cuts."""
+    faces = (face.section for face in _faces(walk, _material(mass.structure)))
     near = union([f for f in faces if boxes_meet(f, opening)])
     return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
 
@@ -339,19 +324,18 @@ def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
 
 def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
-) -> Iterator[tuple[str, dict[str, None]]]:
-    """Yields the paths of the holes that took away the material between a piece and the rest, and the names
-    of their geometries that did.
-    """
+) -> Iterator[tuple[SolvedStructure, dict[str, None]]]:
+    """Yields the holes that took what was around a piece, and the names of their geometries."""
     between = difference(opening, piece)
     for hole in holes:
         near = [f for f in walk.faces.get(hole.path, ()) if boxes_meet(f.section, between)]
         faces = [f for f in near if not is_nothing(intersection(f.section, between))]
         if faces:
-            yield hole.path, {g.name: None for f in faces for g in f.geometries}
+            yield hole, {g.name: None for f in faces for g in f.geometries}
 
 
-def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, loose: _Loose) -> Diagnostic:
+def _fallen(solid: SolvedStructure, walk: Bodies, loose: _Loose) -> Diagnostic:
+    hole = loose.hole
     count, largest = len(loose.pieces), max(loose.pieces, key=lambda piece: piece.area())
     left, bottom, right, top = region_bounds(trace_all(walk.network, [largest])[0].region)
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"

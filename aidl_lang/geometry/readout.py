@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property, partial
 
 from aidl_lang.building import expression as ex
@@ -15,15 +15,16 @@ from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure,
 from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry import curves
-from aidl_lang.geometry.curves import Curve, Vec
-from aidl_lang.geometry.described import described
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec, is_finite
+from aidl_lang.geometry.faces import edge_of, parts_of
 from aidl_lang.geometry.letters import stencilled, united
+from aidl_lang.geometry.notes import unusable_note
 from aidl_lang.geometry.solved import (
     Box,
     Change,
@@ -37,10 +38,10 @@ from aidl_lang.geometry.solved import (
     SolvedModel,
     SolvedStructure,
     Values,
+    described,
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
-from aidl_lang.geometry.tracing import parts_of
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
@@ -51,9 +52,7 @@ _FULL_TURN = 2 * math.pi
 def read_out(
     model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
 ) -> tuple[SolvedModel, Evaluator]:
-    """Returns the solved model, and the evaluator of its values for later checks. Its `freedom` is worked out
-    when it is read.
-    """
+    """Returns the solved model, with its `freedom` worked out on demand, and the evaluator of its values."""
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
@@ -79,9 +78,7 @@ def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Calla
 
 
 def _literal(model: Model, finish: Finish) -> ast.Number | None:
-    """Returns the number in the call that is the size of a fillet or chamfer, if no constraint mentions
-    it.
-    """
+    """Returns the number that is the size of a fillet or chamfer, if no constraint mentions it."""
     if not finish.sizes:
         return None
     size, *more = finish.sizes
@@ -118,7 +115,6 @@ def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
-    """Yields the report of each constraint, in order of writing."""
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
@@ -239,7 +235,9 @@ class _Reader:
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
         if is_plain and curve is None:
-            parts = tuple(_edge(g, f"edge[{i}]", points) for i, points in enumerate(self._pieces(g)))
+            parts = tuple(
+                edge_of(g, f"edge[{i}]", _through(points)) for i, points in enumerate(self._pieces(g))
+            )
         else:
             parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
         return self._solved(g, self._own_values(g, curve), parts, curve, recipe)
@@ -375,25 +373,110 @@ class _Reader:
 def _glyph(
     text: Geometry, name: str, glyph: Glyph, bridge: float, at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
-    """Returns one character of a text, with its curves as parts. `bridge`: the width of its bridges in units
-    of its height, 0 for none.
-    """
+    """Returns a character, its curves as parts; `bridge`: the width of bridges per height, 0 for none."""
     checkpoint()
     outline = glyph.curves if glyph.is_nested else united(glyph.curves)
     outline = stencilled(outline, bridge) if bridge else outline
-    edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
+    edges = tuple(
+        edge_of(text, f"{name}.edge[{i}]", _through([at(p) for p in c])) for i, c in enumerate(outline)
+    )
     path, filled = f"{text.path}.{name}", text.filled
     made = SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
     return replace(made, stroked=glyph.is_stroked)
 
 
-def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
-    """Returns one of the lines and cubics of a primitive, by its path in it."""
-    curve = _through(points)
-    kind, values = described(curve)
-    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
-    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
-
-
 def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:
     return curves.Line(*points) if len(points) == 2 else curves.Bezier(*points)
+
+
+# --- Leaves curves and values without a place out of a solved model, so that all later numbers can be drawn,
+# measured and written.
+
+
+def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """Returns the model without curves and numbers that have no place, and diagnostics on them."""
+    if all(map(_is_sound, model.root.walk())):
+        return model, []
+    cleaner = _Cleaner()
+    return replace(model, root=cleaner.structure(model.root)), cleaner.notes
+
+
+def _is_sound(structure: SolvedStructure) -> bool:
+    frame, box = structure.frame, structure.box
+    return (
+        _is_within((frame.x, frame.y, frame.rotation))
+        and (box is None or _is_within(box.bounds))
+        and all(map(_has_place, structure.geometry))
+    )
+
+
+def _has_place(geometry: SolvedGeometry) -> bool:
+    """Tells whether all of a geometry, with its parts, can be drawn."""
+    return (
+        (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
+        and all(map(_has_place, geometry.parts))
+        and (geometry.recipe is None or _is_possible(geometry))
+    )
+
+
+def _is_possible(outline: SolvedGeometry) -> bool:
+    assert outline.recipe is not None
+    return _is_within(outline.recipe.numbers.values()) and all(
+        _has_place(g) for operand in outline.recipe.operands for g in operand
+    )
+
+
+def _is_within(value: object) -> bool:
+    """Tells whether every number in a value can be drawn."""
+    if isinstance(value, float):
+        return abs(value) <= LARGEST
+    return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
+
+
+@record(frozen=False)
+class _Cleaner:
+    notes: list[Diagnostic] = field(default_factory=list)
+
+    def structure(self, s: SolvedStructure) -> SolvedStructure:
+        geometry = tuple(self._drawable(s, g) for g in s.geometry)
+        children = tuple(map(self.structure, s.structures))
+        frame, box = s.frame, s.box
+        if not _is_within((frame.x, frame.y, frame.rotation)):
+            frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
+        if box is None or not s.is_empty:
+            curves = (curve for g in geometry for curve in g.curves() if is_finite(curve))
+            box = Box.around(curves, children)
+        elif not _is_within(box.bounds):
+            box = None
+        return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
+
+    def _drawable(self, s: SolvedStructure, whole: SolvedGeometry) -> SolvedGeometry:
+        if _has_place(whole):
+            return whole
+        lost = list(_lost(whole))
+        is_whole = all(g in lost for g in whole.walk() if not g.parts)
+        self.notes.append(unusable_note(s, lost[0], whole if is_whole else lost[0]))
+        return _stripped(whole)
+
+
+def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    """Yields the innermost parts that have no place."""
+    inside = [lost for part in geometry.parts for lost in _lost(part)]
+    yield from inside
+    if not inside and not _has_place(geometry):
+        yield geometry
+
+
+def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
+    """Returns a geometry with those of its parts and values that have a place; its name stays."""
+    if _has_place(geometry):
+        return geometry
+    values = {name: value for name, value in geometry.values.items() if _is_within(value)}
+    is_primitive = len(values) < len(geometry.values) and not geometry.parts
+    return replace(
+        geometry,
+        values=values,
+        curve=None if is_primitive else geometry.curve,
+        parts=tuple(map(_stripped, geometry.parts)),
+        recipe=geometry.recipe if geometry.recipe is not None and _is_possible(geometry) else None,
+    )

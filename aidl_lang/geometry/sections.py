@@ -1,21 +1,46 @@
-"""A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`)."""
+"""Booleans of plane polygons, and the way back from these to exact curves."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
-from typing import Any, Literal, Protocol, Self
+from itertools import accumulate
+from typing import Any, Literal, Protocol, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from aidl_lang.common.arrays import each_once
+from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Circle,
+    Floats,
+    Ints,
+    Line,
+    Mask,
+    Piece,
+    Vec,
+    bounds,
+    ends,
+    is_closed,
+    locate,
+    nearest,
+    part,
+    point,
+    points,
+    union_bounds,
+)
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE
-from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network
+from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, loop_area, polygon_area
 
-Polygon = NDArray[np.float64]
+# --- A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`).
+
 NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
 """Width in grid units below which an area is rounding: the drawing measures about 16 of them."""
 
@@ -112,9 +137,7 @@ def box_within(a: Section, b: Section) -> bool:
 
 
 def is_nothing(section: Section, scale: float | None = None) -> bool:
-    """Tells whether an area is empty or thinner than the tolerance; `scale` is the size to compare it
-    with.
-    """
+    """Tells whether an area is empty or thinner than the tolerance, compared with the size `scale`."""
     if section.is_empty():
         return True
     if scale is None:
@@ -136,7 +159,7 @@ def holes_of(section: Section) -> list[Section]:
     return difference(whole, section).decompose()
 
 
-def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
+def inside_mask(section: Section, spots: Polygon) -> Mask:
     """Returns the mask of points, in grid units, inside a section."""
     within = np.zeros(len(spots), dtype=np.bool_)
     if not section.is_empty():
@@ -145,3 +168,335 @@ def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
         if len(near):
             within[near] = inside(section.to_polygons(), spots[near])
     return within
+
+
+def filled(
+    network: Network,
+    outlines: Iterable[Sequence[object]],
+    number: int,
+    rule: Literal["EvenOdd", "NonZero"] = "EvenOdd",
+) -> Section:
+    """Returns the area in outlines of a network's curves from `number` on, without those too small to see."""
+    polygons = []
+    for outline in outlines:
+        uses = [use for own in network.uses[number : number + len(outline)] for use in own]
+        number += len(outline)
+        if uses:
+            polygons.append(network.polyline(uses))
+    return fill(polygons, rule)
+
+
+# --- Turns the polygons of a boolean back into outlines of exact curves.
+#
+# Each vertex of a result is a vertex of the network (see there), so the edge it belongs to is looked up, not
+# guessed. Runs of vertices along one edge become one part of its curve, and parts that continue each other
+# are joined again, over the nodes that other curves left on them.
+
+T = TypeVar("T")
+STRAIGHT = -3
+"""Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
+
+
+@record(slots=True)
+class Traced:
+    """A region and the edges of the network that bound it."""
+
+    region: Region
+    edges: frozenset[int]
+
+
+@record(slots=True)
+class Run:
+    """The part `t0..t1` of a curve (None: straight) between two points."""
+
+    curve: int | None
+    t0: float
+    t1: float
+    start: Vec
+    end: Vec
+
+
+@record(slots=True)
+class Sides:
+    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
+
+    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
+    """
+
+    vertices: Floats
+    bounds: list[int]
+    owner: Ints
+    place: Ints
+    edges: Ints
+    starts: list[list[int]]
+
+
+def trace(network: Network, section: Section) -> Traced:
+    """Returns the exact region whose polygons Manifold returned, faces and loops in a canonical order."""
+    return trace_all(network, [section])[0]
+
+
+def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
+    """Traces many regions at once, which spares most of the table look-ups."""
+    faces = [_components(section) for section in sections]
+    sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
+    number = 0
+    result = []
+    for section in faces:
+        used: set[int] = set()
+        traced = []
+        for face in section:
+            checkpoint()
+            numbers = range(number, number + len(face))
+            traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
+            number += len(face)
+        traced.sort(key=lambda face: first_point(face.outer))
+        result.append(Traced(Region(tuple(traced)), frozenset(used)))
+    return result
+
+
+def _components(section: Section) -> list[list[Polygon]]:
+    """Returns the polygons of the connected faces, of which each has one outer one."""
+    polygons = section.to_polygons()
+    if len(polygons) < 2 or sum(polygon_area(polygon) > 0 for polygon in polygons) == 1:
+        return [polygons] if polygons else []
+    return [part.to_polygons() for part in section.decompose()]
+
+
+def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
+    """Returns faces: outer loops with the holes that lie in them, which are one loop or touch."""
+    outers = [loop for _, loop in sorted(loops, key=lambda pair: pair[0]) if _ > 0]
+    inner = [loop for area, loop in loops if area < 0 and outers]
+    holes: list[list[Loop]] = [[] for _ in outers]
+    for hole, holder in zip(inner, _holders(outers, inner), strict=True):
+        holes[holder].append(hole)
+    return [Face(o, tuple(sorted(h, key=first_point))) for o, h in zip(outers, holes, strict=True)]
+
+
+def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
+    """Returns for each hole the first outer loop that it lies in."""
+    if len(outers) == 1 or not holes:
+        return [0] * len(holes)
+    holder = np.full(len(holes), -1)
+    spots = np.array([point(hole.pieces[0], 0.5) for hole in holes]).reshape(-1, 2)
+    ts = np.linspace(0, 1, 65)
+    for number, outer in enumerate(outers):
+        left, bottom, right, top = union_bounds([bounds(piece) for piece in outer.pieces])
+        within = (spots >= (left, bottom)).all(axis=1) & (spots <= (right, top)).all(axis=1)
+        seekers = np.flatnonzero(within & (holder < 0))
+        if len(seekers):
+            polygon = np.concatenate([points(piece, ts)[:-1] for piece in outer.pieces])
+            holder[seekers[inside([polygon], spots[seekers])]] = number
+    return [int(k) for k in holder]
+
+
+def first_point(loop: Loop) -> Vec:
+    """Returns where a loop begins, by which loops and faces are in order."""
+    return ends(loop.pieces[0])[0]
+
+
+def _sides(network: Network, polygons: list[Floats]) -> Sides:
+    """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
+    bounds = [0, *accumulate(len(p) for p in polygons)]
+    vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
+    after = np.arange(1, len(vertices) + 1)
+    after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
+    before = np.empty_like(after)
+    before[after] = np.arange(len(after))
+    owner, place = network.look_up(vertices)
+    owner_after = owner[after]
+    edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
+    between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
+    ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
+    edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
+    # Chords that cross where their curves only touch leave vertices unknown to the network.
+    changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
+    unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
+    if len(unsure):
+        network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
+        edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
+    for k in np.flatnonzero(owner == UNKNOWN):
+        node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
+        if node is not None:
+            owner[k], place[k] = NODE, node
+    begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
+    rows = np.flatnonzero(begins)
+    starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
+    return Sides(vertices, bounds, owner, place, edges, starts)
+
+
+def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
+    """Returns the node at which two edges touch, if from a point between them to there they are one.
+
+    Near a touch chords cross however fine they are, and an outline changes from edge to edge too soon.
+    """
+    if a == b or STRAIGHT in (a, b):
+        return None
+    one, other = network.edges[a], network.edges[b]
+    shared = {one.start, one.end} & {other.start, other.end}
+    if not shared or one.start == one.end or other.start == other.end:
+        return None
+    node = min(shared, key=lambda n: math.dist(network.nodes[n], p))
+    curve, across, reach = network.curves[one.curve], network.curves[other.curve], 4 * network.tolerance
+    t, there = nearest(curve, p), one.t0 if node == one.start else one.t1
+    spots = (point(curve, t + (there - t) * k / 4) for k in range(4))
+    is_one = all(locate(across, spot, reach) is not None for spot in spots)
+    return node if is_one and math.dist(point(curve, t), p) <= reach else None
+
+
+def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
+    """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance."""
+    low, high = sides.bounds[number], sides.bounds[number + 1]
+    starts = sides.starts[number] or [low]
+    runs: list[Run] = []
+    for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
+        edge = int(sides.edges[begin])
+        used.add(edge)
+        second = begin + 1 if begin + 1 < high else low
+        last = end - 1 if end > low else high - 1
+        runs.append(_run(network, sides, edge, (begin, second), (end, last)))
+    used.discard(STRAIGHT)
+    result = []
+    for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
+        loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
+        area = loop_area(loop)
+        if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
+            result.append((area, loop))
+    return result
+
+
+def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
+    """Returns loops that pass no point twice, of a polygon that may (as a circle in a square does)."""
+    if len({run.start for run in runs}) == len(runs):
+        return [runs] if runs else []
+    loops: list[list[Run]] = []
+    stack: list[Run] = []
+    place: dict[Vec, int] = {}
+    for run in runs:
+        place[run.start] = len(stack)
+        stack.append(run)
+        if (first := place.get(run.end)) is not None:
+            loops.append(stack[first:])
+            for passed in stack[first:]:
+                del place[passed.start]
+            del stack[first:]
+    return loops
+
+
+def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
+    """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
+    place = sides.place
+    first, start = _spot(network, sides, begin[0])
+    last, stop = _spot(network, sides, end[0])
+    if number == STRAIGHT:
+        return Run(None, 0.0, 1.0, start, stop)
+    edge = network.edges[number]
+    if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
+        forward = first == edge.start
+        if edge.start == edge.end:
+            forward = int(place[begin[1]]) < len(network.inner((number, True))) / 2
+        t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
+    else:
+        t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
+    return Run(edge.curve, t0, t1, start, stop)
+
+
+def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]:
+    """Returns the node at a vertex, if there is one, and its place in millimetres."""
+    if sides.owner[vertex] == NODE:
+        node = int(sides.place[vertex])
+        return node, network.nodes[node]
+    return None, network.position(sides.vertices[vertex])
+
+
+def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
+    node, p = _spot(network, sides, vertex)
+    if node in (edge.start, edge.end):
+        if edge.start != edge.end:
+            return edge.t0 if node == edge.start else edge.t1
+        # Both ends of the part are here: the one that the vertex beside it is near to.
+        t = nearest(network.curves[edge.curve], _spot(network, sides, beside)[1])
+        return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
+    return min(edge.t1, max(edge.t0, nearest(network.curves[edge.curve], p)))
+
+
+def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
+    """Returns the runs without those that go nowhere; their neighbours meet in one point."""
+    kept = [
+        r for r in runs if r.t0 != r.t1 and (r.curve is not None or math.dist(r.start, r.end) > tolerance)
+    ]
+    return [
+        r if r.end == after.start else replace(r, end=after.start)
+        for r, after in zip(kept, kept[1:] + kept[:1], strict=True)
+    ]
+
+
+def _continue(network: Network, a: Run, b: Run) -> Run | None:
+    """Returns one run for two that follow each other on one curve; None for others."""
+    if a.curve is None or a.curve != b.curve or (a.t1 > a.t0) != (b.t1 > b.t0):
+        return None
+    if a.t1 == b.t0:
+        return Run(a.curve, a.t0, b.t1, a.start, b.end)
+    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
+        return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
+    return None
+
+
+def _to_loop(network: Network, runs: list[Run]) -> Loop:
+    if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
+        return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
+    pieces = [
+        Line(r.start, r.end) if r.curve is None else part(network.curves[r.curve], r.t0, r.t1, r.start, r.end)
+        for r in runs
+    ]
+    return closed_loop(pieces, network.tolerance)
+
+
+def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
+    """Returns the loop of pieces that follow each other, in a canonical form."""
+    pieces = joined(pieces, lambda a, b: _fuse(a, b, tolerance))
+    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
+        return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
+
+    # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
+    def begins(number: int) -> tuple[int, ...]:
+        return tuple(round(c / (2 * tolerance)) for c in ends(pieces[number])[0])
+
+    first = min(range(len(pieces)), key=begins)
+    return Loop((*pieces[first:], *pieces[:first]))
+
+
+def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
+    """Returns one piece for two that follow each other on the same line or circle; None for others."""
+    if isinstance(a, Line) and isinstance(b, Line):
+        return _fuse_lines(a, b, tolerance)
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        same = math.dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
+        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= TAU + 1e-9:
+            return Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
+    return None
+
+
+def _fuse_lines(a: Line, b: Line, tolerance: float) -> Line | None:
+    dx, dy = b.end[0] - a.start[0], b.end[1] - a.start[1]
+    ax, ay = a.end[0] - a.start[0], a.end[1] - a.start[1]
+    whole = math.hypot(dx, dy)
+    if whole <= tolerance or ax * dx + ay * dy <= 0 or math.hypot(ax, ay) >= whole:
+        return None
+    away = abs(ax * dy - ay * dx) / whole
+    shorter = min(math.hypot(ax, ay), whole - math.hypot(ax, ay))
+    return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * shorter) else None
+
+
+def joined(items: Sequence[T], join: Callable[[T, T], T | None]) -> list[T]:
+    """Returns neighbours joined where they can be, around the end as well."""
+    result: list[T] = []
+    for item in items:
+        both = join(result[-1], item) if result else None
+        if both is None:
+            result.append(item)
+        else:
+            result[-1] = both
+    while len(result) > 1 and (both := join(result[-1], result[0])) is not None:
+        result = [both, *result[1:-1]]
+    return result

@@ -5,16 +5,25 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, all_bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.curves import (
+    FIELDS,
+    Arc,
+    Bezier,
+    Bounds,
+    Circle,
+    Piece,
+    Vec,
+    all_bounds,
+    union_bounds,
+)
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
 
@@ -140,6 +149,10 @@ class SolvedGeometry:
     def curves(self) -> Iterator[Piece]:
         """Yields these curves."""
         return (leaf.curve for leaf in self.leaves() if leaf.curve is not None)
+
+
+Leaves: TypeAlias = Sequence[tuple[SolvedGeometry, Piece]]
+"""Primitives that are drawn, with their curves."""
 
 
 @record()
@@ -371,9 +384,7 @@ class SolvedModel:
 
     @property
     def is_unfinished(self) -> bool:
-        """True if outlines are to be derived from others, corners to be finished, or structures to be clipped
-        (see `geometry.outlines`).
-        """
+        """True if there is something to derive, to finish or to clip (see `geometry.outlines`)."""
         return any(s.finishes or s.clip for s in self.root.walk()) or any(
             g.recipe for g in self.root.walk_geometry()
         )
@@ -395,3 +406,27 @@ class SolvedModel:
     def sizes(self) -> tuple[Dimension, ...]:
         """The sizes that the program states, the more important first (see `dimensions`)."""
         return self.size_up(self)
+
+
+# --- Curves that were worked out as geometry of a solved model.
+
+
+def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
+    """Returns a curve as a geometry: a part of another, or beside it in a structure."""
+    kind, values = described(curve)
+    path = f"{around or of.path}.{name}"
+    return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
+
+
+def described(curve: Piece) -> tuple[str, Values]:
+    """Returns the type and the fields of a curve."""
+    if isinstance(curve, Bezier):
+        return curve.kind, {"points": (curve.p0, curve.p1, curve.p2, curve.p3)}
+    values: Values = {}
+    for name in FIELDS[type(curve)]:
+        value = getattr(curve, name)
+        if name == "sweep":
+            values["clockwise"] = value < 0
+        elif name != "first":
+            values[name] = math.degrees(value) if name == "angle" else value
+    return curve.kind, values

@@ -1,18 +1,22 @@
-"""The looks that attributes ask for: colours, lines, how much shows through. They hold for all inside."""
+"""The looks that attributes ask for, and the order of drawing."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from heapq import heapify, heappop, heappush
 from typing import TypeAlias
 
+from aidl_lang.checking.builtins import BEHIND, IN_FRONT, STACKING
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import fold
-from aidl_lang.common.prose import ticked
+from aidl_lang.common.prose import named, ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, Scalar, SolvedGeometry, SolvedStructure
+
+# --- The looks that attributes ask for: colours, lines, how much shows through. They hold for all inside.
 
 Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
@@ -35,9 +39,7 @@ class Shade:
 
 @record()
 class Turn:
-    """The directions of a structure in the frame of the root: `first` is that of its x axis in degrees,
-    `sense` is -1 where it is mirrored.
-    """
+    """The directions of a structure in the root's frame: its x axis, degrees, and -1 where mirrored."""
 
     first: float = 0.0
     sense: float = 1.0
@@ -243,3 +245,95 @@ def idle_looks(
         return words
 
     return united_notes(root, bodies, other)
+
+
+# --- The order of drawing: that of writing, but for what `@behind` and `@in_front` say.
+
+_REMEDY = "make `{0}` an `assembly` of several bodies"
+
+
+def stacked(root: SolvedStructure) -> Iterator[SolvedStructure]:
+    """Yields a structure and all below it from back to front; parts lie on the whole."""
+    yield root
+    for child in _ordered(root.structures):
+        yield from stacked(child)
+
+
+def idle_orders(root: SolvedStructure, bodies: Collection[str]) -> list[Diagnostic]:
+    """Returns warnings about orders between structures that are not drawn by themselves: parts of a body."""
+
+    def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
+        return [name for name in STACKING if name in s.attributes]
+
+    found = united_notes(root, bodies, other, hint=_REMEDY)
+    for around in root.walk():
+        parts = {s.name for s in around.structures if s.kind != "drawing" and s.path not in bodies}
+        for s in around.structures if around.kind == "solid" else ():
+            for name in STACKING if s.kind == "drawing" else ():
+                if united := [part for part in map(str, s.attributes.get(name, ())) if part in parts]:
+                    found.append(_idle(s, name, united, around))
+    return found
+
+
+def _idle(s: SolvedStructure, name: str, united: list[str], body: SolvedStructure) -> Diagnostic:
+    are = "is" if len(united) == 1 else "are"
+    return Diagnostic(
+        "W0727",
+        f"`@{name}` of `{s.path}` counts for nothing: {named(united, 3)} {are} one body with `{body.path}`",
+        s.span,
+        "drawn on all of that body",
+        hints=(_REMEDY.format(body.name),),
+    )
+
+
+def _ordered(beside: Sequence[SolvedStructure]) -> Sequence[SolvedStructure]:
+    """Returns structures side by side from back to front.
+
+    Who states an order that writing does not give stands directly behind, or in front of, what it names; the
+    others keep their order.
+    """
+    if not any(name in s.attributes for s in beside for name in STACKING):
+        return beside
+    places = {s.name: number for number, s in enumerate(beside)}
+    said = {
+        (s.name, name): [other for other in map(str, s.attributes.get(name, ())) if other in places]
+        for s in beside
+        for name in STACKING
+    }
+    wanted = _wanted(places, said)
+    above: dict[str, set[str]] = {name: set() for name in places}
+    for (own, name), others in said.items():
+        for other in others:
+            back, front = (own, other) if name == BEHIND else (other, own)
+            above[back].add(front)
+    below = dict.fromkeys(places, 0)
+    for fronts in above.values():
+        for front in fronts:
+            below[front] += 1
+    ready = [(wanted[name], places[name], name) for name, count in below.items() if not count]
+    heapify(ready)
+    found: list[SolvedStructure] = []
+    while ready:
+        _, place, name = heappop(ready)
+        found.append(beside[place])
+        for front in above[name]:
+            below[front] -= 1
+            if not below[front]:
+                heappush(ready, (wanted[front], places[front], front))
+    return found
+
+
+def _wanted(places: dict[str, int], said: dict[tuple[str, str], list[str]]) -> dict[str, float]:
+    """Returns the place each structure asks for: its own, or a little beside that of what it names."""
+    wanted: dict[str, float] = {name: float(place) for name, place in places.items()}
+    step = 1 / (len(places) + 1)
+    for _ in places:
+        before = dict(wanted)
+        for (own, name), others in said.items():
+            if others and name == BEHIND:
+                wanted[own] = min(wanted[own], min(wanted[other] for other in others) - step)
+            elif others and name == IN_FRONT:
+                wanted[own] = max(wanted[own], max(wanted[other] for other in others) + step)
+        if wanted == before:
+            break
+    return wanted

@@ -11,24 +11,31 @@ Only copies near the border take part in a boolean. Those wholly inside are the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.boolean import clearance, within
-from aidl_lang.geometry.clipping import clipped_each
-from aidl_lang.geometry.curves import Line, Piece, Vec, image
-from aidl_lang.geometry.evaluate import Bounds, bounds, turn_between
-from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.geometry.boolean import clearance, clipped_each, within
+from aidl_lang.geometry.curves import (
+    Bounds,
+    Floats,
+    Line,
+    Piece,
+    Vec,
+    bounds,
+    image,
+    larger_side,
+    turn_between,
+    union_bounds,
+)
 from aidl_lang.geometry.nearness import Sides, inside
-from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, union_bounds
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.region import Region, area, region_bounds, region_polygons
 
 MOST = 10_000
 """Copies of a cell that are made at most."""
@@ -40,8 +47,6 @@ _NEXT = 3
 """Steps within which neighbours of a cell are looked for, either way."""
 _AT_ONCE = 1000
 """Copies whose distance to the border is looked at together, which bounds the memory."""
-
-Floats = NDArray[np.float64]
 
 
 class TooManyCopiesError(Exception):
@@ -93,9 +98,6 @@ class Lattice:
 
         return image(curve, at, turned=lambda direction: direction + self.angle)
 
-    def turned_region(self, region: Region) -> Region:
-        return _mapped(region, self.turned)
-
     @property
     def is_possible(self) -> bool:
         """True if the steps are neither nothing nor along one line."""
@@ -126,9 +128,7 @@ class Lattice:
         return [(x, y) for x, y in (kept + self.offset).tolist()]
 
     def run_of(self, curve: Piece) -> tuple[Vec, Vec | None] | None:
-        """Returns the step along which a line runs on from copy to copy, and the other one; None for what
-        ends in its copy.
-        """
+        """Returns the step along which a line runs on, and the other one; None for what ends in its copy."""
         if not isinstance(curve, Line):
             return None
         way = curve.end[0] - curve.start[0], curve.end[1] - curve.start[1]
@@ -166,9 +166,7 @@ class Lattice:
 
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
-    """Returns the strokes of all copies as far as they lie inside; with `whole` those of the copies no part
-    of which lies outside.
-    """
+    """Returns the strokes of all copies that lie inside; with `whole` of those that lie inside wholly."""
     single, running = _told_apart(cell, lattice, region_bounds(region)) if not whole else (cell, [])
     pieces = [p for one in clipped_each(running, region) for p in one.inner]
     if not single:
@@ -184,11 +182,10 @@ def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, wh
 
 
 def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) -> Region:
-    """Returns what lies inside of all copies of an area; with `whole` the copies no part of which lies
-    outside.
-    """
+    """Returns what lies inside of all copies of an area; with `whole` the copies that lie inside wholly."""
     inner, crossing = (
-        [_moved_region(cell, way) for way in ways] for ways in _sorted(cell.pieces, region, lattice)
+        [cell.mapped(partial(_moved, way=way)) for way in ways]
+        for ways in _sorted(cell.pieces, region, lattice)
     )
     if whole:
         inner, crossing = [*inner, *_uncut(crossing, region)], []
@@ -209,9 +206,7 @@ def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: f
 
 
 def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
-    """Returns the middle or the first corner of the box about a region that stands along a step; `sense` is
-    that of the frame.
-    """
+    """Returns the middle or first corner of a region's box along a step, in a frame of some `sense`."""
     length = math.hypot(*step)
     x, y = step[0] / length, step[1] / length
 
@@ -265,14 +260,14 @@ def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
     """Tells whether copies of an area touch or overlap."""
     left, bottom, right, top = region_bounds(cell)
-    near = RELATIVE_TOLERANCE * max(right - left, top - bottom)
+    near = RELATIVE_TOLERANCE * larger_side((left, bottom, right, top))
     row = lattice.row or (0.0, 0.0)
     for j in range(_NEXT + 1 if lattice.row is not None else 1):
         for i in range(-_NEXT if j else 1, _NEXT + 1):
             way = i * lattice.step[0] + j * row[0], i * lattice.step[1] + j * row[1]
             if abs(way[0]) > right - left + near or abs(way[1]) > top - bottom + near:
                 continue
-            if clearance(cell, _moved_region(cell, way)) <= near:
+            if clearance(cell, cell.mapped(partial(_moved, way=way))) <= near:
                 return True
     return False
 
@@ -289,17 +284,6 @@ def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
 
 def _moved(curve: Piece, way: Vec) -> Piece:
     return image(curve, lambda p: (p[0] + way[0], p[1] + way[1]))
-
-
-def _moved_region(region: Region, way: Vec) -> Region:
-    return _mapped(region, lambda curve: _moved(curve, way))
-
-
-def _mapped(region: Region, moved: Callable[[Piece], Piece]) -> Region:
-    def loop(old: Loop) -> Loop:
-        return Loop(tuple(map(moved, old.pieces)), old.reversed)
-
-    return Region(tuple(Face(loop(f.outer), tuple(map(loop, f.holes))) for f in region.faces))
 
 
 def _together(regions: Sequence[Region]) -> Region:

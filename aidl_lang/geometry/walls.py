@@ -19,21 +19,33 @@ on chords of the curve, and settled by Newton's method.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.materials import least_wall
+from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.chords import ANGLE, Chords, chords, joined
-from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
-from aidl_lang.geometry.distance import piece_distance
-from aidl_lang.geometry.evaluate import derivative, ends, is_closed, point, second_derivative
+from aidl_lang.geometry.boolean import piece_distance
+from aidl_lang.geometry.chords import ANGLE, Chords, Skeleton, chords, direction, joined, within
+from aidl_lang.geometry.curves import (
+    Arc,
+    Circle,
+    Floats,
+    Line,
+    Vec,
+    derivative,
+    ends,
+    is_closed,
+    point,
+    second_derivative,
+)
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.skeleton import Floats, Skeleton, direction, within
+from aidl_lang.geometry.solved import SolvedStructure
 
 _LEAN = math.radians(15)
 """Greatest lean of each side of a narrowing end towards the other."""
@@ -105,9 +117,7 @@ def thin_wall(region: Region, least: float) -> Chord | None:
 
 
 class _ChordSearch:
-    """A search for the shortest chord of a kind. `tip` is the least end of a taper, where nothing is
-    shorter.
-    """
+    """A search for the shortest chord of a kind; `tip` is the least end of a taper, if none is shorter."""
 
     def __init__(self, outline: Skeleton, kind: int, tips: list[Chord]) -> None:
         self.outline = outline
@@ -167,9 +177,7 @@ def _is_convex(outline: Skeleton) -> bool:
 
 
 def _settled(o: Skeleton, found: Chords, k: int) -> Chord | None:
-    """Returns the chord itself, or the one at right angles that is near where curves are not straight or
-    round.
-    """
+    """Returns the chord, or the one at right angles nearby where curves are neither straight nor round."""
     a, b = _vec(found.a[k]), _vec(found.b[k])
     if not (o.free[found.i[k]] or o.free[found.j[k]]):
         return Chord(float(found.length[k]), a, b)
@@ -316,9 +324,7 @@ def _crosses(o: Skeleton, start: Floats, way: Floats, margin: float) -> bool:
 
 
 def _covers(o: Skeleton, spot: Floats) -> bool:
-    """Tells whether a place lies in the material: how often the outline goes round it, by the angles it
-    sees.
-    """
+    """Tells whether a place lies in the material: how often the outline goes round it, by angles seen."""
     n = o.straight
     turns = _seen(o.start[:n] - spot, o.start[:n] + o.way * o.length[:, None] - spot).sum()
     is_arc = o.radius > 0
@@ -343,5 +349,29 @@ def _seen(a: Floats, b: Floats) -> Floats:
     return angles
 
 
-def _vec(row: NDArray[np.float64]) -> Vec:
+def _vec(row: Floats) -> Vec:
     return float(row[0]), float(row[1])
+
+
+# --- Finds walls that are thinner than their material allows.
+
+
+def thin_wall_notes(
+    root: SolvedStructure, bodies: Sequence[tuple[str, Region, str | None]]
+) -> Iterator[Diagnostic]:
+    """Yields a warning for each body, with its region and material, that is somewhere too thin."""
+    spans = {s.path: s.span for s in root.walk()}
+    for path, region, material in bodies:
+        least = least_wall(material) if material and region else None
+        wall = thin_wall(region, least) if least is not None else None
+        if wall is None or least is None:
+            continue
+        x, y = ((a + b) / 2 for a, b in zip(wall.a, wall.b, strict=True))
+        yield Diagnostic(
+            "W0715",
+            f"`{path}` is {short(wall.length, 3)} mm wide at ({short(x, 3)}, {short(y, 3)}), and walls of "
+            f"{material} hold from {short(least)} mm",
+            spans.get(path),
+            "too thin there",
+            hints=("`aidl measure` shows the thinnest wall of each part",),
+        )

@@ -10,9 +10,8 @@ from aidl_lang.export import Options, themes
 from aidl_lang.export import render as render_picture
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.picture import MARGIN, OUTLINE_WIDTH
-from aidl_lang.geometry.evaluate import bounds
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.curves import bounds, union_bounds
+from aidl_lang.geometry.region import region_bounds
 
 _NEUTRAL, _EDGE = "#c9ced6", "#2b2f36"
 """The one fill, and the ink of all edges."""

@@ -13,12 +13,9 @@ from aidl_eval.things import covered, drawn
 from aidl_lang.geometry.boolean import common
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import Polygon
+from aidl_lang.geometry.region import Polygon, Region, region_bounds, region_polygons
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.stacking import stacked
-from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.styles import stacked
 
 FINE = 2e-4
 """Distance of chords from curves, as a share of the drawing's size."""

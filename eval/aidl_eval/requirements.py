@@ -28,8 +28,7 @@ from aidl_lang.common.prose import first_few
 from aidl_lang.explaining.outcome import assertion_note, measured
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, region_bounds
 from aidl_lang.geometry.solved import Box, SolvedModel
 from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled, front

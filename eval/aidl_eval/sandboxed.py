@@ -23,8 +23,7 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.processes import Guarded, Limit, LimitError, limit_met
 from aidl_lang.common.render.excerpt import escape
 from aidl_lang.geometry.curves import Line, Piece
-from aidl_lang.geometry.sections import Polygon
-from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.geometry.region import Polygon, polygon_area
 
 _HOST = Path(__file__).with_name("sandbox") / "host.py"
 _START = 60

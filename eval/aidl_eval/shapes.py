@@ -10,9 +10,8 @@ from typing import Literal
 import numpy as np
 
 from aidl_lang.geometry.curves import Line
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Polygon, Section, fill
-from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.geometry.region import Face, Loop, Polygon, Region, polygon_area
+from aidl_lang.geometry.sections import Section, fill
 
 _CORNERS = 24
 """Corners of a round end or turn."""

@@ -19,7 +19,7 @@ from aidl_eval.regions import Part, Regions
 from aidl_eval.rendering import NOTHING, Rendered, RenderedConversation
 from aidl_eval.shapes import Stroke
 from aidl_lang.common.colors import hexadecimal
-from aidl_lang.geometry.sections import Polygon
+from aidl_lang.geometry.region import Polygon
 
 _LONGEST = 2_000_000
 """Most characters of a program."""

@@ -11,13 +11,11 @@ from typing import TypeAlias
 from aidl_lang import Span
 from aidl_lang.common.prose import first_few
 from aidl_lang.geometry.boolean import united, without
+from aidl_lang.geometry.curves import Bounds, bounds, union_bounds
 from aidl_lang.geometry.drawing import Drawing, draw
-from aidl_lang.geometry.evaluate import Bounds, bounds
-from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.measures import perimeter, region_bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.offsets import hull
 from aidl_lang.geometry.outlines import complete
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, perimeter, region_bounds
 from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.syntax import ast
 

@@ -9,14 +9,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_eval.regions import Regions
-from aidl_lang.geometry.boolean import common, overlap_area
-from aidl_lang.geometry.curves import Line
-from aidl_lang.geometry.distance import region_distance
-from aidl_lang.geometry.evaluate import inward, points
-from aidl_lang.geometry.measures import area, loop_area, measure, region_bounds
+from aidl_lang.geometry.boolean import common, overlap_area, region_distance
+from aidl_lang.geometry.curves import Line, inward, points
 from aidl_lang.geometry.nearness import near_pairs
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.tessellate import polygon_area
+from aidl_lang.geometry.region import (
+    Face,
+    Loop,
+    Region,
+    area,
+    loop_area,
+    measure,
+    polygon_area,
+    region_bounds,
+)
 
 NEAR = 0.02
 """Distance, as a share of the drawing, up to which parts hold together."""

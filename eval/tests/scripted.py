@@ -22,11 +22,8 @@ from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import FINE, Regions, of_drawing
 from aidl_eval.requirements import load
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import Arc, Circle
-from aidl_lang.geometry.measures import region_bounds
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Loop
-from aidl_lang.geometry.tessellate import loop_points
+from aidl_lang.geometry.curves import Arc, Circle, union_bounds
+from aidl_lang.geometry.region import Loop, loop_points, region_bounds
 from aidl_lang.pipeline import compile
 from tests.documents import ROOT
 

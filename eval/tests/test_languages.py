@@ -19,7 +19,7 @@ from aidl_eval.rendering import RenderedLanguage
 from aidl_eval.requirements import examine_regions, load
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import area
 from eval.tests import scripted
 from eval.tests.conftest import Evaluation
 

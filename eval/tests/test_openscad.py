@@ -14,7 +14,7 @@ from aidl_eval import openscad, pictures, rendering
 from aidl_eval.openscad import OpenScad, knobs, parts, render, structures
 from aidl_eval.sandbox import fence
 from aidl_eval.shapes import PIXELS
-from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.geometry.region import area, region_bounds
 
 needs_openscad = pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
 

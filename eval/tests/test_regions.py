@@ -14,7 +14,7 @@ from aidl_eval import pictures
 from aidl_eval.regions import Regions, of_drawing, of_outlines
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import area
 from aidl_lang.pipeline import compile
 
 Shape = shapely.Polygon | shapely.MultiPolygon

@@ -22,7 +22,7 @@ from aidl_eval import rendering, sandboxed
 from aidl_eval.python_cad import PythonCad
 from aidl_eval.rendering import Rendered
 from aidl_eval.sandbox import fence
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import area
 from tests.documents import ROOT
 
 FAKE = PythonCad("statistics")

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from aidl_eval.svg import Svg, render
-from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.geometry.region import area, region_bounds
 
 pytestmark = pytest.mark.skipif(Svg().missing() is not None, reason=str(Svg().missing()))
 

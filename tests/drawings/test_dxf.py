@@ -15,10 +15,9 @@ from ezdxf.layouts import Modelspace
 from shapely.geometry import LineString, MultiLineString
 
 from aidl_lang.common.drawings.drawing import OutlineFile, outlines
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
-from aidl_lang.geometry.evaluate import bounds
-from aidl_lang.geometry.measures import length
-from aidl_lang.geometry.tracing import curve_of
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, bounds
+from aidl_lang.geometry.faces import curve_of
+from aidl_lang.geometry.region import length
 
 Draw = Callable[[Modelspace], object]
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.common.drawings.strokes import (
+from aidl_lang.common.drawings.drawing import (
     Bow,
     Matrix,
     Stroke,
@@ -19,9 +19,8 @@ from aidl_lang.common.drawings.strokes import (
     mapped,
     product,
 )
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece
-from aidl_lang.geometry.evaluate import bounds, points
-from aidl_lang.geometry.tracing import curve_of
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, bounds, points
+from aidl_lang.geometry.faces import curve_of
 from tests.amount import tries
 
 coordinates = st.floats(-100, 100, allow_nan=False)

@@ -12,7 +12,7 @@ from svgelements import SVG, Shape
 
 from aidl_lang.common.drawings.drawing import Element, OutlineFile, outlines
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
-from aidl_lang.geometry.tracing import curve_of
+from aidl_lang.geometry.faces import curve_of
 from tests.amount import tries
 
 NAMES = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'

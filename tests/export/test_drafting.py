@@ -18,8 +18,7 @@ from aidl_lang.export.dimension_marks import DIGIT, Block
 from aidl_lang.export.drafting import Draft, drafted
 from aidl_lang.export.drafting.tables import SCALES, STANDARDS, papers
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
-from aidl_lang.geometry.curves import Circle
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.curves import Circle, bounds
 from tests.documents import ROOT
 
 CAPITAL = 0.73

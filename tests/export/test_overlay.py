@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.export.overlay import Taken
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds
 
 _SPANS = st.tuples(st.integers(-20, 20), st.integers(1, 20)).map(lambda at: (at[0], at[0] + at[1]))
 

@@ -9,7 +9,7 @@ from PIL import Image
 
 from aidl_lang.export import Job, Options, export
 from aidl_lang.export.marks import Group, Picture, Text
-from aidl_lang.export.png import to_png
+from aidl_lang.export.pdf import to_png
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.export.colours import near

@@ -22,9 +22,8 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
 from aidl_lang.export.drafting.contents import View, contents
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, bounds, derivative, ends, point
 from aidl_lang.geometry.drawing import Body
-from aidl_lang.geometry.evaluate import bounds, derivative, ends, point
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 from tests.documents import ROOT
 

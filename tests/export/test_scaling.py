@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, scaled
-from aidl_lang.export.png import to_png
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece
-from aidl_lang.geometry.evaluate import point
+from aidl_lang.export.pdf import to_png
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, point
 from aidl_lang.geometry.region import Face, Loop
 
 PIECES: tuple[Piece, ...] = (

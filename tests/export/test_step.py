@@ -20,8 +20,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.export import ExportError, Job, Options, export
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, area
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
 from tests.amount import large
 from tests.compiled import LIGHTER, compiled

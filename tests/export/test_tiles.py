@@ -16,9 +16,8 @@ from svgelements import SVG, Path
 from aidl_lang.export import ExportError, Job, Options, export
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.picture import tiled
-from aidl_lang.geometry.curves import Circle, Line, Vec
+from aidl_lang.geometry.curves import Circle, Line, Vec, bounds, point
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.evaluate import bounds, point
 from aidl_lang.geometry.region import Face, Loop
 from tests.amount import tries
 from tests.geometry.models import circle, model, polygon, rectangle, structure

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec
-from aidl_lang.geometry.described import described
-from aidl_lang.geometry.evaluate import bounds
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.solved import Box, Frame, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec, bounds, union_bounds
+from aidl_lang.geometry.solved import (
+    Box,
+    Frame,
+    Scalar,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    described,
+)
 
 
 def arc(center: Vec, radius: float, first: float, last: float) -> Arc:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import Circle
-from aidl_lang.geometry.evaluate import points
+from aidl_lang.geometry.curves import Circle, points
 from aidl_lang.geometry.solved import SolvedGeometry
 
 FINE = 200_001

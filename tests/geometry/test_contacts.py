@@ -9,11 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.contacts import ALL_PAIRS, Contact
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
-from aidl_lang.geometry.distance import piece_distance
+from aidl_lang.geometry.boolean import ALL_PAIRS, Contact, piece_distance
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, points
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.evaluate import points
 from aidl_lang.geometry.solved import SolvedGeometry
 from tests.amount import tries
 from tests.geometry.models import arc, circle, model, rectangle, structure

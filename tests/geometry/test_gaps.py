@@ -10,10 +10,8 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
-from aidl_lang.geometry.evaluate import ends
-from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, ends
+from aidl_lang.geometry.region import Region, area
 from aidl_lang.pipeline import Compiled
 
 WEDGE = """\

@@ -9,8 +9,19 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, locate, point, points, second_derivative
+from aidl_lang.geometry.curves import (
+    Bezier,
+    Circle,
+    Ellipse,
+    Line,
+    Piece,
+    Vec,
+    derivative,
+    locate,
+    point,
+    points,
+    second_derivative,
+)
 from aidl_lang.geometry.intersect import intersections
 from tests.amount import tries
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.evaluate import points
+from aidl_lang.geometry.curves import points
 from tests.amount import tries
 
 JOINED = """assembly t {{

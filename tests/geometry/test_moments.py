@@ -10,11 +10,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Vec
-from aidl_lang.geometry.evaluate import inward, point, points
-from aidl_lang.geometry.measures import measure
-from aidl_lang.geometry.moments import Inertia, inertia
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Vec,
+    inward,
+    point,
+    points,
+)
+from aidl_lang.geometry.region import Face, Loop, Region, measure
+from aidl_lang.geometry.survey import Inertia, inertia
 from tests.amount import tries
 from tests.geometry.models import arc
 

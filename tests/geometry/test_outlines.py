@@ -12,16 +12,26 @@ import shapely
 from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.clipping import clipped_each
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import all_bounds, bounds, ends, inward, point, points
-from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
-from aidl_lang.geometry.fitting import fitted
-from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.measures import area, length, perimeter
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.offsets import offset, thick
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.boolean import clipped_each
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    Line,
+    Piece,
+    Vec,
+    all_bounds,
+    bounds,
+    ends,
+    inward,
+    point,
+    points,
+    union_bounds,
+)
+from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, fitted, sized
+from aidl_lang.geometry.offsets import hull, offset, thick
+from aidl_lang.geometry.region import Face, Loop, Region, area, length, perimeter
 from tests.amount import tries
 from tests.geometry.models import arc
 from tests.geometry.test_regions import assert_closed, pieces

@@ -13,11 +13,9 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
 from aidl_lang.geometry.boolean import clearance, common, united, without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, ends, points
 from aidl_lang.geometry.drawing import Drawing, draw
-from aidl_lang.geometry.evaluate import ends, points
-from aidl_lang.geometry.measures import area, measure
-from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.geometry.region import Loop, Region, area, measure
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure

@@ -9,11 +9,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import ends, locate
-from aidl_lang.geometry.intersect import intersections
-from aidl_lang.geometry.separation import Hulls
-from aidl_lang.geometry.tables import Table
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec, ends, locate
+from aidl_lang.geometry.intersect import Table, intersections
+from aidl_lang.geometry.network import Hulls
 
 TOLERANCE = 1e-5
 

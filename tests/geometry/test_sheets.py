@@ -12,13 +12,11 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
 from aidl_lang.geometry import sheets
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, ends, point
 from aidl_lang.geometry.drawing import Body, Drawing, draw
-from aidl_lang.geometry.evaluate import ends, point
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import area, face_polygons
 from aidl_lang.geometry.sheets import Layout
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.tessellate import face_polygons
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.stacking import stacked
+from aidl_lang.geometry.styles import stacked
 from tests.geometry.models import structure
 
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 import shapely
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
-from aidl_lang.geometry.evaluate import ends, part, point, points
-from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.tessellate import (
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, ends, part, point, points
+from aidl_lang.geometry.region import (
+    Face,
+    Loop,
+    Region,
+    area,
     face_polygons,
     loop_points,
     piece_points,

@@ -11,10 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import affinity
 
-from aidl_lang.geometry.clipping import clipped_each
+from aidl_lang.geometry.boolean import clipped_each
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, area, length
 from aidl_lang.geometry.tiling import (
     MOST,
     Lattice,
@@ -151,7 +150,7 @@ def test_a_pattern_in_the_middle_turns_and_moves_with_its_outline(angle: float, 
     points = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), at(1, 0), at(7, 0), at(2, 6)]
     cover = disc(31, (x, y))
     lattice = Lattice.through(points, cover, "center")
-    cell = lattice.turned_region(rectangle(3, 2))
+    cell = rectangle(3, 2).mapped(lattice.turned)
     plain = Lattice((7, 0), (2, 6))
     wanted = tiled_areas(rectangle(3, 2), disc(31), plain, whole=False)
     assert area(tiled_areas(cell, cover, lattice, whole=False)) == pytest.approx(area(wanted), rel=1e-6)

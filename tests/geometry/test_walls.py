@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 
-from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Vec
-from aidl_lang.geometry.evaluate import nearest, point
+from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Vec, nearest, point
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.walls import Widths, thin_wall, widths

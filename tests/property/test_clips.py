@@ -11,11 +11,9 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.curves import Piece, points
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import points
-from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.geometry.region import Loop, Region, area
 from tests.amount import tries
 
 CHORDS = 400

@@ -121,7 +121,7 @@ def test_nothing_is_worked_out_unread(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("aidl_lang.solver.analysis.analyse", unread)
     monkeypatch.setattr("aidl_lang.explaining.outcome.solution_notes", unread)
     monkeypatch.setattr("aidl_lang.geometry.drawing.detached_notes", unread)
-    monkeypatch.setattr("aidl_lang.geometry.contacts._compare", unread)
+    monkeypatch.setattr("aidl_lang.geometry.boolean._compare", unread)
     found = compiled(TOUCHING)
     assert found.ok
     assert found.export(".svg")

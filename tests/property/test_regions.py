@@ -18,11 +18,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.boolean import common, overlap_area, united, without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, ends, points
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.evaluate import ends, points
-from aidl_lang.geometry.measures import area, length, loop_area, perimeter, region_bounds
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Loop, Region, area, length, loop_area, perimeter, region_bounds
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import compound, model, structure

@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from aidl_lang.geometry.curves import Arc, Line, Vec
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.curves import Arc, Line, Vec, bounds
 from aidl_lang.geometry.solved import Box, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
 

@@ -13,9 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common import cluster as cluster_module
-from aidl_lang.common.cluster import Cluster
-from aidl_lang.common.crew import Broke, Crew, EngineError
+from aidl_lang.common import crew as cluster_module
+from aidl_lang.common.crew import Broke, Cluster, Crew, EngineError
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.processes import Limit
 from tests.sweep.cluster import LocalCluster, free_port

@@ -10,8 +10,20 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
-from aidl_lang.common.drawings.strokes import TURN, Bow, Matrix, Stroke, cubics, ends, mapped
+from aidl_lang.common.drawings.drawing import (
+    TURN,
+    Bow,
+    Collector,
+    DrawingError,
+    Engraving,
+    Matrix,
+    Remark,
+    Stroke,
+    cubics,
+    ends,
+    flat,
+    mapped,
+)
 from aidl_lang.common.font_files import Vec
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint
@@ -179,7 +191,7 @@ class _Walk:
     def _strokes(self, kind: str, entity: Any) -> Iterator[Stroke]:
         match kind:
             case "LINE":
-                yield _flat(entity.dxf.start), _flat(entity.dxf.end)
+                yield flat(entity.dxf.start), flat(entity.dxf.end)
             case "CIRCLE" | "ARC":
                 yield _round(entity, is_whole=kind == "CIRCLE")
             case "ELLIPSE":
@@ -217,9 +229,7 @@ class _Walk:
 
 
 def _engraving(entity: Any) -> Engraving | None:
-    """Returns what AIDL says of an entity that is engraved: the operation, and the layer of the program; None
-    for all others.
-    """
+    """Returns the operation and the layer that AIDL notes on an engraved entity; None for others."""
     if not entity.has_xdata(ENGRAVED):
         return None
     operation, layer = ([text for code, text in entity.get_xdata(ENGRAVED) if code == 1000] + ["", ""])[:2]
@@ -246,14 +256,10 @@ def _millimetres(units: object) -> float | None:
 _READ = frozenset({"LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE"})
 
 
-def _flat(p: Any) -> Vec:
-    return float(p[0]), float(p[1])
-
-
 def _plane(entity: Any, height: float = 0.0) -> Matrix:
     """Returns the map of an entity's own coordinates to the world's, seen from above."""
     system = entity.ocs()
-    (a, b), (c, d), (e, f) = (_flat(system.to_wcs(p)) for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)))
+    (a, b), (c, d), (e, f) = (flat(system.to_wcs(p)) for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)))
     return a, b, c, d, e, f
 
 
@@ -264,7 +270,7 @@ def _round(entity: Any, *, is_whole: bool) -> Stroke:
         first = math.radians(entity.dxf.start_angle)
         sweep = math.radians(entity.dxf.end_angle) - first
         sweep = sweep % TURN or TURN
-    bow = _bow(_flat(center), (radius, 0.0), (0.0, radius), first, sweep)
+    bow = _bow(flat(center), (radius, 0.0), (0.0, radius), first, sweep)
     return mapped(bow, _plane(entity, center[2]))
 
 
@@ -273,9 +279,7 @@ def _ellipse(entity: Any) -> Stroke:
     sweep = (float(entity.dxf.end_param) - first) % TURN
     if sweep < 1e-9 or sweep > TURN - 1e-9:
         sweep = TURN
-    return _bow(
-        _flat(entity.dxf.center), _flat(entity.dxf.major_axis), _flat(entity.minor_axis), first, sweep
-    )
+    return _bow(flat(entity.dxf.center), flat(entity.dxf.major_axis), flat(entity.minor_axis), first, sweep)
 
 
 def _bow(center: Vec, u: Vec, v: Vec, first: float, sweep: float) -> Bow:
@@ -287,19 +291,17 @@ def _bow(center: Vec, u: Vec, v: Vec, first: float, sweep: float) -> Bow:
 
 def _polyline(entity: Any) -> Iterator[Stroke]:
     if entity.is_3d_polyline:
-        points = [(*_flat(v.dxf.location), 0.0) for v in entity.vertices]
+        points = [(*flat(v.dxf.location), 0.0) for v in entity.vertices]
         yield from _bulged(points, entity.is_closed, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
         return
     kept = [v for v in entity.vertices if not v.dxf.flags & 16]  # without the frame of a fitted spline
-    points = [(*_flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
+    points = [(*flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
     height = entity.dxf.elevation[2] if entity.dxf.hasattr("elevation") else 0.0
     yield from _bulged(points, entity.is_closed, _plane(entity, height))
 
 
 def _bulged(points: Sequence[tuple[float, float, float]], is_closed: bool, plane: Matrix) -> Iterator[Stroke]:
-    """Yields the edges of a polyline: a line, or an arc of which the bulge is the tangent of a quarter of its
-    sweep.
-    """
+    """Yields the edges of a polyline: lines, and arcs by their bulge, tan(sweep / 4)."""
     if is_closed and len(points) > 1:
         points = [*points, (*points[0][:2], 0.0)]
     for (x0, y0, bulge), (x1, y1, _) in pairwise(points):

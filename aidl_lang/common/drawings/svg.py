@@ -11,11 +11,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.drawings import xml
-from aidl_lang.common.drawings.drawing import Collector, DrawingError, Engraving, Remark
-from aidl_lang.common.drawings.strokes import (
+from aidl_lang.common.drawings import svg_values as xml
+from aidl_lang.common.drawings.drawing import (
     STILL,
+    Collector,
+    DrawingError,
+    Engraving,
     Matrix,
+    Remark,
     Stroke,
     ends,
     mapped,
@@ -24,6 +27,7 @@ from aidl_lang.common.drawings.strokes import (
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
     SHAPES,
+    Node,
     ValueMistake,
     declarations,
     numbers,
@@ -31,7 +35,6 @@ from aidl_lang.common.drawings.svg_values import (
     pixels,
     transform,
 )
-from aidl_lang.common.drawings.xml import Node
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -211,7 +214,7 @@ class _Walk:
             if style.get("display") == "none":
                 return
             names = (*place.names, *_names(target))
-            sizes = {**target.attributes, **_sizes(node)}
+            sizes = target.attributes | {k: v for k, v in node.attributes.items() if k in ("width", "height")}
             around = (*place.around, target)
             self._inner_page(target, replace(place, style=style, names=names, around=around), sizes)
         else:
@@ -264,7 +267,6 @@ class _Walk:
             return otherwise
 
     def _corner(self, node: Node, page: tuple[float, float]) -> Matrix:
-        """Returns the shift by the `x` and `y` of an element."""
         x, y = (
             self._length(node, node.attributes.get(name, "0"), whole)
             for name, whole in zip("xy", page, strict=True)
@@ -337,10 +339,6 @@ def _engraved(node: Node, around: _Place) -> tuple[str | None, str | None]:
         return (operation, operation if is_layer else None) if operation in _ENGRAVED else (None, None)
     is_drawn = said.get("data-kind") == "drawing"
     return ("", said.get("data-layer")) if is_drawn else (None, None)
-
-
-def _sizes(node: Node) -> dict[str, str]:
-    return {name: node.attributes[name] for name in ("width", "height") if name in node.attributes}
 
 
 def _names(node: Node) -> tuple[str, ...]:

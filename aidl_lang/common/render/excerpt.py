@@ -25,9 +25,7 @@ _BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
 
 
 def escape(text: str) -> str:
-    """Returns the text with a visible stand-in for every character that could disturb a terminal; line breaks
-    are kept.
-    """
+    """Returns the text with stand-ins for characters that disturb a terminal; line breaks are kept."""
     return "".join(char if char == "\n" else _visible(char) for char in text)
 
 
@@ -158,9 +156,7 @@ class TerminalStyle:
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
-    """Tells whether to print in colour: on a terminal only; `NO_COLOR` and `FORCE_COLOR` overrule, in that
-    order (no-color.org).
-    """
+    """Tells whether to colour: on a terminal, unless `NO_COLOR` or `FORCE_COLOR` overrule, in that order."""
     if environment.get("NO_COLOR"):
         return False
     if environment.get("FORCE_COLOR", "0") != "0":
@@ -340,7 +336,6 @@ class Bars:
 
 
 def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> Iterator[ExcerptRow]:
-    """Yields the carets under one line and the texts that belong to them."""
     if not marks:
         return
     marks = sorted(marks, key=lambda m: (m.start, m.primary))

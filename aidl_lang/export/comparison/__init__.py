@@ -27,10 +27,9 @@ from aidl_lang.export.comparison.changes import (
     Version,
     pose_of,
 )
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import Arc, Line, Vec
-from aidl_lang.geometry.measures import measure
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Region, measure
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
 
 # --- Pairs the structures and geometries of two versions: by path first, renamed ones by shape.
@@ -221,9 +220,7 @@ def _congruent(
 def _nearest(
     y: _T, candidates: Sequence[_T], pose: Callable[[_T, _T, float], Pose], tolerance: float
 ) -> tuple[_T, _T, Pose] | None:
-    """Returns the candidate of the same shape that moved least, among the first few: many that were renamed
-    together keep their order.
-    """
+    """Returns the like candidate that moved least, of the first few: renamed ones keep their order."""
     found: list[tuple[float, float, int, _T, Pose]] = []
     for x in candidates[:_MOST]:
         p = pose(x, y, tolerance)
@@ -253,8 +250,6 @@ def _form_of_geometry(g: SolvedGeometry) -> object:
     return g.type, g.construction, tuple((p.name, _form_of_geometry(p)) for p in g.parts)
 
 
-# --- Compares two trees from the root down: each structure relative to the motion of its parent.
-
 # --- The numbers and words of a structure or geometry, and which of them differ.
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9
@@ -263,9 +258,7 @@ Changed = dict[str, tuple[Value, Value]]
 
 
 def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) -> Changed:
-    """Returns the values that differ, in order of writing after. Points that moved by `move` count as
-    equal.
-    """
+    """Returns the values that differ, in order of writing after; points moved by `move` are equal."""
     return {
         name: (a.get(name), b.get(name))
         for name in dict.fromkeys([*b, *a])
@@ -325,9 +318,7 @@ def sizes(s: SolvedStructure, region: Region | None) -> dict[str, Value]:
 
 
 def of_geometry(a: SolvedGeometry, b: SolvedGeometry, move: Move, tolerance: float) -> Changed:
-    """Returns the changed fields of a geometry that did not move as a whole; for an outline its corners and
-    radii.
-    """
+    """Returns the changed fields of a geometry that did not move as one; corners and radii of outlines."""
     if a.type != b.type:
         return {"type": (a.type, b.type)}
     first, last = _values(a), _values(b)
@@ -412,7 +403,6 @@ def _renamed(path: str, names: Mapping[str, str]) -> str:
 def _contact_changes(
     before: Version, after: Version, names: Mapping[str, str], tolerance: float
 ) -> Iterator[ContactChange]:
-    """Yields the changed contacts between bodies of both versions."""
     bodies = {names.get(b.path, "") for b in before.drawing.bodies} & {b.path for b in after.drawing.bodies}
     first = {
         frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()
@@ -475,9 +465,7 @@ class _Walk:
             yield replace(_alone(appeared), sort="appeared", sizes=self._sizes_alone(appeared, 1))
 
     def _majority(self, pair: StructurePair, expected: Move, is_root: bool) -> Move | None:
-        """Returns the motion of most things in a structure, if it is not `expected`; None for a root of which
-        something stayed.
-        """
+        """Returns the motion of most in a structure, if not `expected`; None for a root with what stayed."""
         if pair.follows(expected) or (is_root and any(item.follows(STILL) for item in pair.items)):
             return None
         return next((move for move in self._candidates(pair) if pair.follows(move)), None)

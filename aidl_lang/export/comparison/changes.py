@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
-from aidl_lang.geometry.contacts import Contact
-from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
+from aidl_lang.geometry.boolean import Contact
+from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec, point
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import point
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel
 
 # --- Rigid motions of the plane, and finding the one between two poses.
@@ -28,9 +27,7 @@ _SAME_ANGLE = 1e-4
 
 @record(slots=True)
 class Move:
-    """A rigid motion: reflects x if `mirrored`, turns about the origin by `turn` degrees, then shifts by (dx,
-    dy) mm.
-    """
+    """A rigid motion: reflects x if `mirrored`, turns by `turn` degrees, then shifts by (dx, dy) mm."""
 
     dx: float = 0.0
     dy: float = 0.0
@@ -108,9 +105,7 @@ class Pose:
         return bool(np.all(np.abs(move.all(self.centers[0]) - self.centers[1]) <= self.tolerance))
 
     def move(self, expected: Move = STILL) -> Move | None:
-        """Returns the motion of all its points, if there is one: `expected` if that fits, else the
-        simplest.
-        """
+        """Returns the motion of all points, if there is one: `expected` if that fits, else the simplest."""
         if not self.congruent:
             return None
         return next((m for m in self._candidates(expected) if self.fits(m)), None)
@@ -197,9 +192,7 @@ def _gather(
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
-    """Returns points that fix the place and direction of a primitive; the middle of an arc fixes its way
-    round.
-    """
+    """Returns points that fix where a primitive is and its direction; of an arc its middle, too."""
     if g.curve is None:
         at = g.values.get("at")
         return [] if at is None else [at]  # type: ignore[list-item]
@@ -235,9 +228,7 @@ class Version:
 
 @record()
 class GeometryChange:
-    """The change of a named geometry. `fields` differ if it did not move as a whole
-    (`is_outline_changed`).
-    """
+    """The change of a named geometry: of `fields` if it did not move as a whole."""
 
     name: str
     type: str

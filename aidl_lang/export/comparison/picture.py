@@ -13,16 +13,11 @@ import numpy as np
 
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
 from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon, widened
-from aidl_lang.geometry.boolean import section_of
-from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, point, union_bounds
 from aidl_lang.geometry.drawing import Stroke
-from aidl_lang.geometry.evaluate import Bounds, point
-from aidl_lang.geometry.measures import area, measure
-from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.region import Face, Region
-from aidl_lang.geometry.sections import difference, intersection, union
-from aidl_lang.geometry.tessellate import face_polygons
-from aidl_lang.geometry.trace import trace_all
+from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
+from aidl_lang.geometry.sections import difference, filled, intersection, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
 INKS = {"both": "#64748b", "before": "#c2500a", "after": "#0b3c5d"}
@@ -62,7 +57,7 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
     def traced() -> list[Region]:
         sections, number = [], 0
         for region in (*before, *after):
-            sections.append(section_of(network, region, number))
+            sections.append(filled(network, [loop.pieces for loop in region.loops], number))
             number += sum(len(loop.pieces) for loop in region.loops)
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
         wanted = [intersection(first, last), difference(first, last), difference(last, first)]
@@ -140,9 +135,7 @@ def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _arrows(changes: Iterable[StructureChange], before: Version, size: float) -> Iterator[Mark]:
-    """Yields arrows from the old to the new middle of a thing: the centroid of its region, else of its
-    box.
-    """
+    """Yields arrows between the old and new middles of things: centroids of regions, else of boxes."""
     ways = []
     for change in changes:
         region = before.drawing.regions.get(change.was or change.path)

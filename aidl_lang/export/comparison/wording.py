@@ -19,7 +19,7 @@ from aidl_lang.export.comparison.changes import (
     StructureChange,
     Value,
 )
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import Vec
 
 EQUAL = "no difference"
@@ -32,9 +32,7 @@ _MOST = 6
 """Most fields of one geometry, and most names of a list, that are reported."""
 _DIGITS = (5, 7, 9, 12)
 _ROUNDING, _NOTHING, _HARDLY = 1e-7, 1e-9, 1e-6
-"""Bounds of values shown as 0: of a point relative to its larger coordinate, of any number, of a shift
-relative to the drawing.
-"""
+"""Values shown as 0: of points relative to the larger coordinate, of shifts relative to the drawing."""
 _MAIN_SIZES = ("width", "height", "area")
 _MEMBER = re.compile(r"(.*)\[(-?\d+)\]")
 
@@ -225,21 +223,15 @@ def _move(move: Move, middle: Vec | None, size: float) -> str:
 
 
 def _contacts(changes: Sequence[ContactChange], root: str) -> Iterator[str]:
-    """Yields lines on contacts, those of another kind now first; changed gaps only as far as there is
-    room.
-    """
+    """Yields lines on contacts, new kinds first; changed gaps only as far as there is room."""
     kinds = {id(c): len({lie.relation if lie else "apart" for lie in (c.before, c.after)}) for c in changes}
     ranked = sorted(changes, key=lambda c: -kinds[id(c)])
     most = max(_MOST_CONTACTS, sum(kind > 1 for kind in kinds.values()))
     for change in ranked[:most]:
-        yield _contact(change, root)
+        a, b = (path.removeprefix(f"{root}.") for path in (change.a, change.b))
+        yield f"{a} and {b}: {_lie(change.before)} → {_lie(change.after)}"
     if len(ranked) > most:
         yield f"and {len(ranked) - most} more gaps"
-
-
-def _contact(change: ContactChange, root: str) -> str:
-    a, b = (path.removeprefix(f"{root}.") for path in (change.a, change.b))
-    return f"{a} and {b}: {_lie(change.before)} → {_lie(change.after)}"
 
 
 def _lie(contact: Contact | None) -> str:
@@ -264,7 +256,6 @@ def _freedom(comparison: Comparison, root: str) -> Iterator[str]:
 
 
 def _pair(a: Value, b: Value) -> str:
-    """Returns both values, with enough digits to tell them apart."""
     shown = [(_value(a, digits), _value(b, digits)) for digits in _DIGITS]
     return " → ".join(next((p for p in shown if p[0] != p[1]), shown[-1]))
 

@@ -35,12 +35,10 @@ from aidl_lang.export.drafting.tables import (
     written,
 )
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, widened
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions.completing import mirror_levels
 from aidl_lang.geometry.dimensions.sketch import is_half_round
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, bounds, point
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import SolvedStructure
 
 # --- Views at their scale, as marks in mm on paper.
@@ -326,7 +324,6 @@ def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] |
 
 
 def _tables(content: Content) -> list[Table]:
-    """Returns the tables of a sheet, the lowest first."""
     found = [Table("notes", ("Notes",), tuple((line,) for line in content.lines))] if content.lines else []
     found += [_list_of_parts(content)] if content.items else []
     return found + [_table_of_holes(view) for view in content.views if view.holes]

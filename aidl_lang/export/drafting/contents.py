@@ -10,15 +10,12 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import Pen, Sheet
 from aidl_lang.export.dimensioning import visible
-from aidl_lang.geometry.contacts import Contacts
-from aidl_lang.geometry.curves import Circle, Piece, Vec
+from aidl_lang.geometry.boolean import Contacts
+from aidl_lang.geometry.curves import Circle, Piece, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions, overall
 from aidl_lang.geometry.dimensions.completing import completed
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.engraving import engraved
-from aidl_lang.geometry.evaluate import bounds, point
-from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.parts import gathered, shape_of
+from aidl_lang.geometry.parts import engraved, gathered, shape_of
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -125,9 +122,7 @@ _FILED = frozenset({"glyphs", "traced"})
 
 @record()
 class Hole:
-    """A round hole of a table: its sign, a letter for its size and a number, and its place from the datum of
-    the view.
-    """
+    """A round hole of a table: a letter for its size and a number, and its place from the datum."""
 
     sign: str
     circle: Circle
@@ -193,9 +188,7 @@ class Content:
 
 
 def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
-    """Returns the sheets that are needed: one for a single part, else one of all parts with a list of them,
-    and one for each that differs from the others.
-    """
+    """Returns the sheets: one for a single part, else one of all with a list, and one per different part."""
     root, styles = model.root, drawing.styles
     if len(drawing.bodies) < 2:
         style = drawing.bodies[0].style if drawing.bodies else styles[root.path]
@@ -279,19 +272,13 @@ def _overview(
 
 
 def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
-    """Returns the bodies with equal ones together, in order of writing."""
     return tuple(
-        Item(number, tuple(group), _stem(group[0].path))
+        Item(number, tuple(group), group[0].path.rpartition(".")[2].partition("[")[0])
         for number, group in enumerate(gathered(bodies, shape_of), 1)
     )
 
 
-def _stem(path: str) -> str:
-    return path.rpartition(".")[2].partition("[")[0]
-
-
 def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:
-    """Returns the drawing of some of its bodies and strokes."""
     boxes = [b.box for b in bodies] + [bounds(p) for s in strokes for p in s.pieces]
     paths = {b.path for b in bodies}
     return replace(

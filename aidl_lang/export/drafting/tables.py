@@ -8,8 +8,7 @@ from dataclasses import field
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.records import record
 from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text
-from aidl_lang.geometry.curves import Circle, Line, Vec
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Circle, Line, Vec
 
 # --- Paper, frames and scales of technical drawings: ISO 5457 and 5455, and what is usual beside them.
 

@@ -12,14 +12,17 @@ from aidl_lang.building.expression import Evaluator, Expression
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.state import ParamBinding, Scope
 from aidl_lang.building.values import Num
-from aidl_lang.geometry.curves import Arc, Circle
-from aidl_lang.geometry.dimensions.clipped import left_of
-from aidl_lang.geometry.dimensions.constraints import by_hand, stated_lengths
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, length_along
-from aidl_lang.geometry.dimensions.fields import field_sizes
-from aidl_lang.geometry.dimensions.patterns import pattern_pitches
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Arc, Circle
+from aidl_lang.geometry.dimensions.constraints import Scene, by_hand, stated_lengths
+from aidl_lang.geometry.dimensions.features import (
+    X_AXIS,
+    Y_AXIS,
+    field_sizes,
+    left_of,
+    length_along,
+    pattern_pitches,
+)
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
@@ -29,11 +32,8 @@ RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
     """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
-    found = [
-        *by_hand(model, solved, evaluate, names),
-        *field_sizes(model, solved, evaluate, names),
-        *stated_lengths(model, solved, evaluate, names),
-    ]
+    scene, fields = Scene(model, solved, evaluate, names), field_sizes(model, solved, evaluate, names)
+    found = [*by_hand(model, scene), *fields, *stated_lengths(model, scene)]
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))
 
@@ -79,7 +79,6 @@ def _grouped(found: Iterable[Dimension], tolerance: float) -> list[tuple[Dimensi
 
 
 def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
-    """Tells whether a circle reaches as far as all there is."""
     assert isinstance(whole, Length)
     middle = circle.center[0] * whole.along[0] + circle.center[1] * whole.along[1]
     start = whole.start[0][0] * whole.along[0] + whole.start[0][1] * whole.along[1]

@@ -15,14 +15,21 @@ from itertools import chain, pairwise, product
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, bounds, nearest, point
 from aidl_lang.geometry.dimensions import sketch as sk
-from aidl_lang.geometry.dimensions.features import length_between
-from aidl_lang.geometry.dimensions.fields import round_dimension
-from aidl_lang.geometry.dimensions.sketch import Level, Places, Reading, Sketch, Span, flipped
-from aidl_lang.geometry.dimensions.telling import ALONG, less, told
+from aidl_lang.geometry.dimensions.features import length_between, round_dimension
+from aidl_lang.geometry.dimensions.sketch import (
+    ALONG,
+    Level,
+    Places,
+    Reading,
+    Sketch,
+    Span,
+    flipped,
+    less,
+    told,
+)
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.evaluate import bounds, nearest, point
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import Dimension, Length, Roundness
 
@@ -245,9 +252,7 @@ class _Part:
     # --- What is told ------------------------------------------------------------------------------
 
     def needed(self, groups: Iterable[Group]) -> list[Group]:
-        """Returns the groups without those that tell nothing more than the ones before them; what is asked
-        for by hand stays as an auxiliary dimension.
-        """
+        """Returns the groups that tell more than those before them; by hand, others stay as auxiliary."""
         kept: list[Group] = []
         for group in groups:
             members, is_new, is_judged = [], False, True
@@ -276,9 +281,7 @@ class _Part:
         return any(self.sketch.fillets.intersection(reading.needs) for reading in readings)
 
     def pruned(self, groups: Sequence[Group]) -> list[Group]:
-        """Returns the groups without those that others tell after all: several numbers of one group may have
-        made an earlier one needless.
-        """
+        """Returns the groups that others do not tell after all: later ones may make one needless."""
         own = [self._rows_of(group) for group in groups]
         rows = [row / np.linalg.norm(row) for row in chain(self.rows, *own) if row.any()]
         gram = np.array(rows).T @ np.array(rows) if rows else np.zeros((0, 0))
@@ -306,9 +309,7 @@ class _Part:
         return self.span.add_all(map(self.sketch.row, readings))
 
     def _shifted(self, of: Dimension) -> Dimension:
-        """Returns a length along an axis between points that are seen, if it has others but there are some as
-        far from each other.
-        """
+        """Returns a length along an axis between points that are seen, if some are as far from each other."""
         if not isinstance(of, Length) or of.along not in ALONG or of.origin == "hand":
             return of
         if told(self.sketch, of) and self._is_there(of.start) and self._is_there(of.end):

@@ -20,8 +20,9 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.dimensions.features import (
+    SizedGeometry,
     angle_of,
     dot,
     extreme,
@@ -29,10 +30,10 @@ from aidl_lang.geometry.dimensions.features import (
     length_along,
     length_between,
     length_of_line,
+    level_angle,
     meeting,
+    round_dimension,
 )
-from aidl_lang.geometry.dimensions.fields import SizedGeometry, level_angle, round_dimension
-from aidl_lang.geometry.evaluate import NO_LENGTH, turn_between
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -57,22 +58,16 @@ _SIZES = frozenset({"length", "radius", "diameter", "width", "height", "angle"})
 _SLACK = 1e-6
 
 
-def stated_lengths(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
-) -> Iterator[Dimension]:
+def stated_lengths(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the constraints of the author measure, in order of writing."""
-    scene = Scene(model, solved, evaluate, names)
     for constraint in model.constraints:
         checkpoint()
         if constraint.weight is None and isinstance(constraint.wording, Wording):
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
 
 
-def by_hand(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
-) -> Iterator[Dimension]:
+def by_hand(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the program asks for, in order of writing."""
-    scene = Scene(model, solved, evaluate, names)
     for asked in model.by_hand:
         checkpoint()
         assert isinstance(asked.wording, Wording)
@@ -160,7 +155,6 @@ class _Statement:
         )
 
     def _alone(self, node: ast.Expression) -> Dimension | None:
-        """Returns the size of a line or of something round."""
         thing = self.wording.value(node)
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
         curve = solved.curve if solved is not None else None
@@ -300,9 +294,7 @@ class _Statement:
     # --- Offsets -----------------------------------------------------------------------------------
 
     def _offset(self, left: ast.Expression, right: ast.Expression) -> Iterator[tuple[Dimension, Num]]:
-        """Yields the lengths from one place to another in `a.left == b.right + 5` or `a.center == b.center +
-        (3, 4)`.
-        """
+        """Yields the lengths in `a.left == b.right + 5` or `a.center == b.center + (3, 4)`."""
         terms = [*self._terms(left, 1), *self._terms(right, -1)]
         places = [(sign, node) for sign, node, value in terms if value is None]
         if len(places) != 2 or places[0][0] == places[1][0]:

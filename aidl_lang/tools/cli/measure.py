@@ -12,7 +12,7 @@ from aidl_lang.tools.cli.files import UseError, exit_code, show
 from aidl_lang.tools.cli.options import add_params, add_program, flag, value
 
 if TYPE_CHECKING:
-    from aidl_lang.geometry.contacts import Contact
+    from aidl_lang.geometry.boolean import Contact
     from aidl_lang.geometry.curves import Vec
     from aidl_lang.geometry.survey import Part, Survey, Width
     from aidl_lang.pipeline import Compiled

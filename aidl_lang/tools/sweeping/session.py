@@ -79,7 +79,7 @@ def engine(
     if name == LOCAL:
         wanted = jobs or count()
         return Guarded(max(1, min(wanted, most or wanted)), preloads(outputs))
-    from aidl_lang.common.cluster import Cluster
+    from aidl_lang.common.crew import Cluster
 
     if jobs is not None:
         message = "the workers of a cluster are as many as it has"

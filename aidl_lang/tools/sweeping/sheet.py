@@ -17,8 +17,7 @@ from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.render import escape
-from aidl_lang.export.pdf import POINTS_PER_MM
-from aidl_lang.export.png import FAMILY, font_file
+from aidl_lang.export.pdf import FAMILY, POINTS_PER_MM, font_file
 from aidl_lang.tools.sweeping.plan import shown
 from aidl_lang.tools.sweeping.rows import Columns, Row, as_mapping
 from aidl_lang.version import __version__

@@ -18,10 +18,8 @@ from aidl_lang.export import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.picture import picture
 from aidl_lang.export.svg import face_path, open_path, to_svg
-from aidl_lang.geometry.curves import Circle, Piece, Vec
+from aidl_lang.geometry.curves import Bounds, Circle, Piece, Vec, bounds, is_finite, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, bounds, is_finite
-from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.riding import Memory

@@ -9,9 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import Bounds, bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Ellipse, Line, Piece, Vec, bounds, union_bounds
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.tools.ide.preview.protocol import Element
 from aidl_lang.tools.ide.workspace import View

@@ -11,8 +11,7 @@ from aidl_lang.common.diagnostics import Fix
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.geometry.curves import Vec
-from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.curves import Bounds, Vec
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.workspace import Positions, View
 
