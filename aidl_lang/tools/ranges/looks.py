@@ -23,13 +23,11 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.geometry.curves import Arc, Line, Piece
+from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, all_bounds, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import Bounds, all_bounds
-from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.tessellate import region_polygons
 from aidl_lang.tools.sweeping.bundle import Fault, fault
 
 OF_KIND = frozenset(
