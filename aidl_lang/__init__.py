@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
     from aidl_lang.geometry.survey import Part
     from aidl_lang.pipeline import Compiled, Settings
-    from aidl_lang.tools.sweeping.python import Sweep
+    from aidl_lang.tools.sweeping.session import Sweep
 
 __all__ = [
     "AidlError",
@@ -92,9 +92,7 @@ class Model:
     def with_params(
         self, by_path: Mapping[str, str | float | bool] | None = None, /, **params: str | float | bool
     ) -> Model:
-        """Solves the same program anew with some knobs set: `with_params(width=120)`, and by path those of
-        parts: `with_params({"lid.height": 12})`. The others stay as they are in this model.
-        """
+        """Solves the same program anew with some knobs set, by name or by path (`{"lid.height": 12}`)."""
         from aidl_lang import pipeline
 
         return Model(pipeline.again(self._compiled, {**(by_path or {}), **params}), self._reads)
@@ -122,9 +120,7 @@ class Model:
         return self._compiled.timings
 
     def __getitem__(self, path: str) -> SolvedStructure:
-        """Returns a structure by its dotted path, with or without the root's name. Raises an AidlError that
-        is a KeyError too.
-        """
+        """Returns a structure by its path, without the root's name too. Raises an AidlError, a KeyError."""
         root = self.solved.root
         found = root.find(path) or root.find(f"{root.path}.{path}")
         if found is None:
@@ -218,9 +214,7 @@ class Model:
         return self.to_svg() if self._compiled.model is not None else None
 
     def _repr_html_(self) -> str | None:
-        """Returns the drawing with what there is to tell of it; None if there is nothing, as then the drawing
-        alone is shown.
-        """
+        """Returns the drawing with what there is to tell of it; None, for the drawing alone, without that."""
         if not self.diagnostics:
             return None
         from base64 import b64encode
@@ -243,9 +237,7 @@ _PROGRAMS = ".aidl"
 
 
 def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
-    """Returns a program, and the files that it can import. A text on one line that ends in `.aidl` is no
-    program but the name of one.
-    """
+    """Returns a program and what it can import. One line that ends in `.aidl` is the name of a program."""
     from aidl_lang.common.world import DiskWorld, KeptWorld
 
     if isinstance(text_or_path, str):
@@ -258,13 +250,9 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
         message = "this Path holds a program, not the name of a file"
         raise AidlError(Diagnostic("E0901", message, hints=("give the program itself as a str",)))
     from aidl_lang.tools.cli import files
-    from aidl_lang.tools.cli.files import UseError
 
     disk = DiskWorld(text_or_path.parent)
-    try:
-        text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
-    except UseError as reason:
-        raise AidlError(reason.diagnostic) from None
+    text = files.decoded(disk.reads.contents(text_or_path), f"`{name}`")
     return SourceFile(name, text), KeptWorld(disk)
 
 
@@ -328,7 +316,7 @@ def sweep(
     that cannot be, and for a program that is wrong as written.
     """
     from aidl_lang.tools.cli.options import read
-    from aidl_lang.tools.sweeping.python import Sweep
+    from aidl_lang.tools.sweeping.session import Sweep
 
     asked = read(options)
     source, world = _read(text_or_path)
@@ -337,10 +325,8 @@ def sweep(
         source,
         world,
         params or {},
-        asked.options,
+        asked,
         settings,
-        fallback=asked.format,
-        best_effort=asked.best_effort,
         outputs=[str(name) for name in names],
         table=table,
         drawn=None if random is None else (random, seed),

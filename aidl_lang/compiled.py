@@ -52,9 +52,7 @@ class Asked:
 
 @record()
 class Facts:
-    """What there is to tell of a program. `standing`: those of the diagnostics that do not depend on where
-    exactly the parts are.
-    """
+    """What there is to tell of a program; `standing` are diagnostics that do not depend on exact places."""
 
     diagnostics: list[Diagnostic]
     standing: tuple[Diagnostic, ...] = ()
@@ -120,9 +118,7 @@ class Compiled:
         return self.exporting(options)(suffix)
 
     def exporting(self, options: Options | None = None, progress: Progress | None = None) -> Exporting:
-        """Returns `exported` for several formats with the same options: what they have in common is worked
-        out once, and `progress` hears of it.
-        """
+        """Returns `exported` for several formats with the same options; what they share is made once."""
         from aidl_lang.export import Exporter, Job, Options
 
         made = Options(self.show) if options is None else options

@@ -48,18 +48,14 @@ class Parsed:
 
 
 def parse(source: SourceFile, limits: TextLimits = DEFAULT_LIMITS) -> Parsed:
-    """Returns the tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left
-    out.
-    """
+    """Returns the tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx)."""
     parsed, tokens = _read(source, limits)
     joined = lines_joined_by_sign(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
 def standing_before(source: SourceFile, offset: int, limits: TextLimits = DEFAULT_LIMITS) -> Automaton:
-    """Returns the automaton after reading the text before an offset, mended where it is broken; it tells what
-    may come next there.
-    """
+    """Returns the automaton after the text before an offset, mended where it is broken."""
     tokens = tokenize(source, 0, offset)
     reader = _Reader(source, Builder(source, tokens.docs), tokens, limits)
     reader.run(to_end=False)
@@ -172,7 +168,6 @@ class _Reader:
         self.repairs = 0
 
     def _stop(self, why: Diagnostic) -> tuple[ast.Statement, ...]:
-        """Gives up on the rest of the text; open blocks end there."""
         self.diagnostics.append(why)
         self.automaton.drop_statement()
         end = self.automaton.end
@@ -217,7 +212,6 @@ class _Reader:
         return self._skip(position, problem.with_block)
 
     def _ends_statement(self, position: int) -> bool:
-        """Tells whether a statement is complete and the token plainly belongs to what follows it."""
         before, token = self.tokens[max(position - 1, 0)], self.tokens[position]
         is_next = token.kind in _CERTAIN_WORDS or token.kind in ("}", ")", "]", "@", "else")
         if not is_next and before.kind != "}":
@@ -225,7 +219,6 @@ class _Reader:
         return not self.automaton.between_statements and self.automaton.accepts([";"])
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        """Keeps a diagnostic; a reserved word is reported once, with a fix that renames it everywhere."""
         for i, said in enumerate(self.diagnostics):
             if said.code == diagnostic.code == "E0104" and said.message == diagnostic.message:
                 if said.fix and diagnostic.fix:
@@ -235,18 +228,14 @@ class _Reader:
         self.diagnostics.append(diagnostic)
 
     def _statement_begin(self, position: int) -> int:
-        """Returns the number of the first token of the statement under way, or `position` between
-        statements.
-        """
+        """Returns the number of the first token of the statement under way; between statements `position`."""
         begin = self.automaton.begin
         if begin is None:
             return position
         return bisect_left(self.tokens, begin, 0, position, key=lambda token: token.start)
 
     def _open_since(self, begin: int) -> list[str]:
-        """Returns the kinds of the brackets that were opened since a token and are still open, outermost
-        first.
-        """
+        """Returns the kinds of the brackets opened since a token and still open, the outermost first."""
         start = self.tokens[begin].start
         return [t.kind for t in self.automaton.open_brackets() if t.start >= start]
 
@@ -291,7 +280,6 @@ class _Reader:
         return position
 
     def _behind_block(self, position: int) -> int:
-        """Returns the position behind the block that begins here, or where the rest cannot be read."""
         braces = 0
         while (token := self.tokens[position]).kind != END and not is_open_comment(token):
             braces += (token.kind == "{") - (token.kind == "}")
@@ -333,22 +321,10 @@ class _Reader:
 
 
 _CERTAIN_WORDS = frozenset(
-    [
-        "param",
-        "var",
-        "let",
-        "constrain",
-        "prefer",
-        "assert",
-        "import",
-        "fn",
-        "shape",
-        "constraint",
-        "alias",
-        "template",
-        "construction",
-        "todo",
-    ]
+    (
+        *("param", "var", "let", "constrain", "prefer", "assert", "import", "fn", "shape", "constraint"),
+        *("alias", "template", "construction", "todo"),
+    )
 )
 _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
 

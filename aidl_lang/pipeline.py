@@ -85,9 +85,7 @@ class _Tries:
     def answered(
         self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
     ) -> list[Diagnostic]:
-        """Returns the diagnostics, those on constants with values that would fit. `everything` is all that is
-        reported.
-        """
+        """Returns the diagnostics, those on constants with values that would fit; `everything` has all."""
         solving = self.settings.solving
         if not (solving.explain and has_errors(found)):
             return found
@@ -107,9 +105,7 @@ class _Tries:
     def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
-        """Builds the program with ambiguous calls read otherwise, or conditions over constants stated. None
-        if it is wrong then.
-        """
+        """Builds the program with calls read otherwise, or conditions stated; None if wrong then."""
         built, found = build(
             self.source,
             self.world,
@@ -138,9 +134,7 @@ def check(
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
-    """Returns the canonical form of a program, names spelled as they are defined; None if it does not
-    parse.
-    """
+    """Returns the canonical form of a program, names as they are defined; None if it does not parse."""
     from aidl_lang.syntax.printer import format_module
 
     with working:
@@ -194,7 +188,8 @@ def compile(
                 told = audible(tries.answered(diagnostics, diagnostics, built.model), built.allowances)
             made = Compiled("wrong", Later(None, Facts(told)), watch.seconds, known)
         else:
-            made = _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
+            way = _Finish(built, diagnostics, settings, watch, tries)
+            made = way.outcome(known, frozenset(show), memory)
     made.asked = Asked(source, world, params or {}, settings)
     made.allowances = built.allowances
     return made
@@ -262,6 +257,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
 
 def _examined(limit: float, noted: Callable[[], _Noted]) -> _Noted:
+    """Returns what is noted; if that takes too long, that it does."""
     try:
         with within(limit, "examining"):
             return noted()
@@ -279,32 +275,7 @@ def _freed(lowered: Lowered, solution: Solution, watch: Stopwatch) -> Freedom:
 
 
 def _is_troubled(solution: Solution) -> bool:
-    """Tells whether something failed, gave way, or holds only far from the first guesses."""
     return bool(solution.failures) or any(s.concession is not None or s.despite for s in solution.stages)
-
-
-def _explained(
-    lowered: Lowered, solution: Solution, settings: Settings, tried: Callable[[], Trials], watch: Stopwatch
-) -> tuple[Sequence[GaveWay], Sequence[Explanation]]:
-    if not _is_troubled(solution):
-        return (), ()
-    from aidl_lang.explaining.failures import explained
-    from aidl_lang.explaining.giving import gave_way
-
-    with watch("reasons"):
-        given = gave_way(lowered, solution, settings.solving)
-    return given, explained(lowered, solution, tried())
-
-
-def _elsewhere(
-    built: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
-) -> list[Diagnostic]:
-    """Returns notes on what holds only far from the first guesses."""
-    if other is None and not _is_troubled(solution):
-        return []
-    from aidl_lang.explaining.rereading import elsewhere_notes
-
-    return list(elsewhere_notes(built, lowered, solution, other, trials))
 
 
 def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
@@ -313,105 +284,146 @@ def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
     return follows(lowered, solution, span)
 
 
-def _finish(
-    built: Interpretation,
-    diagnostics: list[Diagnostic],
-    settings: Settings,
-    watch: Stopwatch,
-    known: tuple[Knob, ...],
-    show: frozenset[str],
-    memory: Memory | None,
-    tries: _Tries,
-) -> Compiled:
-    from aidl_lang.building.lower import lower
-    from aidl_lang.solver import Status, solve
+class _Finish:
+    """The way from a built program to its outcome: it is solved, drawn, and then told of, step by step."""
 
-    other: Rereading | None = None
-    with watch("lower"):
-        lowered = lower(built.model)
-    with watch("solve"):
-        solution = solve(lowered.problem, settings.solving, memory)
-        if _is_troubled(solution):
-            from aidl_lang.explaining.rereading import reread
+    def __init__(
+        self,
+        built: Interpretation,
+        diagnostics: list[Diagnostic],
+        settings: Settings,
+        watch: Stopwatch,
+        tries: _Tries,
+    ) -> None:
+        self.built, self.diagnostics, self.tries = built, diagnostics, tries
+        self.settings, self.watch = settings, watch
+        self.other: Rereading | None = None
+        self.given: Sequence[GaveWay] = ()
+        self.failures: Sequence[Explanation] = ()
 
-            other, solution = reread(built, lowered, solution, tries.built, settings.solving)
-    if other is not None:
-        built, lowered, solution = other.built, other.lowered, other.solution
-    freedom = Later(partial(_freed, lowered, solution, watch))
-    tried = cache(partial(tries.trials, lowered, solution))
-    given, failures = _explained(lowered, solution, settings, tried, watch)
-    try:
-        with within(settings.drawing, "drawing"):
-            model, evaluator, drawing, drawn, asserted = _drawn(
-                built.model, lowered, solution, freedom, watch
-            )
-    except TooLongError as reason:
-        found = ordered([*audible(diagnostics, built.allowances), reason.diagnostic])
-        return Compiled("wrong", Later(None, Facts(found)), watch.seconds, known)
-    if model.changed:
-        from aidl_lang.explaining.giving import with_reasons
+    def outcome(self, known: tuple[Knob, ...], show: frozenset[str], memory: Memory | None) -> Compiled:
+        self.solve(memory)
+        try:
+            self.draw()
+        except TooLongError as reason:
+            found = ordered([*audible(self.diagnostics, self.built.allowances), reason.diagnostic])
+            return Compiled("wrong", Later(None, Facts(found)), self.watch.seconds, known)
+        lowered, failures, find = self.lowered, self.failures, Later(self.facts)
+        gave_way = self.settings.strict and self.given
+        if not self.is_solved or self.drawn.errors or has_errors(self.asserted) or gave_way:
+            find()
+        return Compiled(
+            self.model.status,
+            find,
+            self.watch.seconds,
+            known,
+            self.model,
+            self.drawing,
+            show,
+            tuple((lowered.groups[stage.group], stage) for stage in self.solution.stages),
+            Later(lambda: tuple(failure.conflict for failure in failures)),
+            partial(_follows, lowered, self.solution),
+            self.built.model,
+            self.evaluator,
+            self.drawn.everything,
+            self.settings.drawing,
+        )
 
-        model = with_reasons(model, given, lowered)
-    is_solved = solution.status is Status.SOLVED
+    def solve(self, memory: Memory | None) -> None:
+        from aidl_lang.building.lower import lower
+        from aidl_lang.solver import Status, solve
 
-    def noted() -> _Noted:
+        with self.watch("lower"):
+            self.lowered = lower(self.built.model)
+        with self.watch("solve"):
+            self.solution = solve(self.lowered.problem, self.settings.solving, memory)
+            if _is_troubled(self.solution):
+                from aidl_lang.explaining.rereading import reread
+
+                build, solving = self.tries.built, self.settings.solving
+                self.other, self.solution = reread(self.built, self.lowered, self.solution, build, solving)
+        if (other := self.other) is not None:
+            self.built, self.lowered, self.solution = other.built, other.lowered, other.solution
+        self.is_solved = self.solution.status is Status.SOLVED
+        self.freedom = Later(partial(_freed, self.lowered, self.solution, self.watch))
+        self.tried = cache(partial(self.tries.trials, self.lowered, self.solution))
+        if _is_troubled(self.solution):
+            from aidl_lang.explaining.failures import explained
+            from aidl_lang.explaining.giving import gave_way
+
+            with self.watch("reasons"):
+                self.given = gave_way(self.lowered, self.solution, self.settings.solving)
+            self.failures = explained(self.lowered, self.solution, self.tried())
+
+    def draw(self) -> None:
+        """Raises TooLongError."""
+        with within(self.settings.drawing, "drawing"):
+            made = _drawn(self.built.model, self.lowered, self.solution, self.freedom, self.watch)
+        self.model, self.evaluator, self.drawing, self.drawn, self.asserted = made
+        if self.model.changed:
+            from aidl_lang.explaining.giving import with_reasons
+
+            self.model = with_reasons(self.model, self.given, self.lowered)
+
+    def facts(self) -> Facts:
+        trials = self.tried() if self.failures else self.tries.trials(self.lowered, self.solution)
+        elsewhere = self._elsewhere(trials)  # the time of new trials has not begun
+        found, notes = _examined(self.settings.drawing, self._noted)
+        passing = {(d.code, d.span) for d in [*self.asserted, *notes]}
+        found = self._strict([*found, *self.asserted])
+        told = adapted([*found, *_beside([*elsewhere, *notes], found)], self.settings.variant)
+        if self.settings.solving.explain:
+            with self.watch("fixes"):
+                told = self._mended(told, trials)
+        told = audible(self._with_idle(ordered([*self.diagnostics, *told])), self.built.allowances)
+        return Facts(told, tuple(d for d in told if (d.code, d.span) not in passing))
+
+    def _elsewhere(self, trials: Trials) -> list[Diagnostic]:
+        """Returns notes on what holds only far from the first guesses."""
+        if self.other is None and not _is_troubled(self.solution):
+            return []
+        from aidl_lang.explaining.rereading import elsewhere_notes
+
+        model, lowered = self.built.model, self.lowered
+        return list(elsewhere_notes(model, lowered, self.solution, self.other, trials))
+
+    def _noted(self) -> _Noted:
         """Returns the diagnostics on the solution, and those on the drawing if the parts are in place."""
         from aidl_lang.explaining.outcome import solution_notes
 
-        root, free = built.model.root, freedom()
-        with watch("notes"):
-            found = solution_notes(root, lowered, solution, free, model, given, failures)
-        return found, drawn.everything() if is_solved else []
+        root, lowered, free = self.built.model.root, self.lowered, self.freedom()
+        with self.watch("notes"):
+            found = solution_notes(root, lowered, self.solution, free, self.model, self.given, self.failures)
+        return found, self.drawn.everything() if self.is_solved else []
 
-    def facts() -> Facts:
-        trials = tried() if failures else tries.trials(lowered, solution)  # whose time has not begun
-        elsewhere = _elsewhere(built.model, lowered, solution, other, trials)
-        found, notes = _examined(settings.drawing, noted)
-        passing = {(d.code, d.span) for d in [*asserted, *notes]}
-        found = [*found, *asserted]
-        if settings.strict and given:
-            from aidl_lang.explaining.giving import as_error
+    def _strict(self, found: list[Diagnostic]) -> list[Diagnostic]:
+        if not (self.settings.strict and self.given):
+            return found
+        from aidl_lang.explaining.giving import as_error
 
-            found = list(map(as_error, found))
-        told = adapted([*found, *_beside([*elsewhere, *notes], found)], settings.variant)
-        if settings.solving.explain:
-            with watch("fixes"):
-                if any(d.fix is not None for d in told):
-                    from aidl_lang.explaining.trials import verified
+        return list(map(as_error, found))
 
-                    told = verified(told, [*diagnostics, *told], trials)
-                told = tries.answered(told, [*diagnostics, *told], built.model)
-        told, allowed = ordered([*diagnostics, *told]), built.allowances
-        if settings.solving.explain and is_solved and not has_errors(told):
-            told += (idle_notes := idle(told, [each for each in allowed if each.code != IDLE]))
-            told = ordered([*told, *idle(idle_notes, [each for each in allowed if each.code == IDLE])])
-        told = audible(told, allowed)
-        return Facts(told, tuple(d for d in told if (d.code, d.span) not in passing))
+    def _mended(self, told: list[Diagnostic], trials: Trials) -> list[Diagnostic]:
+        """Returns diagnostics with the fixes that help, and with values that would fit constants."""
+        if any(d.fix is not None for d in told):
+            from aidl_lang.explaining.trials import verified
 
-    find = Later(facts)
-    if not is_solved or drawn.errors or has_errors(asserted) or (settings.strict and given):
-        find()
-    return Compiled(
-        model.status,
-        find,
-        watch.seconds,
-        known,
-        model,
-        drawing,
-        show,
-        tuple((lowered.groups[stage.group], stage) for stage in solution.stages),
-        Later(lambda: tuple(failure.conflict for failure in failures)),
-        partial(_follows, lowered, solution),
-        built.model,
-        evaluator,
-        drawn.everything,
-        settings.drawing,
-    )
+            told = verified(told, [*self.diagnostics, *told], trials)
+        return self.tries.answered(told, [*self.diagnostics, *told], self.built.model)
+
+    def _with_idle(self, told: list[Diagnostic]) -> list[Diagnostic]:
+        """Returns diagnostics with notes on what is allowed and does not occur."""
+        if not self.settings.solving.explain or not self.is_solved or has_errors(told):
+            return told
+        allowed = self.built.allowances
+        told = [*told, *(notes := idle(told, [each for each in allowed if each.code != IDLE]))]
+        return ordered([*told, *idle(notes, [each for each in allowed if each.code == IDLE])])
 
 
 def _drawn(
     built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
+    """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)

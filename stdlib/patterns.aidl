@@ -88,7 +88,7 @@ fn diamonds(of, side: length, slope: angle, angle: angle, width: length, margin:
 
 /// The lines of a screw thread seen from the side, whose axis is upright at angle 0; bars if a `width` is given.
 ///
-/// `pitch` is measured along the axis, and the lines rise by `slope` to the right.
+/// `pitch` is measured along the axis, and the lines rise by `slope` to the right. Lies with an upright axis.
 ///
 /// ```aidl
 /// assembly stud {

@@ -23,7 +23,7 @@ from aidl_lang.tools.cli import main
 from aidl_lang.tools.ide.actions import drawn_alike
 from aidl_lang.tools.ide.dragging import drag, handles
 from aidl_lang.tools.ide.preview import preview
-from aidl_lang.tools.ide.references import CannotError, Refusal
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, look, run
 
 PLATES = """\
@@ -172,7 +172,7 @@ def test_the_command_says_so_of_the_picture_of_two(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plates.aidl").write_text(PLATES)
-    monkeypatch.setattr("aidl_lang.tools.cli.diff.LONGEST", 0.0)
+    monkeypatch.setattr("aidl_lang.tools.cli.measure.LONGEST", 0.0)
     assert main(["diff", "plates.aidl", "--to", "wide=30", "-o", "both.svg"]) == 1
     assert not Path("both.svg").exists()
     lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"
@@ -203,8 +203,8 @@ def test_a_page_shows_a_problem_in_place_of_the_picture() -> None:
 def test_what_cannot_be_drawn_is_not_dragged() -> None:
     seen = view()
     handle = next(h for h in handles(seen) if h.moves == "guess")
-    found = drag(seen, handle.id, (handle.at[0] + 5, handle.at[1]))
-    assert found == Refusal("drawing what this program says takes more than 0 seconds")
+    with pytest.raises(CannotError, match="drawing what this program says takes more than 0 seconds"):
+        drag(seen, handle.id, (handle.at[0] + 5, handle.at[1]))
 
 
 @pytest.mark.usefixtures("hurried")

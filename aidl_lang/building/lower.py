@@ -286,10 +286,12 @@ class _Lowering:
         return self.standing[s]
 
     def _sealed(self, s: Structure) -> int:
-        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none."""
+        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none, -1
+        for the root.
+        """
         around = chain(s)
-        rigid = (n for n, each in enumerate(around) if each.attributes.get("rigid", (False,)) != (False,))
-        return len(around) - 1 - next(rigid, len(around) - 1)
+        depths = (len(around) - 1 - n for n, each in enumerate(around) if _is_rigid(each))
+        return next((depth or -1 for depth in depths), 0)
 
     def _is_rigid(self, s: Structure) -> bool:
         """Tells whether a structure can move and constraints around it name one thing of it at most: its
@@ -478,6 +480,10 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
         return children
     without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()
+
+
+def _is_rigid(structure: Structure) -> bool:
+    return structure.attributes.get("rigid", (False,)) != (False,)
 
 
 def _is_variable(unknown: Unknown) -> bool:

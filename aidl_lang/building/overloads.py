@@ -189,7 +189,7 @@ class CallSite:
         self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
         self._names = tuple(a.name.text if a.name else None for a in node.arguments)
         if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:
-            self.derives = any(name is not None and fold(name) == followed for name in self._names)
+            self.derives = any(name is not None and fold(name) in followed for name in self._names)
         self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
         self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
 

@@ -337,7 +337,8 @@ def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Ex
         return None
     parts = [1 if "n" in call.a else max(1, round(run.value / found[1].value)) for run in runs]
     if "n" in call.a and found[0] < len(runs):
-        call.wrong(f"{found[0]} members are fewer than the {len(runs)} corners", "write more, or no `margin`")
+        few = f"{found[0]} members are fewer than the {len(runs)} corners"
+        call.wrong(few, "write more, or follow a line")
         return None
     while "n" in call.a and sum(parts) < found[0]:
         sparse = max(range(len(runs)), key=lambda k: (round(runs[k].value / parts[k], 6), runs[k].value))

@@ -261,22 +261,22 @@ COPYING = frozenset({"mirror", "copy"}) | EDITS
 DERIVING = COPYING | OUTLINES | FILLINGS
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
 
-FOLLOWED = {"text": "along"}
+FOLLOWED = {"text": ("along", "fit")}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
 CONNECTING = frozenset(
     (
-        *("ram", "link", "hinge", "bracket", "strip", "coil", "spring", "chain", "cord", "wire"),
-        *("hose", "hose_way", "ray_lines"),
+        *("coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"),
+        *("strip", "ram", "link", "hinge", "bracket", "fitted_text"),
     )
 )
-"""Curves of the library that follow two points, an ancestor's included, and hold no equations."""
+"""Shapes of the library that follow points, an ancestor's included, and hold no equations."""
 
 WORDS = frozenset(
     (
         *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
         *("sharp", "miter", "round", "butt", "square", "here", "corner", "max"),
-        *("close", "medium", "loose", "tabs", "notches"),
+        *("close", "medium", "loose", "tabs", "notches", "ink", "baseline", "line"),
         *("hex", "socket", "pan", "countersunk", "lines", "teeth", "none"),
     )
 )

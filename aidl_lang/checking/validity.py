@@ -121,7 +121,7 @@ class _Walker:
             if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
-            follows = name in FOLLOWED and self._parameter(call, index)[0] == FOLLOWED[name]
+            follows = name in FOLLOWED and self._parameter(call, index)[0] in FOLLOWED[name]
             if (derives or follows or (reach and is_thing)) and _may_derive(found, site.homes):
                 self._order(node, site)
                 continue

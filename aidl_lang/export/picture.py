@@ -23,7 +23,7 @@ from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.styles import DASH, GAP, Style, stacked
+from aidl_lang.geometry.styles import DASH, GAP, Style, drawing_below, stacked
 
 if TYPE_CHECKING:
     from aidl_lang.export.svg import Halos
@@ -222,6 +222,7 @@ OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 _SEAM_OPACITY = 0.55
 _DRAWN = ":drawn"
+_OVER = ":over"
 """Behind the path of a solid or a hole: what is engraved there and no drawing of its own."""
 
 
@@ -299,11 +300,20 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    for structure in stacked(model.root):
+    covered: list[SolvedStructure] = []
+    for structure in (*stacked(model.root), None):
+        while covered and (structure is None or not structure.path.startswith(f"{covered[-1].path}.")):
+            done = covered.pop()
+            around = next(s for s in model.root.walk() if done in s.structures)
+            yield Group(f"{done.path}{_OVER}", tuple(of[f"{done.path}{_OVER}"]), _identity(around, drawing))
+        if structure is None:
+            return
         identity = _identity(structure, drawing)
         yield Group(structure.path, tuple(of[structure.path]), identity)
         if drawn := of.get(f"{structure.path}{_DRAWN}"):
             yield Group(f"{structure.path}{_DRAWN}", tuple(drawn), {**identity, "data-kind": "drawing"})
+        if f"{structure.path}{_OVER}" in of:
+            covered.append(structure)
 
 
 def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
@@ -332,7 +342,11 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
             for mark in halos.around_stroke(stroke, line):
                 yield stroke.path, mark
     kinds = {structure.path: structure.kind for structure in root.walk()}
+    below = {g.path: drawing_below(s, g) for s in root.walk() if s.structures for g in s.drawn}
     for stroke, own in marks:
+        if stroke.is_area and (under := below.get(stroke.geometry)) is not None:
+            yield from ((f"{under.path}{_OVER}", mark) for mark in own)
+            continue
         is_on_part = stroke.role == "drawing" and kinds[stroke.path] != "drawing" and not stroke.is_area
         for mark in own:
             yield f"{stroke.path}{_DRAWN}" if is_on_part else stroke.path, mark

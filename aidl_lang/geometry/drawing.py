@@ -65,6 +65,7 @@ from aidl_lang.geometry.sections import Section, Traced, fill, intersection, tra
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
+    drawing_below,
     idle_areas,
     idle_looks,
     idle_orders,
@@ -513,8 +514,13 @@ def _lying_areas(
 
 def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
     """Returns the places of a structure's geometry in the order of drawing: between it and the next one."""
-    count = len(structure.drawn) + 1
-    return {g.path: at + k / count for k, g in enumerate(structure.drawn, 1)}
+    count, places = len(structure.drawn) + 1, dict[str, float]()
+    after = {s.path: at + k for k, s in enumerate(stacked(structure))} if structure.structures else {}
+    for k, g in enumerate(structure.drawn, 1):
+        below = drawing_below(structure, g) if after else None
+        place = at if below is None else max(after[s.path] for s in below.walk())
+        places[g.path] = place + k / count
+    return places
 
 
 def _colored(

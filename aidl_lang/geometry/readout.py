@@ -42,6 +42,7 @@ from aidl_lang.geometry.solved import (
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
+from aidl_lang.geometry.styles import FILLING
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
@@ -197,6 +198,15 @@ class _Reader:
     def _attributes(self, of: Structure | Geometry) -> dict[str, tuple[Scalar, ...]]:
         return {name: tuple(map(self._scalar, values)) for name, values in of.attributes.items()}
 
+    def _looks(self, g: Geometry) -> dict[str, tuple[Scalar, ...]]:
+        """Returns the look of a solid in a solid, for its geometry: an area of the body that both are."""
+        looks: dict[str, tuple[Scalar, ...]] = {}
+        s = g.owner if g.container is g.owner else None
+        while s is not None and s.kind == "solid" and s.parent is not None and s.parent.kind == "solid":
+            looks = {n: v for n, v in self._attributes(s).items() if n in (*FILLING, "opacity")} | looks
+            s = s.parent
+        return looks
+
     def _scalar(self, value: Value) -> Scalar:
         match value:
             case Num(expression, _, _):
@@ -251,7 +261,17 @@ class _Reader:
         recipe: SolvedRecipe | None = None,
     ) -> SolvedGeometry:
         source = g.source.path if g.source is not None else None
-        known = g.type, values, curve, parts, g.construction, g.span, recipe, source, self._attributes(g)
+        known = (
+            g.type,
+            values,
+            curve,
+            parts,
+            g.construction,
+            g.span,
+            recipe,
+            source,
+            self._looks(g) | self._attributes(g),
+        )
         return SolvedGeometry(g.name or g.type, g.path, *known)
 
     def _recipe(self, recipe: Recipe) -> SolvedRecipe:

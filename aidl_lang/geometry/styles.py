@@ -22,7 +22,7 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_FILLING = ("color", "shade")
+FILLING = ("color", "shade")
 _OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
 """Looks and numbers that a body has as a whole."""
 
@@ -150,7 +150,7 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
 def is_filled(geometry: SolvedGeometry) -> bool:
     """Tells whether a geometry is an area with a look of its own: a line has a width or dashes."""
     stated = geometry.attributes
-    return any(look in stated for look in _FILLING) and not ("stroke" in stated or "dash" in stated)
+    return any(look in stated for look in FILLING) and not ("stroke" in stated or "dash" in stated)
 
 
 def is_unlined(stated: Attributes) -> bool:
@@ -220,7 +220,7 @@ def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[
     return [
         Diagnostic(
             "W0727",
-            f"{' and '.join(ticked([w for w in _FILLING if w in g.attributes], '@'))} of `{g.path}` "
+            f"{' and '.join(ticked([w for w in FILLING if w in g.attributes], '@'))} of `{g.path}` "
             f"counts for nothing: it encloses no part of `{s.path}`",
             g.span,
             hints=("put it where there is material, or into a `drawing`",),
@@ -240,7 +240,11 @@ def idle_looks(
     def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
         own, whole = styles[s.path], styles[body.path]
         words = [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
-        if "color" in words and any(below.kind == "drawing" for below in s.walk()):
+        drawn = [below for below in s.walk() if below.geometry]
+        if s.kind == "solid" and any(below.kind == "solid" for below in drawn):
+            is_area = not s.attributes.keys().isdisjoint(FILLING)
+            return [w for w in words if w not in FILLING and not (w == "opacity" and is_area)]
+        if "color" in words and any(below.kind == "drawing" for below in drawn):
             words.remove("color")  # the drawing takes it
         return words
 
@@ -257,6 +261,17 @@ def stacked(root: SolvedStructure) -> Iterator[SolvedStructure]:
     yield root
     for child in _ordered(root.structures):
         yield from stacked(child)
+
+
+def drawing_below(structure: SolvedStructure, geometry: SolvedGeometry) -> SolvedStructure | None:
+    """Returns the last drawing in a structure that is written before a geometry of it, and so lies below."""
+    at = geometry.span
+    if at is None or structure.kind == "drawing":
+        return None
+    drawings = (s for s in reversed(structure.structures) if s.kind == "drawing")
+    return next(
+        (s for s in drawings if s.span and s.span.source is at.source and s.span.start < at.start), None
+    )
 
 
 def idle_orders(root: SolvedStructure, bodies: Collection[str]) -> list[Diagnostic]:

@@ -105,7 +105,7 @@ class Problem:
     rigid    (g,) True for a group of which constraints around it name one thing at most: it moves as a whole,
              and what is in it moves against its frame only as if no constraint named it
     sealed   (n,) depth of the innermost group around an unknown in which nothing moves for constraints of the
-             groups around it; 0 for none
+             groups around it; 0 for none, -1 for the root
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride

@@ -30,9 +30,7 @@ _QUOTED = re.compile(r"`[^`]*`")
 
 @record()
 class Programs:
-    """The files of a world that are AIDL programs without syntax errors. Any other file with their suffix is
-    refused as a whole, since any message on it would quote it.
-    """
+    """The AIDL programs of a world. One with errors of syntax is refused: messages on it would quote it."""
 
     world: World
 

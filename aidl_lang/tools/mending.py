@@ -78,16 +78,13 @@ class _Mender:
         return now
 
     def _better(self, now: Mended) -> Mended | None:
-        """Returns the program after the largest part of its fixes that improves it."""
         for part in _parts([d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]):
             if (after := self._after(now, part)) is not None:
                 return after
         return None
 
     def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
-        """Returns the program after some of its fixes and those that they bring to light; None if it is
-        worse.
-        """
+        """Returns the program after some fixes and those that they bring to light; None if it is worse."""
         stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
         for _ in range(_AHEAD):
             text, applied = apply_fixes(after.source, part)

@@ -135,18 +135,14 @@ def _add_study(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_eval.recordings import RecordingError
     from aidl_eval.report import report
-    from aidl_eval.store import Store, StoreError
+    from aidl_eval.store import Store
 
-    try:
-        if arguments.solver:
-            return _compare_ways(arguments.solver, arguments.out)
-        store = Store(Path(arguments.out or "evaluation"))
-        left = _run(arguments, store)
-        print(report(store, arguments.clip_weights, arguments.clip_model), end="")
-    except (StoreError, RecordingError) as reason:
-        raise UseError.of(reason.diagnostic) from None
+    if arguments.solver:
+        return _compare_ways(arguments.solver, arguments.out)
+    store = Store(Path(arguments.out or "evaluation"))
+    left = _run(arguments, store)
+    print(report(store, arguments.clip_weights, arguments.clip_model), end="")
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
 

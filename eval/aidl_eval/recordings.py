@@ -18,7 +18,8 @@ from typing import Any, NoReturn
 
 from aidl_eval.plan import VARIANTS, Job, Plan
 from aidl_eval.requirements import Prompt
-from aidl_lang import Diagnostic, SourceFile
+from aidl_lang import SourceFile
+from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Settings
 from aidl_lang.tools.llm.messages import (
     ConversationOver,
@@ -38,12 +39,8 @@ _LARGEST = 256 << 20
 """Most bytes of a file."""
 
 
-class RecordingError(Exception):
+class RecordingError(UseError):
     """Raised for what is no recording; the diagnostic gives the place, the reason and a remedy."""
-
-    def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
 
 
 @dataclass(frozen=True)

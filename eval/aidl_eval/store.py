@@ -17,6 +17,7 @@ from aidl_eval.recordings import GUIDE, RecordedPlan
 from aidl_eval.requirements import Prompt
 from aidl_lang import Diagnostic, __version__
 from aidl_lang.common.files import replace
+from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
 from aidl_lang.tools.llm.messages import Usage, Verdict
 
@@ -26,12 +27,8 @@ SETTINGS = "settings.json"
 _SHOWN = 60
 
 
-class StoreError(Exception):
+class StoreError(UseError):
     """Raised if the folder cannot be used; the diagnostic gives the reason and a remedy."""
-
-    def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
 
 
 class Store:

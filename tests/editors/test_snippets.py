@@ -11,8 +11,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.tools.snippets import SNIPPETS, Snippet
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, expanded, vocabulary
 from tests.documents import ROOT
 
 PARTS = "solid washer(outer = 20) { rim = circle(radius: outer / 2) }\n"
@@ -41,7 +40,7 @@ def program(snippet: Snippet) -> str:
         around = f"solid s {{ b = rectangle(width: 60, height: 40)\nSNIPPET\nhole h {SOLID} }}\n"
     if snippet.prefix == "@clip":
         around = "SNIPPET\nsolid s { outline = circle(center: (0, 0), radius: 4) }\n"
-    return around.replace("SNIPPET", snippet.expanded)
+    return around.replace("SNIPPET", expanded(snippet.body))
 
 
 @pytest.mark.parametrize("snippet", ID)
@@ -56,7 +55,7 @@ def test_expanded_it_compiles(snippet: Snippet) -> None:
 def test_the_kinds_stand_alone() -> None:
     for snippet in SNIPPETS:
         if snippet.prefix in vocabulary().kinds:
-            assert pipeline.compile(SourceFile("s.aidl", snippet.expanded)).ok, snippet.expanded
+            assert pipeline.compile(SourceFile("s.aidl", expanded(snippet.body))).ok, expanded(snippet.body)
 
 
 @pytest.mark.parametrize("snippet", ID)

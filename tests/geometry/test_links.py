@@ -1,4 +1,4 @@
-"""What joins two parts is where these come to be and as large as its sizes say; fasteners keep their inset."""
+"""What joins two parts is where these come to be, and as large as it says; fasteners keep their inset."""
 
 from __future__ import annotations
 
@@ -77,14 +77,19 @@ OUTLINES = {
 @pytest.mark.parametrize("kind", OUTLINES)
 @tries(20)
 @given(st.integers(60, 90), st.integers(40, 60), st.integers(3, 15), st.integers(1, 10), st.integers(7, 30))
-def test_rivets_are_their_inset_within_an_outline(kind: str, w: int, h: int, r: int, inset: int, n: int) -> None:
+def test_rivets_are_their_inset_within_an_outline(
+    kind: str, w: int, h: int, r: int, inset: int, n: int
+) -> None:
     call = OUTLINES[kind].format(w=w, h=h, r=r)
     text = f"solid s {{ way = {call}\n construction dot = rivets(way, n: {n}, inset: {inset}, diameter: 1) }}"
     compiled = pipeline.compile(SourceFile("test.aidl", text))
-    assert not compiled.errors and compiled.model is not None
+    assert not compiled.errors
+    assert compiled.model is not None
     found = {g.name: g for s in compiled.model.root.walk() for g in s.geometry}
     rim = np.concatenate([points(c, np.linspace(0, 1, 4001)) for c in found["way"].curves()])
-    away = [float(np.hypot(*(rim - np.asarray(found[f"dot[{k}]"].values["center"])).T).min()) for k in range(n)]
+    away = [
+        float(np.hypot(*(rim - np.asarray(found[f"dot[{k}]"].values["center"])).T).min()) for k in range(n)
+    ]
     assert f"dot[{n}]" not in found
     short = [a for a in away if a < inset - 1e-3]
     beyond = [a for a in away if a > inset * math.sqrt(2) + 1e-3]

@@ -16,10 +16,9 @@ from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
-from aidl_lang.tools.ide.completion.constraints import forms, read
+from aidl_lang.tools.ide.completion.names import forms, read
 from aidl_lang.tools.ide.workspace import Workspace, look
-from aidl_lang.tools.snippets import expanded
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import expanded, vocabulary
 from tests.compiled import FEW
 
 from .conftest import cursor, seen

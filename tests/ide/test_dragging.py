@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
-from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.ide.conftest import EXAMPLES, seen
 
@@ -49,7 +50,6 @@ def dragged(view: View, ending: str, to: Vec, **options) -> Dragged:
 
 def dropped(view: View, found: Dragged) -> View:
     """The program as its text says after the drag, solved anew."""
-    assert not isinstance(found.edits, Refusal), found.edits
     text = applied(view.source.text, found.edits)
     return run(look(view.path, text, view.world))
 
@@ -247,10 +247,6 @@ def test_a_param_set_from_outside_is_not_turned() -> None:
     assert handles(held) == []
 
 
-def test_points_that_follow_params_can_be_left_out() -> None:
-    assert handles(seen(SHELF, solved=True), params=False) == []
-
-
 # --- What there is -------------------------------------------------------------------------------
 
 
@@ -283,28 +279,33 @@ def test_numbers_of_a_loop_move_nothing() -> None:
 def test_broken_programs_have_none(text: str) -> None:
     assert handles(seen(text, solved=True)) == []
     assert handles(seen(text)) == []
-    assert isinstance(drag(seen(text, solved=True), "s.c.center", (1, 2)), Refusal)
+    with pytest.raises(CannotError):
+        drag(seen(text, solved=True), "s.c.center", (1, 2))
 
 
 @pytest.mark.parametrize("to", [(math.inf, 0), (math.nan, math.nan), (1e30, 1), (0, -1e300)])
 @pytest.mark.parametrize("ending", ["far.center", "rod.start"])
 def test_places_out_of_the_world_are_refused(to: Vec, ending: str) -> None:
     view = seen(ROD, solved=True)
-    assert isinstance(drag(view, handle(view, ending).id, to), Refusal)
+    with pytest.raises(CannotError):
+        drag(view, handle(view, ending).id, to)
 
 
 def test_unknown_handles_and_steps_are_refused() -> None:
     view = seen(ROD, solved=True)
-    assert isinstance(drag(view, "d.nothing", (1, 2)), Refusal)
-    assert isinstance(drag(view, "d.far.center", (1, 2), step=math.nan), Refusal)
-    assert isinstance(drag(view, "d.far.center", (1, 2), step=0), Refusal)
+    with pytest.raises(CannotError):
+        drag(view, "d.nothing", (1, 2))
+    with pytest.raises(CannotError):
+        drag(view, "d.far.center", (1, 2), step=math.nan)
+    with pytest.raises(CannotError):
+        drag(view, "d.far.center", (1, 2), step=0)
 
 
 def test_far_targets_are_answered() -> None:
     view = seen(PLATE, solved=True)
     for each in handles(view):
-        found = drag(view, each.id, (9e5, -9e5))
-        assert isinstance(found, Refusal) or math.isfinite(math.hypot(*found.at))
+        with suppress(CannotError):
+            assert math.isfinite(math.hypot(*drag(view, each.id, (9e5, -9e5)).at))
 
 
 def test_dragging_leaves_the_view_as_it_was() -> None:
@@ -322,8 +323,10 @@ def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None
     view = solved(path)
     put = 0
     for each in handles(view)[:8]:
-        found = drag(view, each.id, (each.at[0] + 3, each.at[1] + 2))
-        if isinstance(found, Refusal) or isinstance(found.edits, Refusal):
+        try:
+            found = drag(view, each.id, (each.at[0] + 3, each.at[1] + 2))
+            assert found.edits
+        except CannotError:
             continue
         put += 1
         again = dropped(view, found)

@@ -120,7 +120,7 @@ def test_renaming_a_param_of_three_files_changes_those_places_and_no_picture() -
     view = view_in(project, "plate.aidl")
     renaming = rename(project, view, at(view, "body =", "clearance"), "play")
     changed = dict(FILES)
-    for path, edits in renaming.edits.items():
+    for path, edits in renaming.items():
         for edit in sorted(edits, key=lambda e: -e.span.start):
             text = changed[path.name]
             changed[path.name] = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
@@ -205,7 +205,7 @@ def test_an_alias_is_a_name_of_its_own() -> None:
     project = opened({"part.aidl": text})
     view = view_in(project, "part.aidl")
     renaming = rename(project, view, text.index("board("), "sheet")
-    assert [e.span.start for e in renaming.edits[FOLDER / "part.aidl"]] == [6, text.index("board(")]
+    assert [e.span.start for e in renaming[FOLDER / "part.aidl"]] == [6, text.index("board(")]
     (target,) = definitions(view, text.index("rectangle"))
     assert view.is_library(target.source)
 
@@ -220,7 +220,7 @@ solid s {
 """
     project = opened({"part.aidl": text})
     view = view_in(project, "part.aidl")
-    (edits,) = rename(project, view, text.index("c.radius"), "disk").edits.values()
+    (edits,) = rename(project, view, text.index("c.radius"), "disk").values()
     assert len(edits) == 3
 
 
@@ -262,9 +262,9 @@ def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
     params = [node for node in ast.walk(view.module) if isinstance(node, ast.Param)]
     for param in params[:2]:
         renaming = rename(project, view, param.name.span.start, "another_name")
-        assert set(renaming.edits) == {path}
+        assert set(renaming) == {path}
         text = view.source.text
-        for edit in sorted(renaming.edits[path], key=lambda e: -e.span.start):
+        for edit in sorted(renaming[path], key=lambda e: -e.span.start):
             assert edit.span.text == param.name.text
             text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
         before = pipeline.check(view.source, view.world)

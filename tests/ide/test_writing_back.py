@@ -25,7 +25,7 @@ MOVED = """drawing d {
 
 def rewritten(view: View, **options) -> str:
     found = write_back(view, **options)
-    return applied(view.source.text, found.edits)
+    return applied(view.source.text, found)
 
 
 def words_besides_numbers(text: str) -> list[str]:

@@ -13,9 +13,8 @@ import pytest
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.grammars import export
 from aidl_lang.tools.llm.aidl import Aidl
-from aidl_lang.tools.llm.decoding import members
 from aidl_lang.tools.llm.messages import Finish, Message, Reply, Sampling
-from aidl_lang.tools.llm.providers import Connection, connect
+from aidl_lang.tools.llm.providers import Connection, connect, members
 from tests.grammars.engines import engine, syntax_errors
 from tests.model.install import Installed
 

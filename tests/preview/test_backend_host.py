@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from aidl_lang.tools.preview.host import MOST_ORDERS, Host
-from aidl_lang.tools.preview.page import MOST_UNTAKEN, Page
+from aidl_lang.tools.preview.host import MOST_ORDERS, MOST_UNTAKEN, Host, Page
 
 _numbers = itertools.count(1)
 

@@ -11,7 +11,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.agents.workspace import RefusalError
 from aidl_lang.tools.ide.preview import preview, set_knob, tried
-from aidl_lang.tools.ide.preview.protocol import Slider, Way
+from aidl_lang.tools.ide.preview.elements import Slider, Way
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.preview.views import EXAMPLES, view_of
 
@@ -155,11 +155,11 @@ def test_conflicts_name_what_they_relate() -> None:
     made = preview(view)
     assert made.status != "solved"
     (conflict,) = made.conflicts
-    assert [p.text for p in conflict.parties] == [
+    assert [p.text for p in conflict.constraints] == [
         "one.left == two.right + 3",
         "two.left >= one.right + 1",
     ]
-    for party in conflict.parties:
+    for party in conflict.constraints:
         paths = [made.elements[k].path for k in party.elements]
         assert any(path.startswith("a.one") for path in paths)
         assert any(path.startswith("a.two") for path in paths)
@@ -173,7 +173,7 @@ def ways(text: str) -> dict[str, list[Way]]:
     """By the path of what moves, joined by spaces."""
     made = preview(view_of(text), ("freedom",))
     found: dict[str, list[Way]] = {}
-    for way in made.ways:
+    for way in made.motions:
         found.setdefault(" ".join(made.elements[k].path for k in way.elements), []).append(way)
     return found
 
@@ -237,7 +237,7 @@ def test_what_turns_has_an_arc_about_what_holds_it() -> None:
     assert 2 < turn.radius < 15
     assert 10 < abs(turn.sweep) < 360
     # The arc goes through the hand.
-    assert turn.first < 30 < turn.first + turn.sweep or turn.first + turn.sweep < 30 < turn.first
+    assert turn.start < 30 < turn.start + turn.sweep or turn.start + turn.sweep < 30 < turn.start
 
 
 def test_what_grows_has_arrows_outwards() -> None:
@@ -255,11 +255,11 @@ def test_the_examples_have_arrows_in_finite_places() -> None:
         assert view.outcome is not None
         assert view.outcome.model is not None
         made = preview(view, ("freedom",))
-        assert preview(view).ways == ()
-        assert len(made.ways) == len(view.outcome.model.motions)
-        for way in made.ways:
+        assert preview(view).motions == ()
+        assert len(made.motions) == len(view.outcome.model.motions)
+        for way in made.motions:
             numbers = [n for a in way.arrows for n in (*a.start, *a.end)]
-            numbers += [n for t in way.turns for n in (*t.center, t.radius, t.first, t.sweep)]
+            numbers += [n for t in way.turns for n in (*t.center, t.radius, t.start, t.sweep)]
             assert all(map(math.isfinite, numbers))
             assert way.arrows or way.turns
 

@@ -220,7 +220,7 @@ def test_a_broken_text_shows_the_last_picture() -> None:
     broken = text.replace("radius: 5", "radius: 5 +")
     view = view_of(broken, good)
     made = preview(view)
-    assert (made.stale, made.svg, made.ways, made.handles) == (True, preview(good).svg, (), ())
+    assert (made.stale, made.svg, made.motions, made.handles) == (True, preview(good).svg, (), ())
     assert {p.severity for p in made.problems} >= {"error"}
     spans = {e.path: e.span for e in made.elements}
     rim = spans["a.rim"]

@@ -11,7 +11,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.preview.files import MOST_STEPS, PAUSE, Manuscript
-from aidl_lang.tools.preview.page import typed
+from aidl_lang.tools.preview.host import typed
 from tests.preview.talking import CHANGED, TEXT, WORDS, Talk, serving, talking, write_bytes
 
 SET = {"applied": True}

@@ -156,17 +156,18 @@ class Declarer:
 
     def _needs_index(self, node: ast.Structure | ast.Assign) -> None:
         assert isinstance(self.scope.owner, ast.For)
-        name, loop = node.name, self.scope.owner
-        index = loop.variables[0].text
+        name, written = node.name, ""
+        scope: SymbolScope | None = self.scope
+        while scope is not None and isinstance(loop := scope.owner, ast.For):
+            written, scope = f"[{loop.variables[0].text}]{written}", scope.parent
+        written = name.text + written
         self.resolver.report(
             "E0208",
             f"`{name.text}` is made in every turn of this `for` and needs an index",
             name,
             label="one name for several members",
-            hints=(f"`{name.text}[{index}]` gives each turn a member of its own",),
-            fix=Fix(
-                f"write `{name.text}[{index}]`", (Edit(name.span, f"{name.text}[{index}]"),), is_sure=True
-            ),
+            hints=(f"`{written}` gives each turn a member of its own",),
+            fix=Fix(f"write `{written}`", (Edit(name.span, written),), is_sure=True),
         )
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args, get_origin
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.processes import Guarded, Limit, limit_met
 from aidl_lang.common.records import record
@@ -16,7 +16,7 @@ from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.results import Result, data, findings
 from aidl_lang.tools.agents.schema import Parameter, Tool, tools
 from aidl_lang.tools.agents.tools import Tools
-from aidl_lang.tools.agents.workspace import RefusalError, refusal
+from aidl_lang.tools.agents.workspace import refusal
 
 _SHOWN = 60
 """Most characters of a value that a message quotes."""
@@ -25,9 +25,7 @@ _PAIR = {"name", "value"}
 
 @record()
 class Answer:
-    """The answer to the model: a text, the same as data, and pictures (PNG). `is_error` for a refused call; a
-    program that is wrong is no error.
-    """
+    """The answer to the model: text, data and pictures (PNG). Only for a refused call `is_error` is true."""
 
     text: str
     data: Mapping[str, Any]
@@ -36,10 +34,10 @@ class Answer:
 
 
 def answer(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Answer:
-    """Returns the answer of a tool, also for a refused call."""
+    """Returns the answer of a tool, also for a call that cannot be answered."""
     try:
         result = call(workshop, name, arguments)
-    except RefusalError as error:
+    except AidlError as error:
         listed = findings(error.diagnostics)
         return Answer(compact(error.diagnostics), {"findings": data(listed)}, is_error=True)
     return Answer(result.text, data(result), result.pictures)
@@ -120,9 +118,7 @@ def _of_union(value: object, kinds: Sequence[Any]) -> object:
 
 
 def _pairs(value: object) -> list[tuple[object, object]]:
-    """Returns the items of a mapping, or of a list of pairs of a name and a value as strict schemas have
-    them.
-    """
+    """Returns the items of a mapping, or of pairs of name and value as strict schemas have them."""
     if isinstance(value, Mapping):
         return list(value.items())
     if not isinstance(value, list) or not all(isinstance(v, Mapping) and set(v) == _PAIR for v in value):
@@ -166,8 +162,7 @@ def _shown(value: object) -> str:
     return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"
 
 
-# --- Runs calls in processes of their own: a program that hangs, crashes or devours memory harms nothing
-# else.
+# --- Runs calls in processes of their own: a program that hangs or crashes harms nothing else.
 
 SECONDS = 45.0
 """Most seconds of a call; clients wait for a minute."""
@@ -189,7 +184,12 @@ class Workers:
         except Exception as error:
             if (limit := limit_met(error)) is None:
                 raise
-            return _given_up(_WHY[limit].format(self.seconds))
+            diagnostic = Diagnostic(
+                "E0943",
+                f"the call {_WHY[limit].format(self.seconds)} and was given up",
+                hints=("ask for less: fewer parts, smaller arrays, no outlines worked out of many others",),
+            )
+            return Answer(compact([diagnostic]), {}, is_error=True)
 
     def close(self) -> None:
         self._pool.close()
@@ -200,12 +200,3 @@ _WHY = {
     Limit.DEATH: "ended the process that worked on it",
     Limit.MEMORY: "needs more memory than there is for it",
 }
-
-
-def _given_up(why: str) -> Answer:
-    diagnostic = Diagnostic(
-        "E0943",
-        f"the call {why} and was given up",
-        hints=("ask for less: fewer parts, smaller arrays, no outlines worked out of many others",),
-    )
-    return Answer(compact([diagnostic]), {}, is_error=True)

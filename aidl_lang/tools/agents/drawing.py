@@ -37,8 +37,7 @@ from aidl_lang.tools.agents.results import (
 from aidl_lang.tools.agents.workspace import Limits, refusal
 from aidl_lang.tools.discretion import Reader
 
-# --- The solved model as JSON in a size that a language model can read: one structure of it, without long
-# parts.
+# --- The solved model as JSON in a size that a language model can read.
 #
 # Every form is one that `docs/model.schema.json` allows.
 
@@ -144,8 +143,7 @@ _WAYS: tuple[tuple[str, Callable[[Json], None]], ...] = (
 )
 
 
-# --- Conflicts of a program: the constraints in them, the change that each would need, and whether that
-# helps.
+# --- Conflicts of a program: the constraints, the change that each would need, and whether that helps.
 
 CODES = ("E0601", "E0602", "E0603", "E0605")
 """Codes of the diagnostics about conflicts."""
@@ -239,16 +237,20 @@ def drawn(
     *,
     dimensioned: bool,
 ) -> Drawn:
-    """Returns the result of a program in some formats, for its reader. Raises RefusalError for an unknown
-    `path`.
-    """
+    """Returns a program's result in some formats, for its reader. Raises RefusalError: an unknown `path`."""
     making = _Making(compiled, limits, dimensioned)
     model, shortened = making.model(path) if "model" in formats else (None, None)
     files = [f for f in dict.fromkeys(formats) if f not in ("png", "model")]
     exports = [export for f in files if (export := making.export(f)) is not None]
     png = making.png() if "png" in formats else None
     bodies, contacts = _bodies(compiled), _contacts(compiled)
-    left = _left_out(compiled)
+    drawing = compiled.drawing
+    counts = {
+        "params": len(compiled.knobs),
+        "bodies": len(drawing.bodies) if drawing else 0,
+        "contacts": len(drawing.pairs) if drawing else 0,
+    }
+    left = [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
     diagnostics = [*compiled.diagnostics, *reader.diagnostics(making.notes)]
     return Drawn(
         compiled.ok,
@@ -407,20 +409,9 @@ def contact(pair: Contact) -> str:
 
 
 def _file(export: Export) -> str:
-    """Returns a file as text for a reader, to whom bytes say nothing."""
     if export.encoding == "base64":
         return f"{export.format}: made, {len(export.content)} characters in base64, which only the data has"
     return f"{export.format}:\n{export.content}"
-
-
-def _left_out(compiled: Compiled) -> list[str]:
-    drawing = compiled.drawing
-    counts = {
-        "params": len(compiled.knobs),
-        "bodies": len(drawing.bodies) if drawing else 0,
-        "contacts": len(drawing.pairs) if drawing else 0,
-    }
-    return [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
 
 
 def left_out(what: str, count: int) -> str:

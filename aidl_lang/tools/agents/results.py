@@ -107,9 +107,7 @@ class Reported(Result):
 
 
 def data(result: object) -> Any:
-    """Returns a result as dictionaries, lists, numbers and texts, for JSON; numbers that are not finite are
-    null.
-    """
+    """Returns a result as data for JSON; numbers that are not finite are null."""
     return rounded(_plain(result))
 
 
@@ -126,9 +124,6 @@ def _plain(value: object) -> Any:
 def shown_fields(kind: type) -> Iterator[dataclasses.Field[Any]]:
     """Yields the fields of a dataclass that are part of its data: those in its `repr`."""
     return (f for f in dataclasses.fields(kind) if f.repr)
-
-
-# --- Diagnostics -----------------------------------------------------------------------------------
 
 
 def findings(diagnostics: Sequence[Diagnostic]) -> Findings:
@@ -168,9 +163,6 @@ def _cut(text: str) -> str:
 def joined(blocks: Iterable[str]) -> str:
     """Joins paragraphs that are not empty, with an empty line between two."""
     return "\n\n".join(filter(None, (block.rstrip() for block in blocks)))
-
-
-# --- Programs --------------------------------------------------------------------------------------
 
 
 @record()
@@ -335,9 +327,6 @@ class Conflicts(Reported):
     degrees_of_freedom: int | None
     motions: list[str]
     findings: Findings
-
-
-# --- Reading ---------------------------------------------------------------------------------------
 
 
 @record()

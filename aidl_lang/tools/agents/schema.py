@@ -200,7 +200,6 @@ def _strict(kind: Any) -> Json:
 
 
 def _schema(kind: Any, inner: Callable[[Any], Json]) -> Json:
-    """Returns the schema of a type; `inner` makes those of its parts."""
     origin, arguments = get_origin(kind), get_args(kind)
     if kind is Any:
         return {}

@@ -120,9 +120,7 @@ def _add_prompts(server: Server) -> None:
 
 
 def serve(root: Path | None = None, listener: socket | None = None, path: str = "/mcp") -> None:
-    """Serves until the client goes: over standard input and output, or over HTTP on a bound socket, at a path
-    that whoever asks must know.
-    """
+    """Serves until the client goes: over standard streams, or HTTP on a bound socket at a secret path."""
     workers = Workers(Tools(Workspace(root)))
     server = Server(workers)
     try:
@@ -131,14 +129,10 @@ def serve(root: Path | None = None, listener: socket | None = None, path: str = 
             signal.signal(signal.SIGINT, signal.SIG_DFL)
             server.run("stdio")
         else:
-            _serve_http(server, listener, path)
+            import uvicorn
+
+            # Named so, the SDK refuses requests that name another host, as web pages could send.
+            app = server.streamable_http_app(host="127.0.0.1", streamable_http_path=path)
+            uvicorn.Server(uvicorn.Config(app, log_level="warning")).run(sockets=[listener])
     finally:
         workers.close()
-
-
-def _serve_http(server: Server, listener: socket, path: str) -> None:
-    import uvicorn
-
-    # For a host of this machine the SDK refuses requests that name another one, as web pages could send.
-    app = server.streamable_http_app(host="127.0.0.1", streamable_http_path=path)
-    uvicorn.Server(uvicorn.Config(app, log_level="warning")).run(sockets=[listener])

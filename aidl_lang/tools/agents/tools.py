@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 from aidl_lang import pipeline
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
-from aidl_lang.common.diagnostics import Edit, has_errors
+from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.common.records import record
@@ -181,15 +181,10 @@ class Tools:
         thinnest wall and the narrowest gap, volume and mass, of the whole and of each body or of the part at
         a path, and the gaps and overlaps between bodies.
         """
-        from aidl_lang.geometry.survey import NothingThereError
-
         _, compiled, reader = self._compiled(program, params, files)
         if not compiled.ok:
             raise RefusalError(*compiled.errors)
-        try:
-            found = compiled.surveyed([path] if path else [])
-        except (NothingThereError, TooLongError) as reason:
-            raise RefusalError(reason.diagnostic) from None
+        found = compiled.surveyed([path] if path else [])
         most = drawing.MOST_LISTED
         pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
         parts, whole = found.parts[:most], found.whole
@@ -230,7 +225,7 @@ class Tools:
         if before.status == "wrong":
             raise RefusalError(*before.errors)
         edit = workspace.edit_of(workspace.find(before.knobs, name), source, value)
-        text = _edited(source, edit)
+        text = source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
         workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
@@ -276,10 +271,6 @@ class Tools:
         reader = world.reader(source)
         compiled = pipeline.compile(source, world, params, self.workspace.limits.settings)
         return source, reader.compiled(compiled), reader
-
-
-def _edited(source: SourceFile, edit: Edit) -> str:
-    return source.text[: edit.span.start] + edit.replacement + source.text[edit.span.end :]
 
 
 def _changes(before: Compiled, after: Compiled) -> str:

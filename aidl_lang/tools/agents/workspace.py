@@ -14,11 +14,11 @@ from aidl_lang.building.model import Knob
 from aidl_lang.building.state import BuildingLimits
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common import names
-from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure, World
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, World, normalize
 from aidl_lang.parser import TextLimits
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.problem import Settings as SolverSettings
@@ -30,12 +30,8 @@ PROGRAM = "program.aidl"
 """The name of the program in diagnostics."""
 
 
-class RefusalError(Exception):
+class RefusalError(AidlError):
     """Raised for a call that cannot be answered; the diagnostics give the reason and a remedy."""
-
-    def __init__(self, *diagnostics: Diagnostic) -> None:
-        super().__init__("; ".join(d.message for d in diagnostics))
-        self.diagnostics = diagnostics
 
 
 def refusal(code: str, message: str, *hints: str) -> RefusalError:
@@ -84,20 +80,13 @@ class Surroundings:
     disk: World | None = None
 
     def read(self, path: str) -> str:
-        try:
-            return self.given.read(path)
-        except FileError as error:
-            if error.reason is not ReadFailure.MISSING or self.disk is None:
-                raise
-        return self.disk.read(path)
+        return self._holder(path).read(path)
 
     def read_bytes(self, path: str) -> bytes:
-        try:
-            return self.given.read_bytes(path)
-        except FileError as error:
-            if error.reason is not ReadFailure.MISSING or self.disk is None:
-                raise
-        return self.disk.read_bytes(path)
+        return self._holder(path).read_bytes(path)
+
+    def _holder(self, path: str) -> World:
+        return self.given if self.disk is None or normalize(path) in self.given.files else self.disk
 
     def reader(self, source: SourceFile) -> Reader:
         """Returns the author of the program and of the files given with it."""
@@ -142,8 +131,6 @@ class Workspace:
             )
 
 
-# --- Changes the default of a `param` in the text of a program, to a number as people type it.
-
 # --- Numbers as people type them, with units, sums and fractions: `12cm`, `80 + 20`, `1/2in`, `3 1/2in`.
 
 LONGEST = 200
@@ -178,7 +165,10 @@ def quantity(text: str) -> Quantity | str:
     text = text.strip()
     if not text or len(text) > LONGEST or "\n" in text or "\r" in text:
         return _NONE
-    expression = _spelled(text)
+    text = text.replace("\u2212", "-")
+    if _COMMA.fullmatch(text.lstrip("+-").rstrip("".join(UNITS) + " ")):
+        text = text.replace(",", ".")
+    expression = _FRACTION.sub(_fraction, _APART.sub("", text))
     found = {unit: _added(zero, expression) for unit, zero in _ZEROS.items()}
     values = {unit: value for unit, value in found.items() if isinstance(value, float)}
     if not values:
@@ -187,16 +177,6 @@ def quantity(text: str) -> Quantity | str:
     units = set(_SUFFIX.findall(expression))
     unit, value = next(iter(values.items()))
     return Quantity(value, unit if len(values) == 1 else "", units.pop() if len(units) == 1 else None)
-
-
-def _spelled(text: str) -> str:
-    """Returns a text as the language has it. Half an inch is `1/2in` to all who measure in inches, where the
-    language would divide by two inches.
-    """
-    text = text.replace("\u2212", "-")
-    if _COMMA.fullmatch(text.lstrip("+-").rstrip("".join(UNITS) + " ")):
-        text = text.replace(",", ".")
-    return _FRACTION.sub(_fraction, _APART.sub("", text))
 
 
 def _fraction(found: re.Match[str]) -> str:
@@ -239,7 +219,15 @@ _NAMED = 12
 
 def edit_of(knob: Knob, source: SourceFile, value: float | str | bool) -> Edit:
     """Returns the edit that makes a value the default. Raises RefusalError for an invalid one."""
-    return edit_at(knob, _declaration(knob, source), value)
+    if knob.span is None or knob.span.source is not source:
+        where = f"`{knob.span.source.name}`" if knob.span else "another file"
+        raise refusal(
+            "E0945", f"`{knob.path}` is declared in {where}", "edit that file as a program of its own"
+        )
+    # The tree that the program was built from is not kept.
+    found = (n for n in ast.walk(parser.parse(source).module) if isinstance(n, ast.Param))
+    start = knob.span.start
+    return edit_at(knob, next(n for n in found if n.span.start == start), value)
 
 
 def edit_at(knob: Knob, declared: ast.Param, value: float | str | bool) -> Edit:
@@ -270,22 +258,8 @@ def require_in_range(compiled: Compiled, span: Span) -> None:
             raise RefusalError(Diagnostic("E0945", d.message, hints=d.hints))
 
 
-def _declaration(knob: Knob, source: SourceFile) -> ast.Param:
-    if knob.span is None or knob.span.source is not source:
-        where = f"`{knob.span.source.name}`" if knob.span else "another file"
-        raise refusal(
-            "E0945", f"`{knob.path}` is declared in {where}", "edit that file as a program of its own"
-        )
-    # The tree that the program was built from is not kept.
-    found = (n for n in ast.walk(parser.parse(source).module) if isinstance(n, ast.Param))
-    start = knob.span.start
-    return next(n for n in found if n.span.start == start)
-
-
 def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
-    """Returns the value as the program writes it: a number in the unit that it was given in, or that stands
-    there now.
-    """
+    """Returns the value as the program writes it: in the unit given, else in the one that stands there."""
     if isinstance(knob.value, bool):
         if not isinstance(value, bool):
             raise _misfit(knob, value, "true or false")
@@ -307,9 +281,7 @@ def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
 
 
 def typed(knob: Knob, text: str) -> Quantity:
-    """Returns the number that a text means for a knob, in mm or degrees. Raises RefusalError if it means
-    none, or one of another kind.
-    """
+    """Returns the number, in mm or degrees, that a text means for a knob. Raises RefusalError."""
     found = quantity(text)
     if isinstance(found, str):
         why = found

@@ -57,9 +57,7 @@ def to_build123d(compiled: Compiled, thickness: float | None) -> Compound:
 
 
 def _places(root: SolvedStructure, of: PlacedBody) -> Iterator[tuple[str, Location]]:
-    """Yields the name of each circle and point of a body, and its place on the face that is seen, from which
-    z points to who looks at it.
-    """
+    """Yields the name and the place of each circle and point of a body on the face seen (z outwards)."""
     from build123d import Location, Plane
 
     from aidl_lang.geometry.curves import Circle

@@ -18,7 +18,7 @@ from importlib import import_module
 from io import BufferedWriter, FileIO, TextIOWrapper
 from typing import Any
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.tools.cli import files
 from aidl_lang.version import __version__
@@ -55,10 +55,11 @@ VERBS = {
 }
 """The verbs in the order of the help."""
 _TOGETHER = {
-    "build": ("compile", "watch"),
+    "build": ("compile", "watch", "sheet"),
     "check": ("fmt", "params"),
     "doc": ("guide", "grammar", "explain", "new", "tool-schema"),
     "generate": ("eval",),
+    "measure": ("diff",),
     "serving": ("preview", "lsp", "mcp"),
 }
 """Modules with the verbs in them; any other verb is in the module of its name."""
@@ -97,17 +98,13 @@ def _is_unheard() -> bool:
 
 
 def _ended(argv: Sequence[str] | None) -> int:
-    """Returns the exit code of the command line, all that went wrong told."""
     try:
         words = sys.argv[1:] if argv is None else argv
         code = _run(words)
         sys.stdout.flush()
-    except files.UseError as reason:
+    except AidlError as reason:
         files.show([reason.diagnostic])
-        return 2
-    except TooLongError as reason:
-        files.show([reason.diagnostic])
-        return files.exit_code([reason.diagnostic])
+        return files.exit_code([reason.diagnostic]) if isinstance(reason, TooLongError) else 2
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
@@ -121,7 +118,6 @@ def _ended(argv: Sequence[str] | None) -> int:
 
 
 def _run(words: Sequence[str]) -> int:
-    """Returns the exit code of a verb."""
     if not words:
         sys.stdout.write(_GREETING)
         return 0
@@ -151,7 +147,6 @@ class _Output(FileIO):
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Returns the parser for a command line, with the options of its verb."""
     parser = argparse.ArgumentParser(
         prog="aidl",
         description="AIDL: a text language for 2D CAD. Say relationships, get a constraint-solved drawing.",
@@ -178,9 +173,7 @@ def registering(verb: str) -> Callable[[argparse.ArgumentParser], None]:
 
 
 def _seldom_search() -> None:
-    """Searches garbage seldom: most objects are needed until the command ends. Bounds the cost in a verb that
-    goes on, and saves the search at the end.
-    """
+    """Searches garbage seldom: most objects are needed until the command ends, or one of its rounds."""
     gc.set_threshold(_BETWEEN_SEARCHES)
     atexit.unregister(gc.freeze)
     atexit.register(gc.freeze)

@@ -1,8 +1,9 @@
-"""`aidl compile` and `aidl watch`: compiles a program and writes files, once or again and again."""
+"""`aidl compile`, `aidl watch` and `aidl sheet`: compiles a program and writes files."""
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
@@ -10,12 +11,26 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.files import is_data, may_be_read
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
-from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant, flag
+from aidl_lang.tools.cli.options import (
+    add_drawing,
+    add_outputs,
+    add_params,
+    add_pixels,
+    add_program,
+    add_strict,
+    add_variant,
+    choice,
+    flag,
+    value,
+)
 
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
@@ -77,10 +92,12 @@ class BuildResult:
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     """Returns the outputs asked for; refuses those whose format or directory does not exist."""
-    names = arguments.output or [_default_output(arguments.file)]
+    from aidl_lang.export.cut_list import is_pattern
+
+    names = arguments.output or [_beside(arguments.file, _DEFAULT_FORMAT)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
     for target in found:
-        if not _is_pattern(target.name):
+        if not is_pattern(target.name):
             files.require_directory(target.name)
     files.require_unread(target.name for target in found)
     return found
@@ -112,11 +129,9 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
 
 
 def _profile(name: str | None) -> Profile | None:
-    """Returns the profile of a name, or the one in a file."""
     if name is None:
         return None
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.profiles import PROFILES
+    from aidl_lang.export.profiles import PROFILES, parsed
 
     if name in PROFILES:
         return PROFILES[name]
@@ -126,12 +141,7 @@ def _profile(name: str | None) -> Profile | None:
         near = did_you_mean(nearest(name, PROFILES))
         known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
         raise UseError("E0956", f"there is no profile `{name}`", *near, known)
-    from aidl_lang.export.profiles import parsed
-
-    try:
-        return parsed(files.read(name).text, Path(name).name)
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return parsed(files.read(name).text, Path(name).name)
 
 
 def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
@@ -148,28 +158,22 @@ def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> 
 def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Writes all outputs once all could be made; returns their names, and diagnostics about them. What the
-    program read is not overwritten.
-    """
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.cut_list import contents
+    """Writes all outputs once all could be made, over nothing that was read. Returns names and remarks."""
+    from aidl_lang.export.cut_list import contents, is_pattern
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
-    try:
-        writing = compiled.exporting(options, _Progress())
-        for target in outputs:
-            found, said = contents(writing, target.name, target.suffix)
-            require_one(target.name, len(found))
-            if target.suffix != ".json" and any(note.code == "W0721" for note in said):
-                _keep_drawn(found)
-            made += found
-            notes += said
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    writing = compiled.exporting(options, _Progress())
+    for target in outputs:
+        found, said = contents(writing, target.name, target.suffix)
+        require_one(target.name, len(found))
+        if target.suffix != ".json" and any(note.code == "W0721" for note in said):
+            _keep_drawn(found)
+        made += found
+        notes += said
     _require_apart([name for name, _ in made])
     files.require_unread(name for name, _ in made)
-    if any(_is_pattern(target.name) for target in outputs):
+    if any(is_pattern(target.name) for target in outputs):
         files.make_directories(name for name, _ in made)
     for name, data in made:
         files.write(name, data)
@@ -187,16 +191,6 @@ def _keep_drawn(made: Iterable[tuple[str, bytes]]) -> None:
                 "if it shall be empty, delete it first",
                 "`aidl check` tells why nothing is drawn",
             )
-
-
-def _is_pattern(name: str) -> bool:
-    from aidl_lang.export import ExportError
-    from aidl_lang.export.cut_list import is_pattern
-
-    try:
-        return is_pattern(name)
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
 
 
 def _require_apart(names: Sequence[str]) -> None:
@@ -233,18 +227,14 @@ def require_one(name: str, count: int) -> None:
         raise UseError("E0914", f"{count} files do not fit on standard output", "name a file with -o")
 
 
-def _default_output(program: str) -> str:
-    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT_FORMAT))
+def _beside(program: str, suffix: str) -> str:
+    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(suffix))
 
 
 def _suffix(name: str, fallback: str | None) -> str:
-    """Returns the format of an output: its own suffix, else `--format`, else SVG on standard output."""
-    from aidl_lang.export import ExportError, suffix_of
+    from aidl_lang.export import suffix_of
 
-    try:
-        return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return suffix_of(name, fallback or _DEFAULT_FORMAT * (name == files.STANDARD))
 
 
 _MOST_MOTIONS = 6
@@ -279,7 +269,6 @@ def run_compile(arguments: argparse.Namespace) -> int:
 
 
 def _show_stages(stages: Sequence[tuple[str, StageReport]]) -> None:
-    """Prints one line for each stage tried, in order: a parent comes after its children."""
     width = max((len(path) for path, _ in stages), default=0)
     width = max(width, len("structure"))
     say(f"{'structure':<{width}}  {'stage':<16}{'unknowns':>9}{'rows':>6}")
@@ -330,18 +319,98 @@ def run_watch(arguments: argparse.Namespace) -> int:
 
 
 def _once(arguments: argparse.Namespace, memory: Memory) -> frozenset[Path]:
-    """Runs once, with one line of report. A file that is gone for a moment does not end the watch. Returns
-    the files that were read beside the program; none if it could not be run.
-    """
+    """Runs once, with one line of report; a missing file does not end the watch. Returns the files read."""
     from aidl_lang.common.render import one_line
 
     clock = time.strftime("%H:%M:%S")
     try:
         outcome = build(arguments, memory)
-    except UseError as reason:
+    except AidlError as reason:
+        if isinstance(reason, TooLongError):
+            raise
         say(f"{clock} {one_line(reason.diagnostic)}")
         return frozenset()
     errors = outcome.compiled.errors
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     say(f"{clock} {one_line(errors[0])}{more}" if errors else f"{clock} {outcome.line(arguments.file)}")
     return outcome.read
+
+
+_SHEET = ".pdf"
+
+
+def register_sheet(parser: argparse.ArgumentParser) -> None:
+    """`aidl sheet`: a technical drawing on paper, with dimensions, a frame and a title block."""
+    add_program(parser)
+    add_outputs(
+        parser, "where to write: .pdf, .svg or .png; may be given several times (default: FILE with .pdf)"
+    )
+    add_params(parser)
+    value(parser, "--paper", "NAME", f"{', '.join(PAPERS)} (default: by fit)", _paper)
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument(
+        "--landscape", dest="landscape", action="store_const", const=True, help="lay the paper wide"
+    )
+    way.add_argument("--portrait", dest="landscape", action="store_const", const=False, help="stand it up")
+    value(parser, "--scale", "N:M", "as in 1:2 (default: by fit)", _scale)
+    value(parser, "--date", "TEXT", "the date in the title block (default: none)", str, "")
+    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)", "iso")
+    add_pixels(parser)
+    parser.set_defaults(run=run_sheet)
+
+
+def run_sheet(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+    from aidl_lang.export import Options, file_names
+    from aidl_lang.export.drafting import Draft
+
+    start = time.perf_counter()
+    source = files.read(arguments.file)
+    names = arguments.output or [_beside(arguments.file, _SHEET)]
+    targets = [Target(name, sheet_suffix(name)) for name in names]
+    for target in targets:
+        files.require_directory(target.name)
+    compiled = pipeline.compile(source, files.world(arguments.file), params=dict(arguments.params))
+    show(compiled.diagnostics)
+    if not compiled.ok:
+        return exit_code(compiled.diagnostics) or 1
+    draft = Draft(
+        arguments.paper, arguments.landscape, arguments.scale, arguments.standard, arguments.date.strip()
+    )
+    made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
+    written = []
+    for target, result in zip(targets, made, strict=True):
+        datas = (result.data, *result.further)
+        require_one(target.name, len(datas))
+        for name, data in zip(file_names(target.name, len(datas)), datas, strict=True):
+            files.write(name, data)
+            written.append(name)
+    show(dict.fromkeys(note for result in made for note in result.notes))
+    say(f"{', '.join(written)}: {time.perf_counter() - start:.2f} s")
+    return exit_code(compiled.diagnostics)
+
+
+def sheet_suffix(name: str) -> str:
+    """Returns the format of a sheet; raises UseError for one that has none."""
+    from aidl_lang.export import PICTURES
+
+    suffix = _SHEET if name == files.STANDARD else Path(name).suffix.lower()
+    if suffix not in PICTURES:
+        asked = suffix.lstrip(".")
+        message = f"there are no sheets of the format `{asked}`" if asked else f"`{name}` tells no format"
+        raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
+    return suffix
+
+
+def _paper(text: str) -> str:
+    name = text.strip().lower()
+    if name not in PAPERS:
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(PAPERS)}")
+    return name
+
+
+def _scale(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"\s*([1-9]\d{0,4})\s*[:/]\s*([1-9]\d{0,4})\s*", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"expected a scale such as 1:2 or 5:1, not `{text}`")
+    return int(found[1]), int(found[2])

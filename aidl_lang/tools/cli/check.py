@@ -111,9 +111,7 @@ _WHY = "it changes what you wrote, so the choice is yours", "it would make thing
 
 @record()
 class _Checked:
-    """The findings in a file, the titles of the fixes made, and the result of solving: `solved`, `partial`,
-    `failed`; "" if it was not tried.
-    """
+    """The findings in a file, the fixes made, and the status of solving; "" if it was not tried."""
 
     diagnostics: list[Diagnostic]
     fixes: tuple[str, ...] = ()
@@ -187,7 +185,6 @@ def run_check(arguments: argparse.Namespace) -> int:
 
 
 def _check(name: str, arguments: argparse.Namespace) -> _Checked:
-    """Checks one file; an unreadable file is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
 
     settings = pipeline.Settings.of(arguments.variant)
@@ -214,7 +211,6 @@ def _found(
     arguments: argparse.Namespace,
     fixes: tuple[str, ...] = (),
 ) -> _Checked:
-    """Returns the findings in a program as it stands."""
     from aidl_lang import pipeline
 
     if not arguments.solve:
@@ -267,21 +263,17 @@ def _format(name: str, check: bool, diff: bool) -> int:
         if text is None:
             show(diagnostics)
             return exit_code(diagnostics)
-        return _deliver(name, source, text, check, diff)
+        changed = text != source.text
+        if diff:
+            print(_diff(source, text), end="")
+        if check and changed:
+            say(f"{name}: would be reformatted")
+        if not (check or diff) and (changed or name == files.STANDARD):
+            files.rewrite(name, text.encode())
+        return int(check and changed)
     except UseError as reason:
         show([reason.diagnostic])
         return 2
-
-
-def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) -> int:
-    changed = text != source.text
-    if diff:
-        print(_diff(source, text), end="")
-    if check and changed:
-        say(f"{name}: would be reformatted")
-    if not (check or diff) and (changed or name == files.STANDARD):
-        files.rewrite(name, text.encode())
-    return int(check and changed)
 
 
 def _diff(source: SourceFile, text: str) -> str:

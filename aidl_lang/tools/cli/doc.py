@@ -37,9 +37,7 @@ _PLAIN = {
 
 
 def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
-    """Returns the verbs and options that have every word of a query, each with its line; those named so
-    first.
-    """
+    """Returns the verbs and options with every word of a query, each with its line; those named so first."""
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
@@ -116,7 +114,13 @@ def run_doc(arguments: argparse.Namespace) -> int:
         else:
             _list_all(known, style)
     elif arguments.picture:
-        return _draw(found, arguments.picture)
+        from aidl_lang.tools.reference.pages import picture
+
+        files.require_directory(arguments.picture)
+        files.write(arguments.picture, picture(found))
+        if arguments.picture != files.STANDARD:
+            say(f"{arguments.picture}: the example of `{found.name}`")
+        return 0
     elif arguments.json:
         _print_json(to_dict(found))
     else:
@@ -179,16 +183,6 @@ def _print_json(found: object) -> None:
     print(json.dumps(found, indent=2, ensure_ascii=False))
 
 
-def _draw(entry: Entry, output: str) -> int:
-    from aidl_lang.tools.reference.pages import picture
-
-    files.require_directory(output)
-    files.write(output, picture(entry))
-    if output != files.STANDARD:
-        say(f"{output}: the example of `{entry.name}`")
-    return 0
-
-
 def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
@@ -215,7 +209,6 @@ def run_guide(arguments: argparse.Namespace) -> int:
 
 
 def _topics(written: str) -> list[str]:
-    """Returns the names of the topics that are asked for."""
     from aidl_lang.tools.reference.collect import reference
 
     known = [topic.name for topic in reference().topics]

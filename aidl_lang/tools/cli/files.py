@@ -22,17 +22,11 @@ if TYPE_CHECKING:
 _FAMILY_OF_USE = "E09"
 
 
-class UseError(Exception):
+class UseError(AidlError):
     """Raised for wrong use: a file is missing, a format unknown. The command ends with 2."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
-
-    @classmethod
-    def of(cls, diagnostic: Diagnostic) -> UseError:
-        """Wraps a diagnostic as an exception."""
-        return cls(diagnostic.code, diagnostic.message, *diagnostic.hints)
+        super().__init__(Diagnostic(code, message, hints=hints))
 
 
 def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
@@ -113,10 +107,7 @@ def make_directories(names: Iterable[str]) -> None:
 
 def require_unread(names: Iterable[str]) -> None:
     """Refuses to overwrite what was read."""
-    try:
-        reads.require_unread(name for name in names if name != STANDARD)
-    except AidlError as reason:
-        raise UseError.of(reason.diagnostics[0]) from None
+    reads.require_unread(name for name in names if name != STANDARD)
 
 
 def write(name: str, data: bytes) -> None:

@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
@@ -50,7 +51,11 @@ def register_generate(parser: argparse.ArgumentParser) -> None:
 
 def run_generate(arguments: argparse.Namespace) -> int:
     places = _places(arguments)
-    task = _task(arguments)
+    from aidl_lang.tools.llm.generation import Task
+    from aidl_lang.tools.llm.messages import read_image
+
+    image = read_image(arguments.image, files.reads) if arguments.image else None
+    task = Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
     asked = provider(arguments)
     language = _language(arguments)
     runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
@@ -102,17 +107,6 @@ def _places(arguments: argparse.Namespace) -> _Places:
     return places
 
 
-def _task(arguments: argparse.Namespace) -> Task:
-    from aidl_lang.tools.llm.generation import Task
-    from aidl_lang.tools.llm.messages import ImageError, read_image
-
-    try:
-        image = read_image(arguments.image, files.reads) if arguments.image else None
-    except ImageError as reason:
-        raise UseError.of(reason.diagnostic) from None
-    return Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
-
-
 def _language(arguments: argparse.Namespace) -> Language:
     from aidl_lang.tools.llm.aidl import Aidl
 
@@ -140,7 +134,7 @@ class _Run:
         self.is_watched = sys.stderr.isatty()
 
     def generation(self) -> Generation:
-        """Returns the conversation. Raises UseError if not one reply could be had."""
+        """Returns the conversation. Raises AidlError if not one reply could be had."""
         from aidl_lang.tools.llm.generation import Settings, generate
 
         asked = sampling(self.arguments)
@@ -151,7 +145,7 @@ class _Run:
         done = generate(self.task, self.provider, self.language, settings, self._hear, self._listen)
         self._erase()
         if done.failure is not None and done.verdict is None:
-            raise UseError.of(done.failure)
+            raise AidlError(done.failure)
         if done.failure is not None:
             show([done.failure])
         self._save(done)
@@ -226,7 +220,6 @@ def _number(value: int | None) -> str:
 
 
 def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
-    """Writes the kept program and reports what is still missing in it."""
     verdict = generation.verdict
     if verdict is None:
         last = generation.attempts[-1].reply
@@ -274,21 +267,15 @@ def _write_program(
 
 
 def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
-    """Writes the drawings of the program."""
     from aidl_lang import pipeline
     from aidl_lang.common.source import SourceFile
-    from aidl_lang.export import ExportError
 
     if not places.drawings:
         return
     assert places.program is not None
     world = files.world(arguments.edit) if arguments.edit else None
     compiled = pipeline.compile(SourceFile(os.path.basename(places.program), program), world)
-    try:
-        made = [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
-    for name, data in made:
+    for name, data in [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]:
         files.write(name, data)
 
 

@@ -1,21 +1,26 @@
-"""`aidl measure`: areas, inertia, walls, gaps and masses of what a program draws."""
+"""`aidl measure` and `aidl diff`: what a program draws in numbers, and what differs between two."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, show
-from aidl_lang.tools.cli.options import add_params, add_program, flag, value
+from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.options import add_params, add_pixels, add_program, flag, value
 
 if TYPE_CHECKING:
+    from aidl_lang.common.source import SourceFile
+    from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.boolean import Contact
     from aidl_lang.geometry.curves import Vec
     from aidl_lang.geometry.survey import Part, Survey, Width
     from aidl_lang.pipeline import Compiled
+
 
 _MOST_PAIRS = 20
 _NOTHING = "–"
@@ -44,17 +49,13 @@ def register_measure(parser: argparse.ArgumentParser) -> None:
 
 def run_measure(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.geometry.survey import NothingThereError
 
     source, world = files.read(arguments.file), files.world(arguments.file)
     compiled = pipeline.compile(source, world, params=dict(arguments.params))
     if not compiled.ok:
         show(compiled.diagnostics)
         return exit_code(compiled.diagnostics) or 1
-    try:
-        found = compiled.surveyed(arguments.paths, dict(arguments.densities))
-    except NothingThereError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    found = compiled.surveyed(arguments.paths, dict(arguments.densities))
     show([*compiled.diagnostics, *found.notes])
     if arguments.json:
         _print_json(compiled, found)
@@ -72,9 +73,6 @@ def _density(text: str) -> tuple[str, float]:
     if not (name and 0 < value < 1e6):
         raise argparse.ArgumentTypeError(f'expected NAME=KG/M3, as in "oak=720", not `{text}`')
     return name, value
-
-
-# --- Text ----------------------------------------------------------------------------------------
 
 
 def _lines(found: Survey, asked: bool) -> Iterator[str]:
@@ -97,13 +95,19 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
         yield from _table(found.parts)
     if found.pairs:
         yield ""
-        yield from _pairs(found)
+        rows = found.pairs[:_MOST_PAIRS]
+        one, other = (max(len(getattr(p, side)) for p in rows) for side in ("a", "b"))
+        for pair in rows:
+            yield f"{pair.a:<{one}}  {pair.b:<{other}}  {_relation(pair)}"
+        if more := len(found.pairs) - len(rows):
+            yield f"and {counted(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
+        if found.is_partial:
+            yield "pairs that are far from each other are not listed"
     if found.alone:
         yield f"touches no other: {some_of(found.alone)}"
 
 
 def _block(part: Part) -> Iterator[str]:
-    """Yields all measures of a part."""
     kinds = {"bodies": counted(part.bodies, "body", "bodies"), "body": "a body"}
     yield f"{part.path}: {kinds.get(part.kind, part.kind)}"
     left, bottom, right, top = part.box
@@ -153,17 +157,9 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
-    """Yields one line for each body."""
     heads = (
-        "body",
-        "area mm²",
-        "perimeter mm",
-        "size mm",
-        "holes",
-        "wall mm",
-        "gap mm",
-        "mass g",
-        "quantity",
+        *("body", "area mm²", "perimeter mm", "size mm", "holes"),
+        *("wall mm", "gap mm", "mass g", "quantity"),
     )
     rows = [heads]
     for p in parts:
@@ -188,17 +184,6 @@ def _table(parts: Sequence[Part]) -> Iterator[str]:
         yield "  ".join(cells).rstrip()
 
 
-def _pairs(found: Survey) -> Iterator[str]:
-    rows = found.pairs[:_MOST_PAIRS]
-    one, other = (max(len(getattr(p, side)) for p in rows) for side in ("a", "b"))
-    for pair in rows:
-        yield f"{pair.a:<{one}}  {pair.b:<{other}}  {_relation(pair)}"
-    if more := len(found.pairs) - len(rows):
-        yield f"and {counted(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
-    if found.is_partial:
-        yield "pairs that are far from each other are not listed"
-
-
 def _relation(pair: Contact) -> str:
     if pair.relation == "apart":
         return f"{_number(pair.gap or 0.0)} mm apart"
@@ -216,9 +201,6 @@ def _place(p: Vec, size: float) -> str:
 
 def _mass(grams: float) -> str:
     return f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"
-
-
-# --- JSON ----------------------------------------------------------------------------------------
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:
@@ -242,3 +224,120 @@ def _print_json(compiled: Compiled, found: Survey) -> None:
 def _pair_dict(pair: Contact) -> dict[str, Any]:
     entry = {name: getattr(pair, name) for name in ("a", "b", "relation", "gap", "area")}
     return {name: value for name, value in entry.items() if value is not None}
+
+
+LONGEST = 20.0
+"""Seconds of the processor's time for the picture of two versions."""
+
+
+def register_diff(parser: argparse.ArgumentParser) -> None:
+    """`aidl diff`: what moved, turned, grew, appeared and vanished between two versions of a program."""
+    parser.add_argument("before", metavar="BEFORE", help="a program; - reads standard input")
+    parser.add_argument(
+        "after", nargs="?", metavar="AFTER", help="another; without it BEFORE with the params of --to"
+    )
+    parser.add_argument(
+        "-o", "--output", action="append", default=[], metavar="OUT", help="draw both over each other"
+    )
+    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
+    add_params(parser)
+    add_params(parser, "--from", "params_before", "the same for BEFORE alone")
+    add_params(parser, "--to", "params_after", "the same for AFTER alone")
+    add_pixels(parser)
+    flag(parser, "--json", "print the differences as JSON")
+    flag(parser, "--exit-code", "exit with 1 if there is a difference")
+    flag(parser, "--best-effort", "compare how far the solver came even if it did not solve")
+    parser.set_defaults(run=run_diff)
+
+
+def run_diff(arguments: argparse.Namespace) -> int:
+    outputs = [(name, _suffix(name, arguments)) for name in arguments.output]
+    on_standard = sum(name == files.STANDARD for name, _ in outputs)
+    if on_standard + arguments.json > 1:
+        raise UseError("E0914", "2 files do not fit on standard output", "name a file with -o")
+    comparison = _comparison(arguments)
+    if isinstance(comparison, int):
+        return comparison
+    _draw(comparison, outputs, arguments.pixels)
+    if arguments.json:
+        import json
+
+        print(json.dumps(comparison.to_dict(), indent=1, ensure_ascii=False))
+    elif on_standard:
+        say(str(comparison))
+    else:
+        print(comparison)
+    return int(arguments.exit_code and not comparison.is_equal)
+
+
+def _suffix(name: str, arguments: argparse.Namespace) -> str:
+    from aidl_lang.export import PICTURES
+
+    files.require_directory(name)
+    own = "" if name == files.STANDARD else Path(name).suffix.lower()
+    said = (
+        f".{arguments.format.lower().lstrip('.')}" if arguments.format else ".svg" * (name == files.STANDARD)
+    )
+    for suffix in (own, said):
+        if suffix in PICTURES:
+            return suffix
+    asked = (said or own).lstrip(".")
+    message = (
+        f"differences cannot be drawn as `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    )
+    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
+
+
+def _comparison(arguments: argparse.Namespace) -> Comparison | int:
+    """Returns the comparison, or the exit code if a side is wrong, which has been reported."""
+    names = arguments.before, arguments.after or arguments.before
+    if arguments.after is None and not (arguments.params_before or arguments.params_after):
+        raise UseError(
+            "E0922",
+            f"there is nothing to compare `{names[0]}` with",
+            "name a second program, or say what differs, as in `--to width=200`",
+        )
+    sources = {name: files.read(name) for name in dict.fromkeys(names)}
+    versions: list[Compiled] = []
+    code = 0
+    for name, own in zip(names, (arguments.params_before, arguments.params_after), strict=True):
+        compiled = _compiled(name, sources[name], dict(arguments.params) | dict(own))
+        may_be_used = compiled.ok or arguments.best_effort
+        if may_be_used and compiled.model is not None and compiled.drawing is not None:
+            versions.append(compiled)
+        else:
+            show([*compiled.errors, _refusal(name, compiled)], quiet=True)
+            code = max(code, exit_code(compiled.errors), 1)
+    return code or versions[0].compared(versions[1])
+
+
+def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compiled:
+    from aidl_lang import pipeline
+
+    return pipeline.compile(source, files.world(name), params=params)
+
+
+def _refusal(name: str, compiled: Compiled) -> Diagnostic:
+    if compiled.drawing is None:
+        return Diagnostic("E0922", f"`{name}` cannot be compared: it does not compile")
+    what = "its constraints do not solve" if compiled.status != "solved" else "an assertion in it fails"
+    return Diagnostic(
+        "E0922", f"`{name}` cannot be compared: {what}", hints=("`--best-effort` compares it as it is",)
+    )
+
+
+def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -> None:
+    if not outputs:
+        return
+    from aidl_lang.common.drawing_time import within
+    from aidl_lang.export import Options, render
+    from aidl_lang.export.comparison.picture import overlay
+
+    with within(LONGEST, "drawing the differences in"):
+        picture = overlay(comparison)
+        made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
+    files.require_unread(name for name, _ in made)
+    for name, data in made:
+        files.write(name, data)
+        if name != files.STANDARD:
+            say(f"{name}: drawn")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.tools.cli.files import UseError
@@ -144,38 +144,25 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 def add_drawing_options(parser: argparse.ArgumentParser) -> None:
     """Adds the options for how a drawing is written."""
-    value(parser, "--format", "SUFFIX", "format of outputs whose name does not tell it")
+    add = partial(value, parser)
+    add("--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)
     add_pixels(parser)
-    value(
-        parser,
-        "--thickness",
-        "MM",
-        "thickness of parts without `@thickness`, for STEP, STL and 3MF",
-        _thickness,
-    )
-    _add_cutting(parser)
-
-
-def _add_cutting(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for cutters and for printing 1:1."""
-    value(
-        parser,
+    add("--thickness", "MM", "thickness of parts without `@thickness`, for STEP, STL and 3MF", _thickness)
+    add(
         "--profile",
         "NAME",
         "colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
         "file such as shop.toml",
     )
-    value(
-        parser,
+    add(
         "--sheet",
         "SIZE",
         "lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
         size,
     )
-    value(parser, "--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
-    value(
-        parser,
+    add("--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
+    add(
         "--nest",
         "SECONDS",
         "pack parts on sheets by their outlines, not by their boxes, if that saves material "
@@ -184,8 +171,7 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=5,
     )
-    value(
-        parser,
+    add(
         "--kerf",
         "MM",
         "width of the cut: outlines grow by half of it, so that parts keep their size",
@@ -207,23 +193,22 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
         "programs, or exact with splines",
         "arcs",
     )
-    value(
-        parser,
+    add(
         "--tolerance",
         "MM",
         "how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
         _tolerance,
         0.01,
     )
-    value(parser, "--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
-    value(parser, "--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
+    add("--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
+    add("--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
     """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
-    value(
-        group,
+    add = partial(value, group)
+    add(
         "--provider",
         "NAME",
         "openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
@@ -231,22 +216,20 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
         str,
         "",
     )
-    value(group, "--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
-    value(group, "--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
-    value(group, "--seed", "N", "of the reply, for servers that have one", int)
-    value(group, "--temperature", "T", "0 is the least random", _temperature)
-    value(group, "--max-tokens", "N", "of one reply", count_to(1_000_000))
-    value(
-        group,
+    add("--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
+    add("--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
+    add("--seed", "N", "of the reply, for servers that have one", int)
+    add("--temperature", "T", "0 is the least random", _temperature)
+    add("--max-tokens", "N", "of one reply", count_to(1_000_000))
+    add(
         "--constrain",
         "SERVER",
         "keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
         "or as in vllm:llguidance where that engine decodes",
         _server,
     )
-    value(group, "--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
-    value(
-        group,
+    add("--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
+    add(
         "--price",
         "IN/OUT",
         "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
@@ -255,8 +238,7 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
 
 
 def provider(arguments: argparse.Namespace) -> Closable:
-    """Returns the model that the options of `add_provider` name. Raises UseError."""
-    from aidl_lang.tools.llm.messages import ProviderError
+    """Returns the model that the options of `add_provider` name. Raises AidlError."""
     from aidl_lang.tools.llm.providers import Connection, connect
 
     said = Connection(
@@ -266,15 +248,12 @@ def provider(arguments: argparse.Namespace) -> Closable:
         timeout=arguments.timeout,
         price=arguments.price,
     )
-    try:
-        connected = connect(said)
-        if not arguments.constrain:
-            return connected
-        from aidl_lang.tools.llm.decoding import Constrained
+    connected = connect(said)
+    if not arguments.constrain:
+        return connected
+    from aidl_lang.tools.llm.providers import Constrained
 
-        return Constrained(connected, arguments.constrain)
-    except ProviderError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return Constrained(connected, arguments.constrain)
 
 
 def sampling(arguments: argparse.Namespace) -> Sampling:
@@ -366,7 +345,7 @@ def _seconds(text: str) -> float:
 
 
 def _server(text: str) -> str:
-    from aidl_lang.tools.llm.decoding import SERVERS
+    from aidl_lang.tools.llm.providers import SERVERS
 
     if text not in SERVERS:
         raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(SERVERS)}")
@@ -418,17 +397,12 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
         arguments = parser.parse_args(words)
     except argparse.ArgumentError as reason:
         name = (reason.argument_name or "").lstrip("-").replace("-", "_")
-        raise _refused(f"`{name}`: {reason.message}") from None
-    try:
-        return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
-    except UseError as reason:
-        raise AidlError(reason.diagnostic) from None
+        raise UseError("E0925", f"`{name}`: {reason.message}") from None
+    return Asked(options(arguments, compiled), arguments.format, arguments.best_effort)
 
 
 def said(arguments: argparse.Namespace) -> list[str]:
-    """Returns the options that say how a drawing is made, as far as they are not the default, as the command
-    line has them.
-    """
+    """Returns the options of a drawing that are not the default, as the command line has them."""
     _, defaults = _parser(add_variant, add_strict)
     asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}
     return [
@@ -444,7 +418,6 @@ def said(arguments: argparse.Namespace) -> list[str]:
 def _parser(
     *more: Callable[[argparse.ArgumentParser], None],
 ) -> tuple[argparse.ArgumentParser, dict[str, Any]]:
-    """Returns a parser for the options of a drawing, and their defaults by name."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     parser.add_argument("file", nargs="?")
     add_drawing(parser)
@@ -460,19 +433,14 @@ def _known(name: str, known: list[str]) -> str:
         return name
     near = nearest(name, known, 1)
     hints = did_you_mean(near) or [f"options are {', '.join(ticked(known))}"]
-    raise _refused(f"there is no option `{name}`", *hints)
-
-
-def _refused(message: str, *hints: str) -> AidlError:
-    return AidlError(Diagnostic("E0925", message, hints=hints))
+    raise UseError("E0925", f"there is no option `{name}`", *hints)
 
 
 def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
-    """Returns an option as the command line has it."""
     option = f"--{name.replace('_', '-')}"
     if is_flag != isinstance(value, bool):
         has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"
-        raise _refused(f"`{name}` {has}")
+        raise UseError("E0925", f"`{name}` {has}")
     if is_flag:
         return [option] if value else []
     return [f"{option}={_text(name, value)}"]
@@ -491,4 +459,4 @@ def _text(name: str, value: object) -> str:
         return ("," if all(isinstance(each, str) for each in items) else "x").join(
             _text(name, each) for each in items
         )
-    raise _refused(f"`{name}` takes numbers and texts, not `{type(value).__name__}`")
+    raise UseError("E0925", f"`{name}` takes numbers and texts, not `{type(value).__name__}`")

@@ -17,7 +17,7 @@ from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_program, flag, value
 
 if TYPE_CHECKING:
-    from aidl_lang.tools.preview.serving import Served
+    from aidl_lang.tools.preview.host import Host
 
 
 LOCALHOST = "127.0.0.1"
@@ -123,25 +123,27 @@ def run_preview(arguments: argparse.Namespace) -> int:
     hint = "without `--port` a free one is taken"
     listener = listen(arguments.host, arguments.port, "E0953", hint)
 
-    from aidl_lang.tools.preview.serving import Served
+    from aidl_lang.tools.preview.host import Host
+    from aidl_lang.tools.preview.local import Door
+    from aidl_lang.tools.preview.site import serve
 
-    served = Served(Path(arguments.file).resolve(), _write, listener)
-    say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")
+    host, door = Host(Path(arguments.file).resolve(), _write), Door(listener)
+    say(f"{arguments.file}: {door.url} (stop with Ctrl-C)")
     if not arguments.no_open:
-        open_browser(served.url)
+        open_browser(door.url)
     try:
-        served.run()
+        serve(host, door)
     finally:
-        _rescue(served)
+        _rescue(host)
     return 0
 
 
-def _rescue(served: Served) -> None:
+def _rescue(host: Host) -> None:
     """Keeps what was typed and not saved, and tells where."""
     from aidl_lang.tools.ide.references import CannotError
 
     try:
-        kept = served.rescue()
+        kept = host.text.rescue()
     except CannotError as reason:
         say(f"what was typed in the preview is not saved: {reason}")
         return
@@ -211,8 +213,11 @@ def register_mcp(parser: argparse.ArgumentParser) -> None:
 
 
 def run_mcp(arguments: argparse.Namespace) -> int:
-    _require_packages()
-    root = _root(arguments.root)
+    if find_spec("mcp") is None:
+        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
+    if arguments.root is not None and not Path(arguments.root).is_dir():
+        raise UseError("E0942", f"there is no folder `{arguments.root}` to import from")
+    root = None if arguments.root is None else Path(arguments.root).resolve()
     listener, path = None, f"/{_token()}/mcp"
     if arguments.http is not None:
         hint = "`--http 0` takes a port that is free"
@@ -234,14 +239,3 @@ def _token() -> str:
     if not re.fullmatch(r"[A-Za-z0-9_-]{16,}", given):
         raise UseError("E0942", f"{_TOKEN} is no token", "it has 16 letters, digits, `-` and `_`, or more")
     return given
-
-
-def _require_packages() -> None:
-    if find_spec("mcp") is None:
-        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
-
-
-def _root(name: str | None) -> Path | None:
-    if name is not None and not Path(name).is_dir():
-        raise UseError("E0942", f"there is no folder `{name}` to import from")
-    return None if name is None else Path(name).resolve()

@@ -9,7 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, show
+from aidl_lang.tools.cli.files import exit_code, show
 from aidl_lang.tools.cli.options import add_look, add_params, add_program, choice, value
 from aidl_lang.tools.terminal import (
     GRAPHICS,
@@ -51,14 +51,11 @@ def register_show(parser: argparse.ArgumentParser) -> None:
 
 def run_show(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import ExportError, Job, Options, require_sheets
+    from aidl_lang.export import Job, Options, require_sheets
     from aidl_lang.export.picture import picture
 
     options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
-    try:
-        require_sheets(options)
-    except ExportError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    require_sheets(options)
     source, world = files.read(arguments.file), files.world(arguments.file)
     layers = tuple(sorted(arguments.show))
     compiled = pipeline.compile(source, world, params=dict(arguments.params), show=layers)
@@ -98,7 +95,6 @@ def _screen(width: int | None) -> Screen:
 
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
-    """Returns the picture in a protocol."""
     from aidl_lang.export.marks import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,9 +30,8 @@ from aidl_lang.tools.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from aidl_lang.tools.sweeping.outputs import Outputs
+    from aidl_lang.tools.sweeping.outputs import Outputs, Row
     from aidl_lang.tools.sweeping.plan import Plan, Rows
-    from aidl_lang.tools.sweeping.rows import Row
     from aidl_lang.tools.sweeping.session import Job, Progress, Session
 
 
@@ -185,19 +185,10 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
     add_variant(parser)
     add_strict(parser)
     running = parser.add_argument_group("running")
-    value(
-        running,
-        "--on",
-        "ENGINE",
-        "local (the default), or a scheduler of Dask: tcp://host:8786",
-        str,
-        "local",
-    )
-    value(
-        running, "--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000)
-    )
-    value(
-        running,
+    add = partial(value, running)
+    add("--on", "ENGINE", "local (the default), or a scheduler of Dask: tcp://host:8786", str, "local")
+    add("--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000))
+    add(
         "--time-limit",
         "SECONDS",
         "for each variant (default: what a compile, its files and measures may take)",
@@ -205,8 +196,8 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
     )
     flag(running, "--stop-on-error", "stop at the first variant that fails")
     flag(running, "--resume", "go on with the same sweep that was broken off")
-    value(running, "--cache", "DIR", "keep what comes of variants there, and take what is kept")
-    value(running, "--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
+    add("--cache", "DIR", "keep what comes of variants there, and take what is kept")
+    add("--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
     running.add_argument(
         "--no-timings",
         dest="timings",
@@ -271,7 +262,7 @@ def _axis(text: str) -> tuple[str, str]:
 
 def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
     """Raises UseError for outputs and options that drawing sheets do not have."""
-    from aidl_lang.tools.cli.sheet import sheet_suffix
+    from aidl_lang.tools.cli.build import sheet_suffix
 
     if not wanted.patterns:
         raise UseError("E0973", "`--drawing-sheet` has no sheets to make", "name them: `-o '{n}.pdf'`")
@@ -368,14 +359,13 @@ def line(session: Session) -> str:
 
 
 def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
-    """Prints each failure with its messages and the command that reproduces it."""
     from aidl_lang.common.render import escape
     from aidl_lang.tools.sweeping.plan import labels
 
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")
         for fault in row.outcome.errors[:3]:
-            from aidl_lang.tools.sweeping.rows import said
+            from aidl_lang.tools.sweeping.outputs import said
 
             say(f"  {escape(said(fault))}")
         if not row.outcome.errors:

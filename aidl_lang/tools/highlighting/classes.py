@@ -98,7 +98,6 @@ def called() -> dict[str, str]:
 
 @cache
 def _plain_names() -> dict[str, str]:
-    """Returns predefined names that are not called, with their classes."""
     words = vocabulary()
     found = dict.fromkeys(words.everywhere, "name.everywhere")
     return {**found, **dict.fromkeys(words.constants, "name.constant")}
@@ -169,11 +168,9 @@ class _Reader:
     # --- Names ------------------------------------------------------------------------------------
 
     def _kind(self, place: int) -> str:
-        """Returns the kind of the token at a place; END outside of the text."""
         return self.tokens[place].kind if 0 <= place < len(self.tokens) else END
 
     def _is_keyword(self, place: int) -> bool:
-        """Tells whether a word that may also be a name is a keyword here."""
         before, after = self._kind(place - 1), self._kind(place + 1)
         match self._kind(place):
             case "as":
@@ -236,7 +233,6 @@ class _Reader:
         return after not in ("=", ".")  # its body may still have to be written
 
     def _after_index(self, place: int) -> int:
-        """Returns the place after `[…]`, any number of them."""
         while self._kind(place) == "[":
             place = self._closing(place) + 1
         return place
@@ -275,7 +271,8 @@ class _Reader:
                 self.stack[-1].header, self.stack[-1].opens = "", False
                 self.stack.append(_Inside("items"))
             case "{":
-                self._leave_calls()
+                while self.stack[-1].role not in _BLOCKS:
+                    self.stack.pop()
                 self.stack[-1].header = ""
                 nested = self.stack[-1].role == "constraints"
                 self.stack.append(_Inside("constraints" if nested else self.opens))
@@ -307,11 +304,6 @@ class _Reader:
             self.opens = "constraints"
         elif kind == "then":
             self.opens = "block"  # `constrain if a then b else c` is one expression
-
-    def _leave_calls(self) -> None:
-        """Leaves unclosed calls, which contain no braces but those of blocks among their arguments."""
-        while self.stack[-1].role not in _BLOCKS:
-            self.stack.pop()
 
     def _role(self, place: int) -> str:
         before = self._kind(place - 1)

@@ -78,9 +78,7 @@ class Action:
 
 
 def drawn_alike(one: View, other: View) -> bool:
-    """Tells whether two programs solve and draw the same picture. Raises CannotError if a picture cannot be
-    made.
-    """
+    """Tells whether two programs solve and draw the same. Raises CannotError without a picture."""
     outcomes = [view.outcome for view in (one, other)]
     if any(outcome is None or not outcome.ok for outcome in outcomes):
         return False
@@ -96,10 +94,6 @@ def first_error(view: View) -> str:
     return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
 
 
-def is_here(source: SourceFile, edits: Sequence[Edit]) -> bool:
-    return all(edit.span.source is source for edit in edits)
-
-
 # --- The edits that come with diagnostics, one by one and all together.
 
 _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
@@ -107,7 +101,7 @@ _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
 
 def fixes(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields fixes for diagnostics at a selection; for a conflict, those of each constraint in it."""
-    near = [d for d in view.diagnostics if any(_is_at(view, p, start, end) for p in _places(d))]
+    near = [d for d in view.diagnostics if _is_at(view, d, start, end)]
     offered: list[Fix] = []
     for d in near:
         if d.fix is not None:
@@ -119,21 +113,15 @@ def fixes(view: View, start: int, end: int) -> Iterator[Action]:
                 offered.append(fix)
                 yield _action(fix, d, is_preferred=False)
     if any(d.fix is not None and d.fix.is_sure for d in view.diagnostics):
-        yield Action("Apply all fixes", "source.fixAll", lambda: _everything(view))
+        yield Action("Apply all fixes", "source.fixAll", partial(_everything, view))
 
 
-def _places(d: Diagnostic) -> list[tuple[object, int, int]]:
-    spans = [d.span, *(label.span for label in d.secondary)]
-    return [(span.source, span.start, span.end) for span in spans if span is not None]
-
-
-def _is_at(view: View, place: tuple[object, int, int], start: int, end: int) -> bool:
-    source, first, last = place
-    return source is view.source and first <= end and start <= last
+def _is_at(view: View, d: Diagnostic, start: int, end: int) -> bool:
+    spans = [span for span in (d.span, *(label.span for label in d.secondary)) if span is not None]
+    return any(s.source is view.source and s.start <= end and start <= s.end for s in spans)
 
 
 def _remedies(view: View, d: Diagnostic) -> Iterator[Fix]:
-    """Yields the fixes for each of the constraints in a conflict."""
     if d.code not in _CONFLICTS or view.outcome is None:
         return
     for conflict in view.outcome.conflicts():
@@ -200,33 +188,19 @@ _TITLES = {False: "Write solved values back as first guesses", True: "Write chan
 
 
 def writings(view: View, start: int, end: int) -> Iterator[Action]:
-    """Yields actions for the selection, or else the innermost structure around the cursor; and for the whole
-    file.
-    """
+    """Yields actions for the selection, or the innermost structure at the cursor; and for the whole file."""
     if view.outcome is None:
         return
-    part, where = _part(view, start, end)
-    for sizes, title in _TITLES.items():
-        if part is not None and can_write_back(view, part, sizes=sizes):
-            yield _writing(view, part, f"{title}: {where}", sizes=sizes)
-        if can_write_back(view, sizes=sizes):
-            yield _writing(view, None, title, sizes=sizes)
-
-
-def _part(view: View, start: int, end: int) -> tuple[Span | None, str]:
-    """Returns a part of the text with its name."""
+    places: list[tuple[Span | None, str]] = [(None, "")]
     if start < end:
-        return view.span(start, end), "selection"
-    node = next(structures_around(view, start), None)
-    return (None, "") if node is None else (node.span, f"`{node.name.text}`")
-
-
-def _writing(view: View, part: Span | None, title: str, *, sizes: bool) -> Action:
-    return Action(title, "refactor.rewrite", partial(_written, view, part, sizes=sizes))
-
-
-def _written(view: View, part: Span | None, *, sizes: bool) -> Sequence[Edit]:
-    return write_back(view, part, sizes=sizes).edits
+        places.insert(0, (view.span(start, end), ": selection"))
+    elif (node := next(structures_around(view, start), None)) is not None:
+        places.insert(0, (node.span, f": `{node.name.text}`"))
+    for sizes, title in _TITLES.items():
+        for part, where in places:
+            if can_write_back(view, part, sizes=sizes):
+                made = partial(write_back, view, part, sizes=sizes)
+                yield Action(f"{title}{where}", "refactor.rewrite", made)
 
 
 # --- Names a number: makes it a `param` with a range, which can be set from outside.
@@ -238,17 +212,13 @@ _SHORT = 2
 def namings(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields the action for the number at a selection, if a `param` may replace it."""
     path = around(view.module, start)
-    number = _number(path)
+    last = path[-1]
+    number = last if isinstance(last, ast.Number) else None
     if number is None or number.span.end < end or any(isinstance(node, ast.Param) for node in path):
         return
     name = free_name(view, _suggested(view, path))
     title = f"Name this number as a param: `{name}`"
     yield Action(title, "refactor.extract", partial(_named, view, path, number, name))
-
-
-def _number(path: Sequence[ast.Node]) -> ast.Number | None:
-    last = path[-1]
-    return last if isinstance(last, ast.Number) else None
 
 
 def _named(view: View, path: Sequence[ast.Node], number: ast.Number, name: str) -> list[Edit]:
@@ -325,7 +295,6 @@ def _suggested(view: View, path: Sequence[ast.Node]) -> str:
 
 
 def _parameter(view: View, call: ast.Call, inner: ast.Node) -> str | None:
-    """Returns the parameter that a nameless argument fills."""
     fits = view.program.inference.fits.get(call)
     given = next((a for a in call.arguments if a is inner and a.name is None), None)
     if not fits or given is None:
@@ -386,9 +355,7 @@ def _dedented(view: View, node: ast.Structure) -> str:
 
 
 def _passed(view: View, node: ast.Structure) -> list[Symbol]:
-    """Returns the outer names that a structure's body uses. Raises CannotError for one that cannot be passed
-    to a template.
-    """
+    """Returns the outer names that a body uses. Raises CannotError for one that cannot be passed."""
     found: dict[Symbol, None] = {}
     for mention in mentions(view):
         symbol = mention.symbol
@@ -571,7 +538,6 @@ def _origin(root: SolvedStructure, path: str) -> Vec | None:
 
 
 def _number_of(structure: SolvedStructure, name: str) -> float | None:
-    """Returns a number of a structure, or of some geometry in it."""
     thing, _, field = name.rpartition(".")
     path = f"{structure.path}.{thing}" if thing else structure.path
     values: list[object] = [s.params.get(field) for s in structure.walk() if s.path == path]

@@ -29,9 +29,7 @@ SAME = 1e-6
 
 
 def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance: float = SAME) -> bool:
-    """Tells whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole
-    lies.
-    """
+    """Tells whether two outcomes draw the same, name by name; with `slid`, wherever the whole lies."""
 
     def is_near(a: float, b: float) -> bool:
         return abs(a - b) <= tolerance or (math.isnan(a) and math.isnan(b))
@@ -59,7 +57,6 @@ def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]
 
 
 def _numbers(value: object, at: Vec) -> Iterator[float]:
-    """Yields the numbers of a curve or a point; a pair is a place, taken relative to `at`."""
     match value:
         case (float() as x, float() as y):
             yield from (x - at[0], y - at[1])
@@ -141,7 +138,9 @@ def guesses(view: View) -> list[Guess]:
         return []
     uses: dict[ast.Number | ast.Unary, list[Literal]] = {}
     for literal in outcome.built.literals:
-        if literal.node.span.source is view.source and _is_open(literal.became):
+        if literal.node.span.source is view.source and any(
+            not unknown.exact for unknown in ex.unknowns([literal.became])
+        ):
             uses.setdefault(literal.node, []).append(literal)
     named = set(_read_more_than_once(view)) if uses else set()
     found = (_guess(node, tuple(each), node in named, outcome.evaluate) for node, each in uses.items())
@@ -169,7 +168,7 @@ def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool,
         unit=unit,
         measure=unit or _MEASURES.get(uses[0].dimension or PLAIN, ""),
         path=uses[0].path,
-        is_kept=all(_is_kept(use.became) for use in uses),
+        is_kept=all((isinstance(use.became.payload, Unknown) and use.became.payload.kept) for use in uses),
         is_shared=named or len(uses) > 1,
         uses=uses,
     )
@@ -184,18 +183,6 @@ def _agreed(values: list[float]) -> float | None:
     first = values[0]
     same = all(abs(value - first) <= _SAME * max(1.0, abs(first)) for value in values)
     return first if same and math.isfinite(first) else None
-
-
-def _is_open(became: Expression) -> bool:
-    """True if the solver may change it: a number that was read while building is a constant after all."""
-    return any(not unknown.exact for unknown in ex.unknowns([became]))
-
-
-def _is_kept(became: Expression) -> bool:
-    return isinstance(became.payload, Unknown) and became.payload.kept
-
-
-# --- Numbers with a name -------------------------------------------------------------------------
 
 
 def _read_more_than_once(view: View) -> Iterator[ast.Node]:
@@ -247,18 +234,8 @@ def _given_to_function(
 # Every proposal is tried: the edited text is solved again, and has to draw the same.
 
 _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
-"""Errors of a number, as shares of it (or of one for smaller numbers): each is tried if the one before it was
-too coarse. With none, all digits are written.
-"""
+"""Errors of a number, as shares of it (or of 1), tried in turn; with 0 all digits are written."""
 _MOST_TRIES = 8
-
-
-@record()
-class Rewriting:
-    """Tried edits that write solved values into the text; `view` is the result."""
-
-    edits: tuple[Edit, ...]
-    view: View
 
 
 def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> bool:
@@ -266,17 +243,15 @@ def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False)
     return bool(_targets(view, span, sizes))
 
 
-def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting:
-    """Returns the edits that write solved values as first guesses, in a part of the text or in all of it;
-    with `sizes`, the values of the kept sizes that had to change. Raises CannotError.
-    """
+def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> tuple[Edit, ...]:
+    """Returns the edits that write solved values as guesses, with `sizes` as sizes. Raises CannotError."""
     targets = _targets(view, span, sizes)
     if not targets:
         what = "kept size had to change" if sizes else "first guess was solved to something else"
         raise CannotError(f"no {what} here")
     for some in (targets, {g: v for g, v in targets.items() if not g.is_shared}):
         if some and (found := _tried(view, some)) is not None:
-            return Rewriting(*found)
+            return found
     raise CannotError("with the solved values written there, the program would not draw the same")
 
 
@@ -285,11 +260,7 @@ def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> st
     return shortest(value, precision * max(1.0, abs(value))) + guess.unit
 
 
-# --- Choosing ------------------------------------------------------------------------------------
-
-
 def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
-    """Returns the numbers to write, with their values."""
     outcome, kept = view.outcome, as_kept(view)
     if outcome is None or outcome.evaluate is None or kept is None:
         return {}
@@ -303,22 +274,14 @@ def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
             continue
         if not sizes and guess.is_kept:
             continue
-        if sizes and not _holds_changed_size(guess):
+        if sizes and not any(unknown.kept for unknown in guess.unknowns):
             continue
         found[guess] = value
     return found
 
 
-def _holds_changed_size(guess: Guess) -> bool:
-    """True for the number of a kept size, by itself or as the place of a further point of a geometry."""
-    return any(unknown.kept for unknown in guess.unknowns)
-
-
-# --- Trying --------------------------------------------------------------------------------------
-
-
-def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:
-    """Returns the shortest numbers that draw the same, with the resulting view.
+def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[Edit, ...] | None:
+    """Returns the shortest numbers that draw the same.
 
     If the drawing is free to slide as a whole, it may: a position that the text does not say still begins
     where it
@@ -337,7 +300,10 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
         is_slid = is_same(view.outcome, again.outcome, slid=True)
         moved = _moved(again, wanted, order)
         if is_slid and (not moved or is_same(view.outcome, again.outcome)):
-            return (edits, again) if _is_no_worse(view.outcome, again.outcome) else None
+            is_worse = {d.code for d in again.outcome.diagnostics} - {
+                d.code for d in view.outcome.diagnostics
+            }
+            return None if is_worse else edits
         finest = 1 if is_slid else len(_PRECISIONS) - 1
         coarse = [guess for guess in moved or wanted if level[guess] < finest]
         if coarse:
@@ -350,7 +316,6 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
 
 
 def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]) -> dict[Guess, float]:
-    """Returns the numbers that solve to other values than intended, with these values."""
     now = guesses(again)
     if len(now) != len(order):
         return {}
@@ -360,8 +325,3 @@ def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]
         if solved is not None and abs(solved - value) * guess.factor > SAME:
             found[guess] = solved
     return found
-
-
-def _is_no_worse(before: Compiled, after: Compiled) -> bool:
-    """True if the program has no diagnostics that it did not have before."""
-    return {d.code for d in after.diagnostics} <= {d.code for d in before.diagnostics}

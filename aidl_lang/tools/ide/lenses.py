@@ -98,7 +98,6 @@ def _set_from_outside(view: View) -> Iterator[Inlay]:
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
-    """Returns the value of a literal; None for any other expression."""
     match node:
         case ast.String(value=value) | ast.Boolean(value=value):
             return value
@@ -249,7 +248,6 @@ def _status(outcome: Compiled, model: SolvedModel) -> str:
 def _title_of_structure(
     found: Sequence[SolvedStructure], motions: Sequence[Motion], reports: Sequence[ConstraintReport]
 ) -> str:
-    """Returns the title for the structures that one piece of text made."""
     said = list(dict.fromkeys(_one(structure, motions, reports) for structure in found))
     times = f"{len(found)} times · " if len(found) > 1 else ""
     return times + first_few(said, _NAMED, " …", " | ")
@@ -267,9 +265,7 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
         for motion in motions
         if all(thing == structure.path or thing.startswith(inside) for thing in motion.things)
     ]
-    if free:
-        return f"{held}{first_few(free, _NAMED, ' …')}"
-    return f"{held}{_HELD}"
+    return f"{held}{first_few(free, _NAMED, ' …')}" if free else f"{held}{_HELD}"
 
 
 def _names(motion: Motion, inside: str) -> str:

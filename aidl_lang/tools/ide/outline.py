@@ -50,9 +50,7 @@ def outline(view: View) -> list[Entry]:
 
 
 def search(project: Project, query: str) -> list[SymbolMatch]:
-    """Returns entries whose names have the letters of the query, in this order; whole names and beginnings
-    first.
-    """
+    """Returns entries whose names have a query's letters in this order, whole names and beginnings first."""
     wanted = fold(query)
     found = [
         each
@@ -84,53 +82,38 @@ def _entries(view: View, statements: Iterable[ast.Statement]) -> Iterator[Entry]
                 yield from _entries(view, then.statements)
                 yield from _entries(view, otherwise.statements if otherwise else ())
             case ast.Import(alias=alias) if alias is not None:
-                yield _entry(view, statement, alias, statement.path.span.text, SymbolKind.NAMESPACE)
+                detail = statement.path.span.text
+                yield Entry(alias.text, detail, SymbolKind.NAMESPACE, statement.span, alias.span)
             case _:
                 yield from _declared(view, statement)
 
 
-def _declared(view: View, statement: ast.Statement) -> Iterator[Entry]:
-    match statement:
-        case ast.Structure(parameters=parameters):
+def _declared(view: View, node: ast.Statement) -> Iterator[Entry]:
+    body: ast.Block | None = None
+    indices: Sequence[ast.Expression] = ()
+    match node:
+        case ast.Structure(parameters=parameters, body=body, indices=indices):
             kind = SymbolKind.STRUCTURE if parameters is None else SymbolKind.TEMPLATE
-            detail = statement.kind_word.text
-            indices = "".join(f"[{i.span.one_line}]" for i in statement.indices)
-            yield _entry(view, statement, statement.name, detail, kind, statement.body, indices)
-        case ast.ShapeDefinition():
-            yield _entry(view, statement, statement.name, "shape", SymbolKind.SHAPE, statement.body)
+            detail = node.kind_word.text
+        case ast.ShapeDefinition(body=body):
+            kind, detail = SymbolKind.SHAPE, "shape"
         case ast.ConstraintDefinition():
-            yield _entry(view, statement, statement.name, "constraint", SymbolKind.CONSTRAINT)
-        case ast.FunctionDefinition():
-            yield _entry(view, statement, statement.name, statement.value.span.one_line, SymbolKind.FUNCTION)
-        case ast.Param(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.PARAM)
-        case ast.Let(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.LET)
-        case ast.Var(value=value):
-            yield _entry(view, statement, statement.name, value.span.one_line, SymbolKind.VAR)
+            kind, detail = SymbolKind.CONSTRAINT, "constraint"
+        case ast.FunctionDefinition(value=value):
+            kind, detail = SymbolKind.FUNCTION, value.span.one_line
+        case ast.Param(value=value) | ast.Let(value=value) | ast.Var(value=value):
+            kind, detail = SymbolKind[type(node).__name__.upper()], value.span.one_line
         case ast.Alias(target=target):
-            yield _entry(view, statement, statement.name, target.text, SymbolKind.ALIAS)
-        case ast.Assign(value=value):
-            made = value.callee.text if isinstance(value, ast.Call) else value.span.one_line
-            indices = "".join(f"[{i.span.one_line}]" for i in statement.indices)
-            symbol = view.resolution.uses.get(statement.name)
+            kind, detail = SymbolKind.ALIAS, target.text
+        case ast.Assign(value=value, indices=indices):
+            detail = value.callee.text if isinstance(value, ast.Call) else value.span.one_line
+            symbol = view.resolution.uses.get(node.name)
             kind = SymbolKind.GEOMETRY if symbol is None else symbol.kind
-            yield _entry(view, statement, statement.name, made, kind, None, indices)
         case _:
-            pass
-
-
-def _entry(
-    view: View,
-    node: ast.Node,
-    name: ast.Identifier,
-    detail: str,
-    kind: SymbolKind,
-    body: ast.Block | None = None,
-    indices: str = "",
-) -> Entry:
+            return
+    name = node.name.text + "".join(f"[{index.span.one_line}]" for index in indices)
     children = tuple(_entries(view, body.statements)) if body is not None else ()
-    return Entry(name.text + indices, detail, kind, node.span, name.span, children)
+    yield Entry(name, detail, kind, node.span, node.name.span, children)
 
 
 # --- Folding ranges: blocks, calls and lists over several lines, comments, imports.
@@ -142,9 +125,7 @@ _CLOSES = {"}": "{", "]": "[", ")": "("}
 
 @record()
 class Fold:
-    """Lines from `start`, which stays visible, to `end`, both from 1. `kind` is `region`, `comment` or
-    `imports`.
-    """
+    """Lines from `start`, which stays visible, to `end`, from 1; a `region`, `comment` or `imports`."""
 
     start: int
     end: int
@@ -199,9 +180,7 @@ def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
 
 
 def selections(view: View, offset: int) -> list[Span]:
-    """Returns the ranges around an offset, each larger than the one before and around it, the whole file
-    last.
-    """
+    """Returns the ranges around an offset, from the smallest to the whole file."""
     found: list[Span] = []
     for node in reversed(around(view.module, offset)):
         for span in (*_parts(node, offset), node.span):
@@ -213,9 +192,7 @@ def selections(view: View, offset: int) -> list[Span]:
 
 
 def _parts(node: ast.Node, offset: int) -> list[Span]:
-    """Returns the parts of a node that are no nodes: the name of a call or a member, the inside of a
-    block.
-    """
+    """Returns the parts of a node that are no nodes: the name of a call, the inside of a block."""
     match node:
         case ast.Call(callee=name) | ast.Member(name=name):
             return [name.span]
@@ -226,8 +203,6 @@ def _parts(node: ast.Node, offset: int) -> list[Span]:
         case _:
             return []
 
-
-# --- The role of each word of a program, for colours that follow its meaning, and the colours that it names.
 
 # --- The role of each word of a program, for colours that follow its meaning.
 #
@@ -306,7 +281,6 @@ def _of_token(kind: str, text: str) -> str | None:
 
 
 def _heads(view: View) -> Iterator[Colored]:
-    """Yields words before names, and after `@`, which name nothing themselves."""
     for node in ast.walk(view.module):
         match node:
             case ast.Structure():
@@ -373,9 +347,7 @@ def colors(view: View) -> list[Color]:
 
 
 def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
-    """Returns the spellings of a colour at a place: its name if it has one, `#rrggbb`, and three numbers if
-    the place has three now.
-    """
+    """Returns the spellings of a colour: its name, `#rrggbb`, and three numbers if it has three now."""
     names = sorted(name for name in COLOR_NAMES if rgb(name) == color)
     written = [f'"{name}"' for name in names[:1]] + ['"#{:02x}{:02x}{:02x}"'.format(*color)]
     now = view.source.text[span.start : span.end]
@@ -383,9 +355,7 @@ def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
 
 
 def _literal(node: ast.Expression) -> object:
-    """Returns the value of an argument, a bare word being a text; None for an expression that must be
-    evaluated.
-    """
+    """Returns the value of an argument, a bare word being a text; None for what must be evaluated."""
     match node:
         case ast.String(value) | ast.Number(value, None, _) | ast.Name(value):
             return value

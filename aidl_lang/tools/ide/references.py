@@ -20,8 +20,6 @@ from aidl_lang.syntax.tables import load_tables, tokenize
 from aidl_lang.tools.ide.site import around, scope_at
 from aidl_lang.tools.ide.workspace import Project, View, Workspace, applied, look
 
-# --- The meaning of each name in a text: the one table for hover, definitions, references and renaming.
-
 Place: TypeAlias = tuple[Path, int]
 """The file and the offset of the first declaration of a symbol: the same in every view of a project."""
 
@@ -126,9 +124,7 @@ def parameter_node(signature: Signature, name: str) -> ast.Parameter | None:
 
 
 def free_name(view: View, name: str) -> str:
-    """Returns the name, or the first one with a number appended, that neither the text nor the library
-    has.
-    """
+    """Returns the name, numbered if the text or the library has it."""
     taken = {fold(node.text) for node in ast.walk(view.module) if isinstance(node, ast.Identifier | ast.Name)}
     taken |= set(map(fold, view.program.library.callables))
     candidate, count = name, 1
@@ -139,7 +135,6 @@ def free_name(view: View, name: str) -> str:
 
 
 def _imported_names(view: View, node: ast.Import) -> Iterator[Mention]:
-    """Yields the meaning of each name in `import a, b from "file"`."""
     target = view.resolution.imports.get(node)
     if target is None:
         return
@@ -164,8 +159,6 @@ def _alias_target(view: View, node: ast.Alias) -> Iterator[Mention]:
         yield Mention(node.target.span, node, symbol or Symbol(found[0], SymbolKind.BUILTIN))
 
 
-# --- Where names are defined and used: definitions, links to files, references, and renaming everywhere.
-
 # --- Reasons for which a request cannot be carried out.
 
 
@@ -173,20 +166,11 @@ class CannotError(Exception):
     """Raised if a request cannot be carried out, with the reason for people."""
 
 
-@record()
-class Refusal:
-    """The same as a value, for requests at every move of a mouse: most places cannot be dragged to."""
-
-    reason: str
-
-
 # --- Go to definition.
 
 
 def definitions(view: View, offset: int) -> list[Span]:
-    """Returns the declarations of the name at an offset, or the beginning of the file that an import names;
-    in this file, in others, or in the library (see `View.file`).
-    """
+    """Returns the declarations of the name at an offset, or the beginning of the file that is imported."""
     mention = mention_at(view, offset)
     if mention is not None:
         return [_place(view, declaration.span) for declaration in mention.symbol.declarations]
@@ -275,7 +259,6 @@ def declarations(view: View, symbol: Symbol) -> Iterator[Occurrence]:
 
 
 def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterator[Occurrence]:
-    """Yields occurrences in the view that was asked, and in all other programs."""
     yield from occurrences(view, place)
     for other in project.views_with(symbol.name):
         if other.path != view.path:
@@ -290,22 +273,13 @@ def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]
 # --- Renames a thing everywhere, so that the programs keep their meaning.
 
 
-@record()
-class Renaming:
-    """Edits by file, each to its present text."""
-
-    edits: Mapping[Path, tuple[Edit, ...]]
-
-
 def renameable(view: View, offset: int) -> Span:
     """Returns the name at an offset if it can be changed. Raises CannotError."""
     return _own(view, offset).span
 
 
-def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
-    """Returns the edits that rename the thing named at an offset. Raises CannotError if the new name is not
-    one, or would change the meaning of any name.
-    """
+def rename(project: Project, view: View, offset: int, name: str) -> dict[Path, tuple[Edit, ...]]:
+    """Returns the edits by file that rename a thing. Raises CannotError if a meaning would change."""
     mention = _own(view, offset)
     _require_name(name)
     found = references(project, view, offset)
@@ -314,7 +288,7 @@ def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
         by_file[occurrence.path].append(Edit(occurrence.span, name))
     edits = {path: tuple(each) for path, each in by_file.items()}
     _require_same_meaning(project, view, mention.symbol, found, edits, name)
-    return Renaming(edits)
+    return edits
 
 
 def _own(view: View, offset: int) -> Mention:

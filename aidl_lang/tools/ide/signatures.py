@@ -22,8 +22,6 @@ from aidl_lang.tools.reference.pages import facts, forms
 from aidl_lang.tools.reference.signatures import split_items, written
 from aidl_lang.typecheck import Program
 
-# --- Descriptions of names, in Markdown.
-
 MOST_FORMS = 6
 _FEWEST_WORDS = 2
 """Fewest blanks of a useful sentence: a list of names describes none of them."""
@@ -79,22 +77,15 @@ def head(node: ast.Node) -> str:
         case ast.ConstraintDefinition():
             return f"constraint {written(node)}"
         case ast.Structure(parameters=None):
-            return f"{node.kind_word.text} {_target(node)}"
+            indices = "".join(f"[{index.span.one_line}]" for index in node.indices)
+            return f"{node.kind_word.text} {node.name.text}{indices}"
         case ast.Structure():
             return f"{node.kind_word.text} {written(node)}"
-        case (
-            ast.Parameter() | ast.Param() | ast.Let() | ast.Var() | ast.Assign() | ast.Alias() | ast.Import()
-        ):
-            return _short(node.span.one_line)
         case ast.For() | ast.ForArguments():
             names = ", ".join(v.text for v in node.variables)
             return f"for {names} in {_short(node.iterable.span.one_line)}"
         case _:
             return _short(node.span.one_line)
-
-
-def _target(node: ast.Structure) -> str:
-    return node.name.text + "".join(f"[{index.span.one_line}]" for index in node.indices)
 
 
 def _short(text: str, most: int = 100) -> str:
@@ -214,11 +205,6 @@ class Reading:
     def type_of(self, parameter: str) -> Type | None:
         return next((kind for name, kind, _ in self.signature.parameters if name == parameter), None)
 
-    @property
-    def open(self) -> list[tuple[str, Type, bool]]:
-        """The parameters without an argument yet."""
-        return [p for p in self.signature.parameters if p[0] not in self.taken]
-
 
 def readings(program: Program, scope: SymbolScope, call: ast.Call) -> list[Reading]:
     """Returns the readings of a call: those that fit, the nearest first; else all as they are defined."""
@@ -264,9 +250,7 @@ def meant(signature: Signature, word: str, taken: set[str]) -> str | None:
 
 
 def _positional(signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]) -> list[str]:
-    """Returns the parameters of the arguments without a name, in order; those behind a named one fill what is
-    left.
-    """
+    """Returns the parameters of nameless arguments in order; those behind a named one fill what is left."""
     named = {meant(signature, word, set()) for word in words if word is not None}
     are_late = words[:1] != [None] and named != {None}
     names = [name for name, _, _ in signature.parameters if not (are_late and name in named)]
@@ -339,7 +323,9 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     ordered = [reading for reading in everything if is_public(reading.signature)] or everything
     if not ordered:
         return None
-    best = _best(ordered, argument)
+    alike = [r for r in ordered if r.cost == ordered[0].cost]
+    having = [r for r in alike if _parameter(r, argument) is not None]
+    best = (having or alike)[0]
     listed = sorted(ordered, key=_place)
     overloads = tuple(_told(reading, argument) for reading in listed)
     return SignatureHelp(overloads, listed.index(best))
@@ -372,13 +358,6 @@ def _place(reading: Reading) -> tuple[int, str, int]:
     """Returns the sort key of definitions in the order of writing, built-ins first."""
     node = reading.signature.node
     return (0, "", 0) if node is None else (1, node.span.source.name, node.span.start)
-
-
-def _best(ordered: list[Reading], argument: int) -> Reading:
-    """Returns the meant overload: the first of those that fit alike and have a parameter for the argument."""
-    alike = [r for r in ordered if r.cost == ordered[0].cost]
-    having = [r for r in alike if _parameter(r, argument) is not None]
-    return (having or alike)[0]
 
 
 def _parameter(reading: Reading, argument: int) -> int | None:

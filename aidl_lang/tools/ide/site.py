@@ -76,9 +76,7 @@ def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:
 # fewest mistakes, and the program is checked with it: the node that it became shows what is wanted.
 
 PLACEHOLDER = "_what_is_being_written_here_" + "_" * 40
-"""The name inserted at the place: too long to be a misspelling of another, for which many names would have to
-be compared.
-"""
+"""The name inserted at the place: too long to be compared with others as a misspelling."""
 _CLOSERS = {"(": ")", "CALL": ")", "[": "]"}
 _DIGITS = re.compile(r"(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
 
@@ -128,7 +126,6 @@ def spot_at(view: View, offset: int) -> Spot:
 
 
 def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
-    """Tells whether an offset lies in a comment; the end of a line comment belongs to it."""
     for comment in tokens.comments:
         to_line_end = not comment.text.startswith("/*")
         if comment.span.start < offset < comment.span.end + to_line_end:
@@ -138,7 +135,6 @@ def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
 
 
 def _word_end(token: Token) -> int:
-    """Returns the end of the word that a token is, or begins with; -1 if it is none."""
     if token.kind == "CALL":
         return token.start + len(token.text.rstrip("( \t"))
     return (
@@ -165,9 +161,6 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
     assert digits is not None
     start = token.start + digits.end()
     return Spot(Where.NUMBER, offset, start, token.end, before, token)
-
-
-# --- Code ------------------------------------------------------------------------------------------
 
 
 @record(eq=False)
@@ -249,9 +242,7 @@ def site_at(view: View, spot: Spot) -> EditSite:
 
 
 def _filled(site: EditSite) -> Parsed | None:
-    """Returns the text with the placeholder, parsed, in the way that leaves the fewest mistakes; None if it
-    is lost from the program in all.
-    """
+    """Returns the text with the placeholder, parsed with the fewest mistakes; None if it is lost in all."""
     text, spot = site.original.source.text, site.spot
     head, tail = text[: spot.start], text[spot.end :]
     best: tuple[int, Parsed] | None = None

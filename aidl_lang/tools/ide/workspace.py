@@ -30,10 +30,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.typecheck import Program
 
-# --- Places and edits of one text: positions of protocols, applying and finding edits, formatting.
-
-# --- Converts between offsets in a text and lines and characters of protocols: in UTF-16 units, or as
-# agreed.
+# --- Converts between offsets and lines and characters of protocols: in UTF-16 units, or as agreed.
 #
 # Lines end with `\n`, `\r\n` or `\r`. Lines and characters count from 0.
 
@@ -72,18 +69,14 @@ class Positions:
         return len(self._starts)
 
     def position(self, offset: int) -> Position:
-        """Returns the position of an offset; one outside the text is taken to its end, one in a line break to
-        its start.
-        """
+        """Returns the position of an offset; beyond the text its end, in a line break that's start."""
         offset = max(0, min(offset, self._ends[-1]))
         line = bisect_right(self._starts, offset) - 1
         offset = min(offset, self._ends[line])
         return line, self._units(offset) - self._units(self._starts[line])
 
     def offset(self, line: int, character: int) -> int:
-        """Returns the offset of a position; beyond a line it is the end of it, within a character its
-        start.
-        """
+        """Returns the offset of a position; beyond a line the end of it, within a character the start."""
         if line < 0:
             return 0
         if line >= self.lines:
@@ -99,14 +92,11 @@ class Positions:
         return self._units(end) - self._units(start)
 
     def _units(self, offset: int) -> int:
-        """Returns the units before an offset."""
         return offset + self._more[bisect_left(self._wide, offset)]
 
 
 def _units(character: str, unit: Unit) -> int:
-    if unit is Unit.UTF_16:
-        return 2
-    return len(character.encode("utf-8", "surrogatepass"))
+    return 2 if unit is Unit.UTF_16 else len(character.encode("utf-8", "surrogatepass"))
 
 
 # --- Edits of one text: applying them, and finding them between two versions.
@@ -173,8 +163,6 @@ def format_range(view: View, wanted: Span) -> list[Edit]:
     end = len(text) if end < 0 else end + 1
     return [e for e in format_document(view) if e.span.start < end and e.span.end >= start]
 
-
-# --- The programs of a project in an editor, and a view of each with all that is known of it.
 
 # --- One text of a program with all that is known of it, from which every question of an editor is answered.
 
@@ -362,9 +350,7 @@ _PASSED_OVER = frozenset({"node_modules", "build", "dist", "__pycache__"})
 
 @record(frozen=False)
 class Workspace:
-    """`roots` are the folders searched for programs; `open` maps the absolute path of an open program to its
-    text.
-    """
+    """The programs below some folders; `open` has the texts of those in the editor by absolute path."""
 
     roots: Sequence[Path] = ()
     open: dict[Path, str] = field(default_factory=dict)

@@ -29,8 +29,7 @@ from aidl_lang.tools.llm.messages import Image, Verdict
 from aidl_lang.tools.mending import Mended, mend
 from aidl_lang.tools.reference.pages import guide
 
-# --- Writes a changed program as a minimal edit of the one before: unchanged meaning keeps its text and
-# comments.
+# --- Writes a changed program as a minimal edit of the one before: what is as it was keeps its text.
 
 
 def merge(before: str, after: str) -> str:
@@ -59,9 +58,7 @@ def _key(statement: ast.Statement) -> str:
 
 @record()
 class _Item:
-    """A statement in its text: `lead` is the text before it from the end of the line above on, and `tail` the
-    rest of its line.
-    """
+    """A statement in its text: `lead` is what stands before it behind the line above, `tail` after it."""
 
     node: ast.Statement
     lead: str
@@ -170,8 +167,7 @@ def _spaceless(text: str) -> str:
     return re.sub(r"\s+", "", text)
 
 
-# --- AIDL as the language of a conversation: mends and compiles programs, and compares them with earlier
-# ones.
+# --- AIDL as a language: mends and compiles programs, and compares them with earlier ones.
 
 _PIXELS = 512
 """Larger side of the picture of a plan."""
@@ -198,9 +194,7 @@ _PLANNED = (
 
 @record()
 class Aidl:
-    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` the
-    name of a program there.
-    """
+    """AIDL or a subset. Programs, called `file`, may import from `world`; None is nowhere."""
 
     variant: Variant = Variant.FULL
     world: World | None = None
@@ -266,19 +260,17 @@ class AidlConversation:
         return replace(verdict, feedback=told)
 
     def finish(self, verdict: Verdict) -> Verdict:
-        """Puts back what was lost and fits. A constraint that conflicts is given up only by the model, or the
-        reader of its report.
-        """
+        """Puts back what was lost and fits; a conflicting constraint only a model or reader gives up."""
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
         self.ledger.note(source, compiled)
         if compiled.ok and self.language.recovers:
-            restored = self.ledger.restore(source)
-            if restored.items:
-                source = self._source(restored.text)
+            text, restored = self.ledger.restore(source)
+            if restored:
+                source = self._source(text)
                 compiled = self._compiled(source)
                 self.ledger.note(source, compiled)
-                fixes += tuple(f"put back {item}" for item in restored.items)
+                fixes += tuple(f"put back {item}" for item in restored)
         return self._verdict(source, compiled, fixes)
 
     def _source(self, program: str) -> SourceFile:
@@ -351,7 +343,6 @@ def _what(loss: Loss) -> tuple[str, ...]:
 
 
 def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
-    """True for a program to be continued: it says `todo`, or has empty structures."""
     assert compiled.model is not None
     if any(structure.is_empty for structure in compiled.model.root.walk()):
         return True

@@ -197,9 +197,7 @@ def generate(
     hear: Callable[[int, str], None] = lambda attempt, text: None,
     listen: Callable[[Generation], None] = lambda generation: None,
 ) -> Generation:
-    """Runs the conversation. `hear` gets the text of an attempt piece by piece, `listen` the state after each
-    attempt.
-    """
+    """Runs the conversation. `hear` gets an attempt's text in pieces, `listen` the state after each."""
     run = _Run(task, provider, language, settings or Settings(), hear)
     attempts: list[Attempt] = []
     failure = None
@@ -292,9 +290,7 @@ def _request(task: Task, language: Language) -> str:
 
 
 def to_dict(generation: Generation, provider: str, language: str) -> dict[str, Any]:
-    """Returns the whole conversation for JSON; pictures are data URIs, and no key or address of a server is
-    in it.
-    """
+    """Returns the conversation for JSON, pictures as data URIs, without keys and addresses of servers."""
     return {
         "aidl_transcript": 1,
         "provider": provider,

@@ -15,7 +15,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.files import Reads
 from aidl_lang.common.records import record
 
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from aidl_lang.pipeline import Compiled
 
-
-# --- Messages to and from a language model: texts, pictures, and programs in replies.
 
 # --- Pictures for a model: whole files of known formats, no larger than a model looks at.
 
@@ -42,12 +40,11 @@ _BROKEN = (OSError, ValueError, SyntaxError, EOFError, IndexError, OverflowError
 """Errors of pillow for broken files."""
 
 
-class ImageError(Exception):
+class ImageError(AidlError):
     """Raised if the picture cannot be used."""
 
     def __init__(self, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic("E0939", message, hints=hints)
+        super().__init__(Diagnostic("E0939", message, hints=hints))
 
 
 def read_image(name: str, reads: Reads | None = None) -> Image:
@@ -66,6 +63,7 @@ def read_image(name: str, reads: Reads | None = None) -> Image:
 def to_image(data: bytes, name: str) -> Image:
     """Does as `read_image`, with the file's content, which tells the format rather than the name."""
     import PIL.Image
+    from PIL import ImageOps
 
     bomb = (PIL.Image.DecompressionBombError, PIL.Image.DecompressionBombWarning)
     try:
@@ -74,7 +72,14 @@ def to_image(data: bytes, name: str) -> Image:
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(data), formats=tuple(_TYPES)) as picture:
                 picture.load()
-                return _fitting(picture, data)
+                is_upright = picture.getexif().get(_ORIENTATION, 1) == 1
+                if is_upright and max(picture.size) <= MAX_SIDE and len(data) <= MAX_SENT and picture.format:
+                    return Image(_TYPES[picture.format], data)
+                upright = ImageOps.exif_transpose(picture)
+                upright = upright.convert("RGBA" if upright.has_transparency_data else "RGB")
+                upright.thumbnail((MAX_SIDE, MAX_SIDE))
+                as_png = _saved(upright, "PNG")
+                return as_png if len(as_png.data) <= MAX_SENT else _saved(_on_white(upright), "JPEG")
     except PIL.UnidentifiedImageError:
         raise ImageError(f"`{name}` is no PNG, JPEG, WebP or GIF", *_remedy(name)) from None
     except bomb:
@@ -87,22 +92,6 @@ def _remedy(name: str) -> list[str]:
     if Path(name).suffix in (".aidl", ".svg"):
         return [f"draw the program first: aidl compile {Path(name).with_suffix('.aidl')} -o picture.png"]
     return ["save it as PNG"]
-
-
-def _fitting(picture: Picture, data: bytes) -> Image:
-    """Returns the file itself if it is small enough, else its first frame as PNG or, when that is too long,
-    JPEG.
-    """
-    from PIL import ImageOps
-
-    is_upright = picture.getexif().get(_ORIENTATION, 1) == 1
-    if is_upright and max(picture.size) <= MAX_SIDE and len(data) <= MAX_SENT and picture.format:
-        return Image(_TYPES[picture.format], data)
-    upright = ImageOps.exif_transpose(picture)
-    upright = upright.convert("RGBA" if upright.has_transparency_data else "RGB")
-    upright.thumbnail((MAX_SIDE, MAX_SIDE))
-    as_png = _saved(upright, "PNG")
-    return as_png if len(as_png.data) <= MAX_SENT else _saved(_on_white(upright), "JPEG")
 
 
 def _on_white(picture: Picture) -> Picture:
@@ -200,12 +189,11 @@ class Reply:
     """The day of the reply, as in 2026-01-31."""
 
 
-class ProviderError(Exception):
+class ProviderError(AidlError):
     """Raised if no reply could be had after all retries; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
-        super().__init__(message)
-        self.diagnostic = Diagnostic(code, message, hints=hints)
+        super().__init__(Diagnostic(code, message, hints=hints))
 
 
 class ConversationOver(Exception):  # noqa: N818 (what came of it, no error of ours)

@@ -159,8 +159,6 @@ def _nowhere(scheme: str, name: str) -> Path:
     return Path(os.path.normpath(f"{os.path.abspath(os.sep)}{scheme}:/{name}"))
 
 
-# --- Values of the server made those of the protocol, settings read from it, diagnostics published.
-
 # --- Values of the server made those of the protocol, and settings read from it.
 
 LONGEST_DELAY = 5_000
@@ -265,9 +263,7 @@ class Converter:
         return found
 
     def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
-        """Returns edits by file; for a client that knows of versions, each with the version it was made
-        for.
-        """
+        """Returns edits by file; where the client knows of versions, with the version they are made for."""
         made = {path: self.edits(each) for path, each in edits.items()}
         if not with_versions:
             return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})
@@ -297,9 +293,7 @@ _UNNECESSARY = frozenset({"W0201", "W0202", "W0502", "W0701", "W0703"})
 def converted(
     found: Iterable[Diagnostic], convert: Converter, own: str
 ) -> Iterator[tuple[str, types.Diagnostic]]:
-    """Yields diagnostics with the URI of the file that shows each. Those without a place in a file of the
-    user's appear at the beginning of the program, whose URI is `own`.
-    """
+    """Yields diagnostics with the URI that shows each; those of no file of the user's begin `own`."""
     for diagnostic in found:
         span = diagnostic.span
         if span is None or convert.view.is_library(span.source) or (uri := convert.uri(span.source)) is None:

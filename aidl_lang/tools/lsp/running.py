@@ -14,6 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
+from pygls.exceptions import JsonRpcException
+
 from aidl_lang.common import resources
 from aidl_lang.common.files import is_data
 from aidl_lang.common.records import record
@@ -24,6 +26,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
 from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 
@@ -57,9 +60,7 @@ class Job(Generic[T]):
 
 
 class Lane:
-    """Does one piece of work at a time; of those waiting under one key, only the newest. All methods belong
-    to the loop's thread; `finished` is called there after each piece.
-    """
+    """Does one piece of work at a time, of those under one key the newest; for use in the loop's thread."""
 
     def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
         self._executor = _executor(name)
@@ -117,6 +118,10 @@ class Lane:
             self._finished()
 
 
+FAILED = -32803
+"""The protocol's code for a request that was understood and cannot be done."""
+
+
 class Answers:
     """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
 
@@ -125,7 +130,7 @@ class Answers:
         self._is_closing = False
 
     async def ask(self, answer: Callable[[], T]) -> T:
-        """Returns the answer. Raises what `answer` raises."""
+        """Returns the answer. Raises what `answer` raises; for a CannotError an error of the protocol."""
         unwanted = threading.Event()
 
         def work() -> T:
@@ -139,16 +144,13 @@ class Answers:
         except asyncio.CancelledError:
             unwanted.set()
             raise
+        except CannotError as reason:
+            raise JsonRpcException(str(reason), FAILED) from None
 
     def close(self) -> None:
         """Cancels the present answer, and begins nothing more."""
         self._is_closing = True
         self._executor.shutdown(wait=False, cancel_futures=True)
-
-
-def gave_up(future: Future[Any]) -> bool:
-    """True for a run that was cancelled, by its future or while running."""
-    return future.cancelled() or isinstance(future.exception(), Cancelled)
 
 
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
@@ -297,9 +299,7 @@ class Runner:
     async def work(
         self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool], *, first: bool = True
     ) -> T:
-        """Returns the result of a function run in the solving thread, before waiting work or behind it. Only
-        the newest request under a key is done: the others raise Cancelled, as does an unwanted one.
-        """
+        """Returns a result from the solving thread, before waiting work or behind it; cancels older ones."""
         found: asyncio.Future[T] = self._loop.create_future()
 
         def work() -> T:
@@ -376,7 +376,6 @@ class Runner:
             self.listener.took_long(document)
 
     def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
-        """Runs a view, in the solving thread."""
         began = time.monotonic()
 
         def is_unwanted() -> bool:
@@ -395,7 +394,7 @@ class Runner:
     def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
         if not document.is_open or self._is_closing:
             return
-        if gave_up(future):
+        if future.cancelled() or isinstance(future.exception(), Cancelled):
             document.was_given_up = True
             if document.serial == known.serial:  # it made way for what is more urgent
                 self._solve(document, known)
@@ -433,9 +432,7 @@ def is_library(path: Path) -> bool:
 
 
 def _stands_on(view: View, path: Path) -> bool:
-    """True if a program imports a file, directly or not, or names it as a font; or has a missing import,
-    which may be there now.
-    """
+    """True if a program imports a file, directly or not, names it as a font, or has a missing import."""
     modules = view.resolution.modules
     if is_data(path):
         return any(path.name in module.source.text for module in modules)

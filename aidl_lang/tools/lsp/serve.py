@@ -172,15 +172,11 @@ class Output:
     def _run(self) -> None:
         try:
             while (data := self._waiting.get()) is not None:
-                _write(self._descriptor, data)
+                rest = memoryview(data)
+                while rest:
+                    rest = rest[os.write(self._descriptor, rest) :]
         except OSError:
             self._lost()
-
-
-def _write(descriptor: int, data: bytes) -> None:
-    rest = memoryview(data)
-    while rest:
-        rest = rest[os.write(descriptor, rest) :]
 
 
 def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.AbstractEventLoop) -> None:
@@ -198,9 +194,7 @@ def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.Abstr
 
 
 def claim_standard_streams() -> tuple[int, int]:
-    """Returns descriptors of the former standard input and output. A stray `print` then goes to standard
-    error, and nobody else reads what the client writes.
-    """
+    """Returns descriptors of the former standard streams; a stray `print` then goes to standard error."""
     sys.stdout.flush()
     incoming, outgoing = os.dup(0), os.dup(1)
     if sys.platform == "win32":
@@ -300,12 +294,6 @@ def make_room() -> None:
 def _run(session: Coroutine[None, None, int]) -> int:
     make_room()
     code = asyncio.run(session)
-    _end_threads(code)
-    return code
-
-
-def _end_threads(code: int) -> None:
-    """Waits a little for cancelled work; some steps cannot be interrupted, and end with the process."""
     deadline = time.monotonic() + _LAST_SECONDS
     working = [t for t in threading.enumerate() if t is not threading.current_thread() and not t.daemon]
     for thread in working:
@@ -313,6 +301,7 @@ def _end_threads(code: int) -> None:
     if any(thread.is_alive() for thread in working):
         logging.shutdown()
         os._exit(code)
+    return code
 
 
 def _is_news(record: logging.LogRecord) -> bool:

@@ -92,7 +92,13 @@ class Protocol(LanguageServerProtocol):
         try:
             method: Any = data.get("method")
             if asked is not None:
-                self._require_time(method)
+                if method == types.INITIALIZE:
+                    if self._is_initialized:
+                        raise exceptions.JsonRpcInvalidRequest("the server is initialized already")
+                elif not self._is_initialized:
+                    raise exceptions.JsonRpcServerNotInitialized()
+                elif self._shutdown:
+                    raise exceptions.JsonRpcInvalidRequest("the server is shutting down")
             elif method not in (None, types.EXIT) and not self._is_initialized:
                 return  # the protocol has notifications dropped until then
             message = self.structure_message(data)
@@ -105,19 +111,8 @@ class Protocol(LanguageServerProtocol):
         self.handle_message(message)
 
     def _has_asked(self, number: object) -> bool:
-        """Tells whether a request of the server has this number. pygls keeps those of the client in the same
-        table, and would take an answer to one of those for its outcome.
-        """
+        """Tells whether the server asked by this number; pygls has the client's in the same table."""
         return isinstance(number, str) and number in self._result_types
-
-    def _require_time(self, method: str) -> None:
-        if method == types.INITIALIZE:
-            if self._is_initialized:
-                raise exceptions.JsonRpcInvalidRequest("the server is initialized already")
-        elif not self._is_initialized:
-            raise exceptions.JsonRpcServerNotInitialized()
-        elif self._shutdown:
-            raise exceptions.JsonRpcInvalidRequest("the server is shutting down")
 
     def _refuse(self, asked: int | str | None, trouble: exceptions.JsonRpcException) -> None:
         error = {"code": trouble.code, "message": trouble.message}
@@ -146,9 +141,6 @@ class Protocol(LanguageServerProtocol):
 
 T = TypeVar("T")
 Answer = Callable[["Asked", Any], T]
-
-FAILED = -32803
-"""The protocol's code for a request that was understood and cannot be done."""
 
 
 @record()
@@ -300,9 +292,7 @@ class Server(LanguageServer):
         return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
 
     async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
-        """Returns the data of the present text, or a newer one; with its outcome if that is there in time.
-        None for a text that is longer than programs are: there is nothing to ask about it.
-        """
+        """Returns the data of the present text or a newer one, solved if in time; None if it is too long."""
         serial = document.serial
         await document.until_seen(serial)
         if patience:

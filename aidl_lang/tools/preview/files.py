@@ -18,9 +18,7 @@ from aidl_lang.tools.ide.workspace import applied
 _DEBOUNCE = 30
 """Milliseconds in which several changes count as one."""
 _QUIET = 500
-"""Milliseconds without a change after which the file is read all the same: the system may have begun to watch
-only now, and not all of them tell of every change.
-"""
+"""Milliseconds without a change after which the file is read: systems begin late, and miss some changes."""
 
 
 Changed = Callable[[Iterable[Path]], Awaitable[None]]
@@ -28,9 +26,7 @@ Begun = Callable[[], Awaitable[None]]
 
 
 async def watch(file: Path, changed: Changed, begun: Begun) -> None:
-    """Calls back whenever a file, or what it may read in its folder or below, has changed, with the paths;
-    after a quiet while, without any; once when it has begun to see changes. Goes on until it is cancelled.
-    """
+    """Calls back with changed paths of a file and what it may read; with none at first and after a while."""
     try:
         await _watch(file, changed, begun, polling=None)
     except (OSError, RuntimeError):  # the system watches no more files, or not this folder
@@ -59,8 +55,6 @@ async def _watch(file: Path, changed: Changed, begun: Begun, polling: bool | Non
             await begun()
         has_begun = True
 
-
-# --- The files of a program that is previewed: read, and edited in one step each.
 
 Write = Callable[[Path, bytes], None]
 """Replaces a file in one step. Raises OSError."""
@@ -136,8 +130,7 @@ def _why(reason: OSError) -> str:
     return text[:1].lower() + text[1:]
 
 
-# --- The text of a program as its pages change it: what of it is in the file, and the steps that can be
-# undone.
+# --- The text as its pages change it: what of it is in the file, and the steps that can be undone.
 #
 # What is set at once, as by a slider, goes into the file if all before it did. What is typed waits until it
 # is saved; then what is set waits with it. What others do to the file meanwhile is never overwritten
@@ -225,9 +218,7 @@ class Manuscript:
         self.is_contested = False
 
     def save(self, *, anyway: bool = False) -> None:
-        """Writes the text into the file; over what others have written there only if `anyway`. Raises
-        CannotError.
-        """
+        """Writes the text into the file; over what others wrote only if `anyway`. Raises CannotError."""
         self.read()
         if self.is_contested and not anyway:
             raise CannotError(f"{self.path.name} has changed on disk, so your text was not saved over it")
@@ -252,9 +243,7 @@ class Manuscript:
         edits: Sequence[Edit],
         others: Mapping[Path, tuple[bytes, bytes]],
     ) -> None:
-        """Makes edits of the program's text as it was run, if there are any, and gives other files their
-        contents. Raises CannotError if any of them is another now, and then changes nothing.
-        """
+        """Edits the program as it was run, and sets other files; nothing if one differs (CannotError)."""
         if known is not None and known.text != self._current:
             raise CannotError("the text has changed meanwhile")
         step = Step(label, (self._current, applied(self._current, edits)), others)
@@ -270,9 +259,7 @@ class Manuscript:
         self._past.append(self._go(self._future, "redo"))
 
     def rescue(self) -> Path | None:
-        """Writes what is not saved into a file beside the program's, and returns that; None if all is saved.
-        Raises CannotError.
-        """
+        """Writes what is not saved into a file beside, and returns it; None if all is. Raises CannotError."""
         if self.text is None or self.is_saved:
             return None
         beside = self.path.with_name(f"{self.path.name}.unsaved")
@@ -286,7 +273,6 @@ class Manuscript:
         return self.text
 
     def _go(self, steps: list[Step], way: str) -> Step:
-        """Takes the last of these steps, carries it out, and returns it."""
         self.read()
         if not steps:
             why = f": {self.path.name} was changed elsewhere meanwhile" if self._is_foreign else ""

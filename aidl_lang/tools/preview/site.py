@@ -1,4 +1,4 @@
-"""The pages of the preview and their WebSocket."""
+"""`aidl preview` as a server: the pages of one program and their WebSocket, on a socket of this machine."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from aidl_lang.tools.lsp.serve import make_room
 from aidl_lang.tools.preview.files import watch
-from aidl_lang.tools.preview.host import LONGEST, Host
-from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
-from aidl_lang.tools.preview.page import Page
+from aidl_lang.tools.preview.host import LONGEST, Host, Page
+from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Door, Guard, file_named
 
 MOST_PAGES = 16
 """Most pages that are served at once."""
@@ -35,9 +35,7 @@ _TOO_BIG = 1009
 
 
 def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
-    """Returns the application. `addresses` are the values of `Host` by which it may be called, as
-    `localhost:80`.
-    """
+    """Returns the application, which answers to these values of `Host`, as `localhost:80`."""
     routes = [
         Route("/{token}/", _index),
         Route("/{token}/pane/{name}", _file),
@@ -75,7 +73,6 @@ async def _index(request: Request) -> Response:
 
 @cache
 def _files() -> dict[str, Path]:
-    """Returns the files of the pane that pages may ask for, by name."""
     return {file.name: file for file in PANE.iterdir() if file.suffix in KINDS}
 
 
@@ -117,3 +114,14 @@ async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
             await socket.close(_TOO_BIG, "This page sent a message that is too long.")
             return
         host.hear(page, text)
+
+
+_CONNECTIONS = 8 * MOST_PAGES
+"""Most connections. A browser opens some more for the files of a page; others are refused."""
+
+
+def serve(host: Host, door: Door) -> None:
+    """Shows a program until it is interrupted."""
+    make_room()
+    app = site(host, door.token, door.addresses)
+    door.serve(app, _CONNECTIONS, ws_max_size=LONGEST, ws_max_queue=8, ws_per_message_deflate=False)

@@ -44,18 +44,14 @@ class Doc:
 
     @property
     def lies(self) -> str:
-        """Returns how a shape lies at angle 0 and where it is held: what follows `Lies` in its paragraph;
-        "" for one that its name tells and that is held at the middle of its box.
-        """
+        """Returns how a shape lies at angle 0, and where it is held; "" for one told by name and middle."""
         said = _LIES.search(self.text)
         return " ".join(said[1].split()) if said else ""
 
 
 @record()
 class Overload:
-    """One form of a name: its text, its description, its file, and its definition in the library if it has
-    one.
-    """
+    """One form of a name: its text, description, file, and definition in the library if it has one."""
 
     form: str
     doc: Doc
@@ -145,7 +141,7 @@ def reference() -> Reference:
     """Returns all public names of this installation."""
     loaded = library.load()
     sections = list(_sections())
-    found = {entry.name: entry for section in sections for entry in section.entries}
+    found = {entry.name: entry for _, entries in sections for entry in entries}
     for entry in _library_entries(loaded):
         found[entry.name] = _joined(found[entry.name], entry) if entry.name in found else entry
     aliases = {alias: _target(alias, loaded.aliases) for alias in loaded.aliases}
@@ -153,7 +149,7 @@ def reference() -> Reference:
     synonyms: dict[str, list[str]] = {}
     for alias, target in aliases.items():
         synonyms.setdefault(target, []).append(alias)
-    topics = _topics(sections, loaded.sources)
+    topics = _topics((topic for topic, _ in sections), loaded.sources)
     ranked = sorted(found.values(), key=lambda entry: list(topics).index(entry.topic))
     used = {entry.topic for entry in ranked}
     return Reference(
@@ -163,9 +159,8 @@ def reference() -> Reference:
     )
 
 
-def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
-    """Returns topics by their names, in the order of reading."""
-    topics = {section.topic.name: section.topic for section in sections}
+def _topics(described: Iterable[Topic], sources: Iterable[SourceFile]) -> dict[str, Topic]:
+    topics = {topic.name: topic for topic in described}
     for source in sources:
         name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
         topics.setdefault(name, _topic(name, source.text))
@@ -189,9 +184,6 @@ def _target(alias: str, aliases: Mapping[str, str]) -> str:
     return alias
 
 
-# --- The library ---------------------------------------------------------------------------------
-
-
 def _library_entries(loaded: library.Library) -> list[Entry]:
     nodes: dict[str, list[ast.Callable | ast.Let]] = {}
     for name, signatures in loaded.callables.items():
@@ -208,7 +200,6 @@ def _start(entry: Entry) -> int:
 
 
 def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
-    """Returns the entry of a name; None for one that is not public."""
     overloads = [Overload(written(n), doc(n.doc or ""), _where(n), n) for n in nodes if not _is_helper(n)]
     leading = [o for o in overloads if o.doc.line]
     if not leading:
@@ -272,13 +263,7 @@ def _topic(name: str, source: str) -> Topic:
 # --- What is built in, and the words of the language ---------------------------------------------
 
 
-@record()
-class _Section:
-    topic: Topic
-    entries: tuple[Entry, ...]
-
-
-def _sections() -> Iterator[_Section]:
+def _sections() -> Iterator[tuple[Topic, list[Entry]]]:
     """Yields the sections of the pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or
     more headings `## name(parameters)`, its forms, with a comment as in the library below the last of them.
     Another name among them is a synonym.
@@ -297,7 +282,7 @@ def _sections() -> Iterator[_Section]:
             if body.strip():
                 entries.append(_described(path.stem, forms, doc(body)))
                 forms = []
-        yield _Section(topic, tuple(entries))
+        yield topic, entries
 
 
 def _described(topic: str, forms: Sequence[tuple[str, str]], about: Doc) -> Entry:
@@ -367,9 +352,7 @@ def speaking_of(query: str) -> list[Entry]:
 
 
 def _scored(query: str) -> list[tuple[Entry | str, float]]:
-    """Returns what fits a query, best first, each with its share of the words; equal ones in the order of the
-    reference.
-    """
+    """Returns what fits a query, best first, each with its share of the words; else as in the reference."""
     words = list(dict.fromkeys(stems(query)))
     documents = _documents()
     wanted = "".join(_WORD.findall(query)).casefold()
@@ -415,9 +398,7 @@ def _of_code(code: str) -> _Document:
 
 
 def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
-    """Returns the words of some texts, each with the weight of its most important text; repetition adds
-    little.
-    """
+    """Returns the words of some texts, each with its most important text's weight; repetition adds little."""
     weights: dict[str, float] = {}
     for weight, text in parts:
         for word, times in Counter(stems(text)).items():

@@ -140,9 +140,7 @@ def guide(variant: Variant = Variant.FULL) -> str:
 
 
 def guide_with(topics: Sequence[str]) -> str:
-    """Returns the guide and, after it, the entries of the reference on some topics, without pictures. Raises
-    KeyError for a topic that does not exist.
-    """
+    """Returns the guide and the entries of some topics, without pictures. Raises KeyError."""
     known = {topic.name: topic for topic in reference().topics}
     blocks = [guide().strip(), "# Reference"]
     for name in topics:

@@ -36,14 +36,9 @@ def written(node: ast.Callable | ast.Let) -> str:
     return f"{node.name.text}({items})"
 
 
-# --- Parts ---------------------------------------------------------------------------------------
-
-
 @record()
 class Part:
-    """A named part of a shape or a template: `edges[i]` for an array; `type` is "" if the tree does not
-    tell.
-    """
+    """A named part of a shape or template: `edges[i]` for an array; `type` is "" if that is not known."""
 
     name: str
     type: str = ""
@@ -53,9 +48,7 @@ class Part:
 
 
 def parts(node: ast.Callable) -> list[Part]:
-    """Returns the declarations of a body for its users: geometry and structures, and `let`s that nothing in
-    the body uses. The result of a function has the parts of its shape.
-    """
+    """Returns what a body declares for its users, of a function its shape: no `let` that only it uses."""
     if isinstance(node, ast.FunctionDefinition):
         made = made_shape(node)
         shape = library.load().callables[made][0].node if made and made not in PUBLIC else None
@@ -115,9 +108,6 @@ def made_shape(node: ast.FunctionDefinition) -> str | None:
             return callee.text
         case _:
             return None
-
-
-# --- Constraints ---------------------------------------------------------------------------------
 
 
 def things(node: ast.Callable) -> list[ast.Parameter]:
@@ -187,9 +177,7 @@ def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
 def _called(
     call: ast.Call, caller: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
 ) -> ast.ConstraintDefinition | None:
-    """Returns the constraint that a call means: the first, except the caller, that has all parameters named
-    in it.
-    """
+    """Returns the constraint that a call means: the first other one that has all parameters named in it."""
     named = {fold(a.name.text) for a in call.arguments if a.name is not None}
     for signature in callables.get(call.callee.text, ()):
         node = signature.node
@@ -207,9 +195,7 @@ def is_refusal(node: ast.Callable) -> bool:
 
 
 def exactness(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> dict[str, str]:
-    """Returns for each length and angle of a constraint whether it is met `exactly`, or is a bound, `at
-    least` or, by its name, `at most`.
-    """
+    """Returns how a constraint meets each length and angle: `exactly`, `at least` or, by name, `at most`."""
     if not isinstance(node, ast.ConstraintDefinition):
         return {}
     measures = [p.name.text for p in node.parameters if isinstance(parameter_type(p), NumberType)]
@@ -250,9 +236,7 @@ def relates_boxes(
     callables: Mapping[str, Sequence[Signature]],
     around: tuple[ast.ConstraintDefinition, ...] = (),
 ) -> bool:
-    """True if a constraint, or one that it calls, reads the boxes of its arguments rather than their
-    curves.
-    """
+    """True if a constraint, or one that it calls, reads the boxes of its arguments."""
     calls = [n for n in ast.walk(node.body) if isinstance(n, ast.Call)]
     if _takes_box(node) or any(_reads_boxes(callables.get(call.callee.text, ())) for call in calls):
         return True

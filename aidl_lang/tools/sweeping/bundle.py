@@ -163,29 +163,14 @@ def fault(diagnostic: Diagnostic) -> Fault:
     if span is None:
         return Fault(diagnostic.code, diagnostic.message, diagnostic.label)
     return Fault(
-        diagnostic.code,
-        diagnostic.message,
-        diagnostic.label,
-        span.one_line,
-        span.source.name,
-        span.line,
+        diagnostic.code, diagnostic.message, diagnostic.label, span.one_line, span.source.name, span.line
     )
 
 
 # --- What came of a variant: data that goes between processes, into the cache and into tables.
 
 MEASURES = (
-    "width",
-    "height",
-    "area",
-    "perimeter",
-    "bodies",
-    "pieces",
-    "holes",
-    "wall",
-    "gap",
-    "volume",
-    "mass",
+    *("width", "height", "area", "perimeter", "bodies", "pieces", "holes", "wall", "gap", "volume", "mass"),
 )
 """The measures of the whole, in mm, mm², mm³ and g; None where there is none, or it is not known."""
 ASSERT = "E0604"
@@ -257,9 +242,7 @@ def to_data(outcome: Outcome) -> dict[str, Any]:
 
 
 def from_data(data: Any) -> Outcome:
-    """Reads an outcome from JSON that anybody may have written. Raises ValueError, TypeError or KeyError for
-    data that is none.
-    """
+    """Reads an outcome from JSON of any source. Raises ValueError, TypeError or KeyError for what is none."""
     faults = tuple(Fault(**each) for each in data["faults"])
     strings = [
         data["status"],

@@ -38,9 +38,7 @@ Reader = Callable[[str], str]
 
 
 class _Json(diskcache.Disk):  # type: ignore[misc]
-    """Stores bytes of compressed JSON and nothing else: no pickle is read, and no file outside the folder is
-    read or removed, whatever the database says.
-    """
+    """Stores compressed JSON: no pickle is read, no file outside the folder, whatever is in the database."""
 
     def put(self, key: str) -> tuple[Any, bool]:
         return key, True
@@ -133,16 +131,7 @@ class Store:
 
 _UNUSABLE = (OSError, sqlite3.Error, diskcache.Timeout, ValueError, TypeError, AttributeError, KeyError)
 """Errors of a folder that cannot be written, or that is no cache."""
-_BROKEN = (
-    OSError,
-    sqlite3.Error,
-    ValueError,
-    TypeError,
-    KeyError,
-    AttributeError,
-    zlib.error,
-    RecursionError,
-)
+_BROKEN = (*_UNUSABLE, zlib.error, RecursionError)
 """Errors of an entry that is none."""
 
 

@@ -1,22 +1,227 @@
-"""The outputs of a sweep: drawings, one for each variant, under names of a pattern, and one table for all."""
+"""The outputs of a sweep: drawings under names of a pattern, and rows of a table for all."""
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.files import Reads, replace
+from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.common.files import Reads, csv_text, replace
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export import FORMATS, file_names, require, suffix_of
-from aidl_lang.tools.sweeping.bundle import Outcome
-from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, shown
-from aidl_lang.tools.sweeping.rows import ARROW_EXTRA, TABLES
+from aidl_lang.tools.sweeping.bundle import MEASURES, Fault, Measures, Outcome
+from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, refused, shown
+
+if TYPE_CHECKING:
+    import pyarrow
+
+
+# --- The outcomes of a sweep as rows of a table: CSV, JSON lines, Parquet, and what Arrow and pandas have.
+
+Cell: TypeAlias = float | int | str | bool | list[str] | None
+
+_DRAWN = {"width": "drawn_width", "height": "drawn_height"}
+"""Measures that are called otherwise in a table, where params are often called so."""
+
+
+@record()
+class Row:
+    """A variant with what came of it. Its files are on disk, under the names told here.
+
+    command  reproduces it
+    """
+
+    variant: Variant
+    outcome: Outcome
+    files: tuple[str, ...]
+    command: str
+    was_kept: bool
+
+    @property
+    def ok(self) -> bool:
+        """Whether it solved, all asserts hold, and all its files could be made."""
+        return self.outcome.ok
+
+    @property
+    def number(self) -> int:
+        """From 1, in the order of the sweep."""
+        return self.variant.number
+
+    @property
+    def params(self) -> Mapping[str, Value]:
+        """What was set, by path."""
+        return self.variant.values
+
+    @property
+    def status(self) -> str:
+        """`solved`, `partial`, `failed`, `wrong`; `broken` if it met a limit."""
+        return self.outcome.status
+
+    @property
+    def measures(self) -> Measures:
+        """The measures of the whole, in mm, mm², mm³ and g."""
+        return self.outcome.measures
+
+    @property
+    def message(self) -> str:
+        """Returns the first error with its place, or ""."""
+        errors = self.outcome.errors
+        return said(errors[0]) if errors else ("" if self.ok else f"the program is {self.outcome.status}")
+
+
+def said(fault: Fault) -> str:
+    """Returns a diagnostic in a line: `E0604 line 12: assertion failed: … (12 is not > 15)`."""
+    place = f" line {fault.line}" if fault.line is not None else ""
+    label = f" ({fault.label})" if fault.label and fault.label not in fault.message else ""
+    return " ".join(f"{fault.code}{place}: {fault.message}{label}".split())
+
+
+class Columns:
+    """Columns: number, other fields, params, results; `result_NAME` for one whose name a param has."""
+
+    def __init__(self, plan: Plan, timings: bool = True) -> None:
+        self._plan = plan
+        self.given = ["n", *plan.labels, *plan.paths]
+        results = ["status", "ok", *(_DRAWN.get(name, name) for name in MEASURES), "dof", "asserts"]
+        results += ["failed_asserts", "changed", "errors", "warnings", "messages", "files", "command"]
+        if timings:
+            results.append("seconds")
+        taken = set(self.given)
+        self._results = [f"result_{name}" if name in taken else name for name in results]
+        self._timings = timings
+
+    @property
+    def names(self) -> list[str]:
+        return [*self.given, *self._results]
+
+    def cells(self, row: Row) -> list[Cell]:
+        """Returns the cells of a row, in the order of the names."""
+        variant, outcome = row.variant, row.outcome
+        given: list[Cell] = [variant.number]
+        given += [variant.labels.get(name) for name in self._plan.labels]
+        given += [self._value(path, variant, outcome) for path in self._plan.paths]
+        warnings = [each for each in outcome.faults if not each.is_error]
+        results: list[Cell] = [
+            outcome.status,
+            outcome.ok,
+            *(outcome.measures.get(name) for name in MEASURES),
+            outcome.dof,
+            outcome.asserts,
+            [said(each) for each in outcome.failed_asserts],
+            [f"{c.path}: {c.written:.6g} → {c.solved:.6g}" for c in outcome.changed],
+            len(outcome.errors),
+            len(warnings),
+            [said(each) for each in outcome.faults],
+            list(row.files),
+            row.command,
+        ]
+        if self._timings:
+            results.append(outcome.seconds)
+        return [*given, *results]
+
+    def _value(self, path: str, variant: Variant, outcome: Outcome) -> Value | None:
+        """Returns the value of a param: as it was set, or as written where the table leaves it out."""
+        found = variant.values.get(path)
+        return outcome.params.get(path, self._plan.knobs[path].value) if found is None else found
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    return sorted(rows, key=lambda row: row.variant.number)
+
+
+def as_mapping(names: Sequence[str], cells: Sequence[Cell]) -> Mapping[str, Cell]:
+    return dict(zip(names, cells, strict=True))
+
+
+ARROW_EXTRA = "parquet"
+
+
+def to_csv(columns: Columns, rows: Sequence[Row]) -> bytes:
+    """Returns a table as CSV with a byte order mark; lists are joined by semicolons."""
+    cells = ([_csv(cell) for cell in columns.cells(row)] for row in rows)
+    return csv_text([columns.names, *cells]).encode("utf-8-sig", "backslashreplace")
+
+
+def _csv(cell: Cell) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, list):
+        return "; ".join(cell)
+    return str(cell) if isinstance(cell, int) and not isinstance(cell, bool) else shown(cell)
+
+
+def to_json_lines(columns: Columns, rows: Sequence[Row]) -> bytes:
+    """Returns a table as JSON lines, one object a row."""
+    lines = (
+        json.dumps(as_mapping(columns.names, columns.cells(row)), ensure_ascii=False, allow_nan=False)
+        for row in rows
+    )
+    return "".join(f"{line}\n" for line in lines).encode("utf-8", "backslashreplace")
+
+
+def to_parquet(columns: Columns, rows: Sequence[Row]) -> bytes:
+    """Returns a table as Parquet."""
+    table = to_arrow(columns, rows)
+    import pyarrow.parquet
+
+    out = io.BytesIO()
+    pyarrow.parquet.write_table(table, out)
+    return out.getvalue()
+
+
+def to_arrow(columns: Columns, rows: Sequence[Row]) -> pyarrow.Table:
+    """Returns a table as Arrow's; mixed columns are of texts. Raises AidlError without pyarrow."""
+    require("pyarrow", "a table of Arrow", ARROW_EXTRA)
+    import pyarrow
+
+    found = [columns.cells(row) for row in rows]
+    data = {}
+    for k, name in enumerate(columns.names):
+        cells = [cells[k] for cells in found]
+        data[name] = pyarrow.array([_typed(cell, _kind(cells)) for cell in cells], _arrow(_kind(cells)))
+    return pyarrow.table(data)
+
+
+def _kind(cells: Sequence[Cell]) -> type:
+    kinds = {type(cell) for cell in cells if cell is not None}
+    if kinds <= {int, float} and float in kinds:
+        return float
+    return kinds.pop() if len(kinds) == 1 else str
+
+
+def _typed(cell: Cell, kind: type) -> object:
+    if cell is None or kind is not str:
+        return cell
+    return shown(cell) if not isinstance(cell, list) else "; ".join(cell)
+
+
+def _arrow(kind: type) -> pyarrow.DataType:
+    import pyarrow
+
+    kinds: Mapping[type, Callable[[], pyarrow.DataType]] = {
+        float: pyarrow.float64,
+        int: pyarrow.int64,
+        bool: pyarrow.bool_,
+        list: lambda: pyarrow.list_(pyarrow.string()),
+    }
+    return kinds.get(kind, pyarrow.string)()
+
+
+TABLES: Mapping[str, Callable[[Columns, Sequence[Row]], bytes]] = {
+    ".csv": to_csv,
+    ".jsonl": to_json_lines,
+    ".parquet": to_parquet,
+}
+"""The formats of tables by suffix."""
+
 
 # --- The names of the files that a sweep writes: a pattern such as `out/{width}-{style}.dxf`, with the
 # values of a variant in it. Whatever a value says, its file lies where the pattern says.
@@ -59,11 +264,6 @@ class Pattern:
         return safe(shown(variant.values.get(field, self.written.get(field, ""))))
 
 
-def has_fields(text: str) -> bool:
-    """Tells whether a name is a pattern: one file for each variant."""
-    return _FIELD.search(text) is not None
-
-
 def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
     """Reads a pattern, which names params and columns of a plan. Raises AidlError."""
     fields = [*plan.labels, *plan.paths]
@@ -74,21 +274,14 @@ def pattern(text: str, suffix: str, plan: Plan) -> Pattern:
         if known is None:
             near = did_you_mean(nearest(parts[k], fields)[:1])
             there = first_few(ticked([f"{{{name}}}" for name in [*fields, NUMBER]]), 12)
-            raise AidlError(
-                Diagnostic(
-                    "E0973",
-                    f"`{text}` names `{{{parts[k]}}}`, which is not varied",
-                    hints=(*near, f"there is {there}"),
-                )
-            )
+            message = f"`{text}` names `{{{parts[k]}}}`, which is not varied"
+            raise refused("E0973", message, *near, f"there is {there}")
         parts[k] = known
     return Pattern(text, suffix, tuple(parts), {path: knob.value for path, knob in plan.knobs.items()})
 
 
 def safe(text: str) -> str:
-    """Returns a value as a part of a file's name: letters, digits and a few marks, of bounded length, and
-    never one that a file system reads otherwise (`..`, `CON`, a leading dot).
-    """
+    """Returns a value as part of a file's name: short, and none that a system reads otherwise (`CON`)."""
     kept = "".join(c if _is_plain(c) else "_" for c in unicodedata.normalize("NFC", text))
     kept = re.sub(r"__+", "_", kept).strip("_. ") if kept != text else kept
     kept = re.sub(r"\.\.+", ".", kept).lstrip(".").rstrip(". ")
@@ -102,9 +295,7 @@ def _is_plain(character: str) -> bool:
 
 
 def distinct(names: Iterable[str]) -> Iterator[str]:
-    """Yields the names of variants made different: of several that a file system may take for one, each but
-    the first gets its number.
-    """
+    """Yields names made different: of several alike for some file system, each but the first is numbered."""
     taken: set[str] = set()
     for number, name in enumerate(names, 1):
         made, path, mark = name, PurePath(name), f"~{number}"
@@ -156,15 +347,12 @@ def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None
     sheets: list[str] = []
     for name in dict.fromkeys(names):
         suffix = PurePath(name).suffix.lower()
-        if has_fields(name):
+        if _FIELD.search(name) is not None:
             patterns.append(pattern(name, suffix_of(name, fallback), plan))
             continue
         if not Path(name).parent.is_dir():
-            raise AidlError(
-                Diagnostic(
-                    "E0904", f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
-                )
-            )
+            message = f"`{name}` cannot be written: there is no directory `{Path(name).parent}`"
+            raise refused("E0904", message)
         if suffix in TABLES:
             if suffix == ".parquet":
                 require("pyarrow", name, ARROW_EXTRA)
@@ -176,7 +364,7 @@ def outputs(names: Sequence[str], plan: Plan, reads: Reads, fallback: str | None
     reads.require_unread((*tables, *sheets))
     if sheets and len(plan) > MOST_PICTURES:
         few = f"a contact sheet has up to {MOST_PICTURES}"
-        raise AidlError(Diagnostic("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}"))
+        raise refused("E0973", f"{len(plan)} variants are too many for `{sheets[0]}`: {few}")
     return Outputs(tuple(patterns), tuple(tables), tuple(sheets))
 
 
@@ -186,21 +374,17 @@ def _shared(name: str, suffix: str, plan: Plan) -> AidlError:
         field = plan.paths[0] if len(plan.paths) == 1 else "n"
         one = path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")
         message = f"every variant would be written to `{name}`"
-        return AidlError(Diagnostic("E0973", message, hints=(f"say what differs in the name: `{one}`",)))
+        return refused("E0973", message, f"say what differs in the name: `{one}`")
     known = f"tables are {', '.join(TABLES)}, contact sheets {', '.join(SHEETS)}"
     drawings = "a drawing has a field in its name, as in `out/{n}.dxf`"
-    return AidlError(
-        Diagnostic("E0905", f"`{name}` is neither a table nor a contact sheet", hints=(known, drawings))
-    )
+    return refused("E0905", f"`{name}` is neither a table nor a contact sheet", known, drawings)
 
 
 class Drawings:
     """Writes the drawings of variants, each under a name of its own below the folder of its pattern."""
 
     def __init__(self, outputs: Outputs, plan: Plan, reads: Reads) -> None:
-        """Names the drawings of all variants; of names that are alike all but the first get a number. Raises
-        AidlError if one of them was read.
-        """
+        """Names the drawings of all variants, numbering equal names. Raises AidlError if one was read."""
         self.renamed = 0
         self._patterns = outputs.patterns
         self._names = [list(self._named(each, plan)) for each in outputs.patterns]
@@ -228,7 +412,7 @@ class Drawings:
                 if self._written.setdefault(path.casefold(), variant.number) != variant.number:
                     other = self._written[path.casefold()]
                     message = f"`{path}` would hold variant {other} and variant {variant.number}"
-                    raise AidlError(Diagnostic("E0973", message, hints=("begin the name with `{n}`",)))
+                    raise refused("E0973", message, "begin the name with `{n}`")
                 self._reads.require_unread([path])  # also those that were read since
                 write(path, data)
                 written.append(path)
@@ -240,15 +424,12 @@ class Drawings:
 
 
 def write(name: str, data: bytes) -> None:
-    """Replaces a file in one step, if its content differs; a link is replaced, not followed. Raises
-    AidlError.
-    """
+    """Replaces a file, or a link, in one step if its content differs. Raises AidlError."""
     path = Path(name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_symlink() or not path.is_file() or path.read_bytes() != data:
             replace(path, data)
     except OSError as error:
-        raise AidlError(
-            Diagnostic("E0904", f"`{name}` cannot be written: {(error.strerror or str(error)).lower()}")
-        ) from None
+        why = (error.strerror or str(error)).lower()
+        raise refused("E0904", f"`{name}` cannot be written: {why}") from None

@@ -7,6 +7,7 @@ import math
 import random
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import product
 from math import prod
 from pathlib import Path
@@ -60,9 +61,13 @@ class Axis:
     span: Span | None = None
 
 
+def refused(code: str, message: str, *hints: str) -> AidlError:
+    return AidlError(Diagnostic(code, message, hints=hints))
+
+
 def wrong(message: str, *hints: str) -> AidlError:
     """Returns the error for values that cannot be swept."""
-    return AidlError(Diagnostic("E0971", message, hints=hints or (_EXAMPLES,)))
+    return refused("E0971", message, *(hints or (_EXAMPLES,)))
 
 
 def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
@@ -74,15 +79,11 @@ def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
     paths = [knob.path for knob in knobs]
     known = first_few(ticked(paths), 12, "") or "none"
     near = did_you_mean(nearest(name, paths)[:1])
-    raise AidlError(
-        Diagnostic("E0911", f"there is no param `{name}`", hints=(*near, f"params of this program: {known}"))
-    )
+    raise refused("E0911", f"there is no param `{name}`", *near, f"params of this program: {known}")
 
 
 def axis(name: str, written: str, knobs: Sequence[Knob], *, is_drawn: bool = False) -> Axis:
-    """Reads the values of a param as the command line has them. `is_drawn` says that values are drawn at
-    random from a range, which needs no number of them then. Raises AidlError.
-    """
+    """Reads a param's values as written. A range of one that `is_drawn` needs no number. Raises AidlError."""
     knob = knob_named(name, knobs)
     if written.strip() == "*":
         return _all_of(knob)
@@ -230,8 +231,7 @@ def labels(values: Mapping[str, Value]) -> str:
     return " ".join(f"{path}={shown(given)}" for path, given in values.items())
 
 
-# --- The variants of a sweep in their order: a grid, the rows of a table, values drawn at random, or
-# products of these.
+# --- The variants in their order: a grid, the rows of a table, values drawn at random, or their products.
 
 
 @record()
@@ -369,6 +369,7 @@ def _free(knobs: Sequence[Knob], set_already: set[str]) -> Iterator[Axis]:
 
 _MOST_BYTES = 500_000_000
 _LONGEST_CELL = 1_000_000
+_wrong = partial(refused, "E0972")
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 
 
@@ -409,7 +410,6 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
 
 
 def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
-    """Yields the rows of a CSV file, each with the number of its line."""
     try:
         text = reads.contents(path, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
@@ -431,7 +431,6 @@ def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
 
 
 def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Knob | None]:
-    """Returns the params of the columns; None for a column that is none and resembles none."""
     by_name = {fold(knob.path): knob for knob in knobs}
     paths = [knob.path for knob in knobs]
     found: list[Knob | None] = []
@@ -454,7 +453,3 @@ def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Kno
             f"no column of `{path}` is a param: it has {named(head)}", f"params of this program: {known}"
         )
     return found
-
-
-def _wrong(message: str, *hints: str) -> AidlError:
-    return AidlError(Diagnostic("E0972", message, hints=hints))

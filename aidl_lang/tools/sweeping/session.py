@@ -1,23 +1,24 @@
-"""A sweep from its beginning to its outputs: what is kept is taken, the rest is computed and written."""
+"""A sweep from its plan to its outputs, and the same as Python has it: an iterator of results."""
 
 from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.diagnostics import AidlError, Diagnostic, has_errors
+from aidl_lang.common.diagnostics import AidlError, has_errors
 from aidl_lang.common.processes import Engine, Guarded, count
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
+from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import (
     Bundle,
@@ -30,13 +31,30 @@ from aidl_lang.tools.sweeping.bundle import (
     patience,
 )
 from aidl_lang.tools.sweeping.keeping import Store
-from aidl_lang.tools.sweeping.outputs import Drawings, Outputs, write
-from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, spelled
-from aidl_lang.tools.sweeping.rows import TABLES, Columns, Row, in_order
+from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, write
+from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
+from aidl_lang.tools.sweeping.plan import (
+    Axis,
+    Plan,
+    Value,
+    Variant,
+    axis,
+    from_values,
+    knob_named,
+    planned,
+    read_table,
+    refused,
+    spelled,
+)
 from aidl_lang.tools.sweeping.working import Making, variant
 
-# --- The beginnings of a sweep that the command line and Python have in common: the program, and the engine
-# by name.
+if TYPE_CHECKING:
+    import pyarrow
+
+    from aidl_lang.export import Options
+
+
+# --- How a sweep begins on the command line and in Python: the program, and the engine by name.
 
 LOCAL = "local"
 _WORKING = "aidl_lang.tools.sweeping.working"
@@ -46,9 +64,7 @@ _WARM = "aidl_lang.tools.sweeping.warm"
 def opened(
     source: SourceFile, world: World | None, settings: pipeline.Settings
 ) -> tuple[Bundle, Gathering, tuple[Knob, ...]]:
-    """Returns a program as it travels, the files that it may ask for, and its params. Raises AidlError for a
-    program that is wrong as written.
-    """
+    """Returns a program as it travels, files it may ask for, its params. Raises AidlError if wrong."""
     from aidl_lang.common.world import MemoryWorld
 
     gathering = Gathering(world or MemoryWorld({}))
@@ -83,7 +99,7 @@ def engine(
 
     if jobs is not None:
         message = "the workers of a cluster are as many as it has"
-        raise AidlError(Diagnostic("E0976", message, hints=("leave out the number of jobs",)))
+        raise refused("E0976", message, "leave out the number of jobs")
     return Cluster(name, _WORKING)
 
 
@@ -111,9 +127,7 @@ def _written(given: Value) -> str:
 
 
 def joined(words: Sequence[str]) -> str:
-    """Returns words as a shell reads them; one with characters that a terminal does not show is written
-    `$'…'`.
-    """
+    """Returns words as a shell reads them; `$'…'` for characters that a terminal does not show."""
     return " ".join(shlex.quote(word) if word.isprintable() else _escaped(word) for word in words)
 
 
@@ -129,115 +143,14 @@ def _escaped(word: str) -> str:
     return "$'" + "".join(map(one, word)) + "'"
 
 
-# --- The run of a sweep: what is kept is taken, the rest is computed by an engine, and each outcome is
-# handed over as it comes.
+# --- The run of a sweep: what is kept is taken, the rest is computed, and outputs are written.
 
 _PAUSE = 0.2
 """Seconds after which the run looks whether it is still wanted."""
 _ROUNDS = 100
 """How often a variant may ask for further files."""
-
-
-@record()
-class Done:
-    """A variant with its outcome; `was_kept` if nothing was computed for it."""
-
-    variant: Variant
-    outcome: Outcome
-    was_kept: bool
-
-
-class Run:
-    """Yields the variants of a plan with their outcomes, as they come. One run at a time."""
-
-    def __init__(
-        self,
-        plan: Plan,
-        bundle: Bundle,
-        world: Gathering,
-        making: Making,
-        engine: Engine,
-        store: Store | None = None,
-        seconds: float | None = None,
-    ) -> None:
-        """Begins a run; `seconds` are for one variant, where it is not to be what a compile may take."""
-        self.plan, self.making, self.engine, self.store = plan, making, engine, store
-        self._bundle, self._world = bundle, world
-        self._seconds = seconds or patience(bundle.settings, 2 + len(making.suffixes))
-        self._crew: Crew[int, Outcome] = Crew(engine)
-        self._open: dict[int, Variant] = {}
-        self._rounds: dict[int, int] = {}
-
-    @property
-    def running(self) -> list[Variant]:
-        """The variants that are likely compiled now."""
-        return [self._open[number] for number in self._crew.running]
-
-    @property
-    def given_again(self) -> int:
-        """How many variants were begun once more, because what compiled them was gone."""
-        return self._crew.given_again
-
-    def __iter__(self) -> Iterator[Done | None]:
-        """Yields what is done; None now and then while there is nothing new."""
-        waiting = iter(self.plan)
-        is_over = False
-        try:
-            while not is_over or self._crew:
-                checkpoint()
-                while not is_over and self._crew.has_room:
-                    if (each := next(waiting, None)) is None:
-                        is_over = True
-                    elif (kept := self._kept(each)) is not None:
-                        yield Done(each, kept, was_kept=True)
-                    else:
-                        self._give(each)
-                if not self._crew:
-                    continue
-                came = self._crew.came(_PAUSE)
-                if not came:
-                    yield None
-                for number, found in came:
-                    if (done := self._came(number, found)) is not None:
-                        yield done
-        finally:
-            self._crew.cancel()
-
-    def _kept(self, each: Variant) -> Outcome | None:
-        if self.store is None:
-            return None
-        return self.store.get(self._key(each), self._digest)
-
-    def _key(self, each: Variant) -> str:
-        return keeping.key(self._bundle, each.params(self.plan.knobs), self.making)
-
-    def _digest(self, path: str) -> str:
-        self._world.gather([path])
-        return digest_of(self._world.files[path]) if path in self._world.files else "no such path"
-
-    def _give(self, each: Variant) -> None:
-        if len(self._world.files) > len(self._bundle.files):
-            self._bundle = replace(self._bundle, files=dict(self._world.files))
-        self._open[each.number] = each
-        self._crew.give(
-            each.number, self._seconds, variant, self._bundle, each.params(self.plan.knobs), self.making
-        )
-
-    def _came(self, number: int, found: Outcome | Broke) -> Done | None:
-        """Returns a variant that is done; None if it goes round once more, with the files it asked for."""
-        each = self._open.pop(number)
-        outcome = found if isinstance(found, Outcome) else _broken(found)
-        if outcome.missing:
-            self._rounds[number] = self._rounds.get(number, 0) + 1
-            self._world.gather(outcome.missing)
-            if self._rounds[number] < _ROUNDS:
-                self._give(each)
-                return None
-            outcome = Outcome("broken", False, (Fault("E0603", "the program asks for ever new files"),))
-        if self.store is not None and outcome.status != "broken":
-            reads = {path: digest_of(content) for path, content in self._bundle.files.items()}
-            self.store.put(self._key(each), outcome, reads)
-        return Done(each, outcome, was_kept=False)
+_Done = tuple[Variant, Outcome, bool]
+"""A variant with its outcome, and True if nothing was computed for it."""
 
 
 def _broken(broke: Broke) -> Outcome:
@@ -247,9 +160,6 @@ def _broken(broke: Broke) -> Outcome:
     message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
     return Outcome("broken", False, (Fault("E0603", message),))
 
-
-# --- A sweep from its plan to its outputs: runs it, writes drawings as they come and tables at the end, and
-# keeps what is done so that it can go on.
 
 PICTURE = 320
 """Pixels of a picture on a contact sheet."""
@@ -303,7 +213,6 @@ class Session:
     failed: int = 0
     kept: int = 0
     renamed: int = 0
-    given_again: int = 0
     seconds: float = 0.0
     was_stopped: bool = False
     stale: list[str] = field(default_factory=list)
@@ -311,49 +220,115 @@ class Session:
     unfinished: Path | None = None
     """The folder of what is done, if the sweep is not over."""
 
+    def __post_init__(self) -> None:
+        job = self.job
+        pixels = PICTURE if job.outputs.sheets else 0
+        self._making = replace(job.making, suffixes=job.outputs.suffixes, picture=pixels)
+        self._seconds = job.seconds or patience(job.bundle.settings, 2 + len(self._making.suffixes))
+        self._bundle = job.bundle
+        self._store: Store | None = None
+        self._crew: Crew[int, Outcome] = Crew(self.engine)
+        self._open: dict[int, Variant] = {}
+        self._rounds: dict[int, int] = {}
+
     @property
     def is_complete(self) -> bool:
         return len(self.rows) == len(self.job.plan)
 
+    @property
+    def given_again(self) -> int:
+        """How many variants were begun once more, because what compiled them was gone."""
+        return self._crew.given_again
+
     def __iter__(self) -> Iterator[Row]:
-        """Runs the sweep. Whatever ends it, what is done by then is kept where there are outputs; tables are
-        written once it is over.
-        """
-        start = time.monotonic()
-        job = self.job
-        with ExitStack() as stack:
-            drawings = Drawings(job.outputs, job.plan, job.world.reads)
-            store, own = self._store()
-            if store is not None:
-                stack.callback(store.close)
-            self.renamed, self.unfinished = drawings.renamed, own
-            run = Run(job.plan, job.bundle, job.world, self._making, self.engine, store, job.seconds)
-            try:
-                for done in run:
-                    if done is not None:
-                        row = self._row(done, drawings)
-                        self.rows.append(row)
-                        self._tell(run)
-                        yield row
-                        if job.stops_on_error and not row.ok:
-                            self.was_stopped = not self.is_complete
-                            break
-                    else:
-                        self._tell(run)
-            finally:
-                self.given_again, self.seconds = run.given_again, time.monotonic() - start
+        """Runs the sweep. Whatever ends it, what is done is kept where there are outputs; tables last."""
+        start, job = time.monotonic(), self.job
+        drawings = Drawings(job.outputs, job.plan, job.world.reads)
+        self._store, own = self._opened()
+        self.renamed, self.unfinished = drawings.renamed, own
+        try:
+            for done in self._run():
+                if done is None:
+                    self._tell()
+                    continue
+                row = self._row(*done, drawings)
+                self.rows.append(row)
+                self._tell()
+                yield row
+                if job.stops_on_error and not row.ok:
+                    self.was_stopped = not self.is_complete
+                    break
+        finally:
+            self.seconds = time.monotonic() - start
+            if self._store is not None:
+                self._store.close()
         self._write_tables()
         if self.is_complete:
             self.unfinished = None
             if own is not None:
                 keeping.remove(own)
 
-    @property
-    def _making(self) -> Making:
-        pixels = PICTURE if self.job.outputs.sheets else 0
-        return replace(self.job.making, suffixes=self.job.outputs.suffixes, picture=pixels)
+    def _run(self) -> Iterator[_Done | None]:
+        """Yields what is done; None now and then while there is nothing new."""
+        waiting = iter(self.job.plan)
+        is_over = False
+        try:
+            while not is_over or self._crew:
+                checkpoint()
+                while not is_over and self._crew.has_room:
+                    if (each := next(waiting, None)) is None:
+                        is_over = True
+                    elif (kept := self._kept(each)) is not None:
+                        yield each, kept, True
+                    else:
+                        self._give(each)
+                if not self._crew:
+                    continue
+                came = self._crew.came(_PAUSE)
+                if not came:
+                    yield None
+                for number, found in came:
+                    if (done := self._came(number, found)) is not None:
+                        yield done
+        finally:
+            self._crew.cancel()
 
-    def _store(self) -> tuple[Store | None, Path | None]:
+    def _kept(self, each: Variant) -> Outcome | None:
+        return None if self._store is None else self._store.get(self._key(each), self._digest)
+
+    def _key(self, each: Variant) -> str:
+        return keeping.key(self._bundle, each.params(self.job.plan.knobs), self._making)
+
+    def _digest(self, path: str) -> str:
+        files = self.job.world.files
+        self.job.world.gather([path])
+        return digest_of(files[path]) if path in files else "no such path"
+
+    def _give(self, each: Variant) -> None:
+        files = self.job.world.files
+        if len(files) > len(self._bundle.files):
+            self._bundle = replace(self._bundle, files=dict(files))
+        self._open[each.number] = each
+        params = each.params(self.job.plan.knobs)
+        self._crew.give(each.number, self._seconds, variant, self._bundle, params, self._making)
+
+    def _came(self, number: int, found: Outcome | Broke) -> _Done | None:
+        """Returns a variant that is done; None if it goes round once more, with the files it asked for."""
+        each = self._open.pop(number)
+        outcome = found if isinstance(found, Outcome) else _broken(found)
+        if outcome.missing:
+            self._rounds[number] = self._rounds.get(number, 0) + 1
+            self.job.world.gather(outcome.missing)
+            if self._rounds[number] < _ROUNDS:
+                self._give(each)
+                return None
+            outcome = Outcome("broken", False, (Fault("E0603", "the program asks for ever new files"),))
+        if self._store is not None and outcome.status != "broken":
+            reads = {path: digest_of(content) for path, content in self._bundle.files.items()}
+            self._store.put(self._key(each), outcome, reads)
+        return each, outcome, False
+
+    def _opened(self) -> tuple[Store | None, Path | None]:
         """Returns the cache, and its folder if it is of this sweep alone."""
         if self.job.cache:
             return Store(Path(self.job.cache), self.job.cache_size), None
@@ -363,38 +338,25 @@ class Session:
             keeping.remove(own)
         return Store(own, None), own
 
-    def _row(self, done: Done, drawings: Drawings) -> Row:
-        outcome, written = done.outcome, []
+    def _row(self, each: Variant, outcome: Outcome, was_kept: bool, drawings: Drawings) -> Row:
+        written: list[str] = []
         try:
-            written = drawings.write(done.variant, outcome)
+            written = drawings.write(each, outcome)
         except AidlError as reason:
             told = tuple(map(fault, reason.diagnostics))
             outcome = replace(outcome, ok=False, faults=(*told, *outcome.faults))
         if not written:
-            self.stale += drawings.stale(done.variant)
+            self.stale += drawings.stale(each)
         self.failed += not outcome.ok
-        self.kept += done.was_kept
-        light = replace(outcome, files={})
-        names = written or drawings.names(done.variant)
-        return Row(
-            done.variant,
-            light,
-            tuple(written),
-            self.job.command(done.variant, names[0] if names else ""),
-            done.was_kept,
-        )
+        self.kept += was_kept
+        names = written or drawings.names(each)
+        command = self.job.command(each, names[0] if names else "")
+        return Row(each, replace(outcome, files={}), tuple(written), command, was_kept)
 
-    def _tell(self, run: Run) -> None:
-        progress = Progress(
-            len(self.job.plan),
-            len(self.rows),
-            self.failed,
-            self.kept,
-            tuple(run.running),
-            self.engine.places,
-            run.given_again,
-        )
-        self.listen(progress)
+    def _tell(self) -> None:
+        counts = len(self.job.plan), len(self.rows), self.failed, self.kept
+        running = tuple(self._open[number] for number in self._crew.running)
+        self.listen(Progress(*counts, running, self.engine.places, self.given_again))
 
     def _write_tables(self) -> None:
         rows, columns = in_order(self.rows), Columns(self.job.plan, self.job.timings)
@@ -404,3 +366,128 @@ class Session:
             from aidl_lang.tools.sweeping.sheet import contact_sheet
 
             write(name, contact_sheet(Path(name).suffix.lower(), self.job.bundle.name, columns, rows))
+
+
+# --- A sweep as Python has it: an iterator of results, which is a table as well.
+
+
+class Sweep:
+    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes;
+    a second time it yields what is known, and goes on where the first was left.
+
+    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its
+    `outcome` has the rest.
+    """
+
+    def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:
+        self._job, self._engine = job, engine
+        self._session: Session | None = None
+        self._running: Iterator[Row] | None = None
+
+    @classmethod
+    def begun(
+        cls,
+        source: SourceFile,
+        world: World | None,
+        params: Mapping[str, object],
+        asked: tuple[Options, str | None, bool],
+        settings: Settings | None,
+        *,
+        outputs: Sequence[str],
+        table: str | Path | None,
+        drawn: tuple[int, int] | None,
+        engine: tuple[str, int | None],
+        **how: Any,
+    ) -> Sweep:
+        """Returns a sweep that is about to run; `how` has fields of the `Job`. Raises AidlError."""
+        bundle, gathering, knobs = opened(source, world, settings or Settings())
+        axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
+        rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
+        plan = planned(knobs, axes, rows, drawn)
+
+        def command(variant: Variant, name: str) -> str:
+            return reproducing(source.name, plan, variant, name)
+
+        options, fallback, best_effort = asked
+        making = Making(options=options, best_effort=best_effort)
+        wanted = sorted_outputs(outputs, plan, gathering.reads, fallback)
+        return cls(Job(plan, bundle, gathering, making, wanted, command, **how), engine)
+
+    def __len__(self) -> int:
+        """The number of variants."""
+        return len(self._job.plan)
+
+    def __iter__(self) -> Iterator[Row]:
+        place = 0
+        while True:
+            known = self._session.rows if self._session is not None else []
+            if place < len(known):
+                yield known[place]
+                place += 1
+            elif not self._step():
+                return
+
+    def _step(self) -> bool:
+        """Has one more result come in; False if there is none."""
+        if self._running is None:
+            if self._session is not None:
+                return False
+            self._running = self._rows()
+        if next(self._running, None) is None:
+            self._running = None
+            return False
+        return True
+
+    def _rows(self) -> Iterator[Row]:
+        workers: Engine = engine(*self._engine, len(self._job.plan), self._job.outputs.names)
+        self._session = Session(self._job, workers)
+        try:
+            yield from self._session
+        finally:
+            workers.close()
+
+    def close(self) -> None:
+        """Gives up what is not done. With outputs or a cache, what is done is kept."""
+        if self._running is not None:
+            self._running.close()  # type: ignore[attr-defined]
+            self._running = None
+
+    def __enter__(self) -> Sweep:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def results(self) -> list[Row]:
+        """All results in the order of the variants; runs the sweep to its end."""
+        return in_order(list(self))
+
+    @property
+    def failures(self) -> list[Row]:
+        """The results that are not `ok`."""
+        return [row for row in self.results if not row.ok]
+
+    def to_arrow(self) -> pyarrow.Table:
+        """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
+        from aidl_lang.tools.sweeping.outputs import to_arrow
+
+        return to_arrow(Columns(self._job.plan, self._job.timings), self.results)
+
+    def to_pandas(self) -> Any:
+        """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
+        from aidl_lang.export import require
+
+        require("pandas", "a data frame", "parquet")
+        return self.to_arrow().to_pandas()
+
+    def __repr__(self) -> str:
+        done = len(self._session.rows) if self._session is not None else 0
+        return f"<aidl_lang.Sweep {done} of {len(self)} variants>"
+
+
+def _axis(name: str, values: object, knobs: Sequence[Knob], *, is_drawn: bool) -> Axis:
+    """Reads the values of a param: as the command line has them, if they are a text and the param is none."""
+    if isinstance(values, str) and not isinstance(knob_named(name, knobs).value, str):
+        return axis(name, values, knobs, is_drawn=is_drawn)
+    return from_values(name, values, knobs)

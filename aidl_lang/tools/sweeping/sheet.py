@@ -18,8 +18,8 @@ from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.render import escape
 from aidl_lang.export.pdf import FAMILY, POINTS_PER_MM, font_file
+from aidl_lang.tools.sweeping.outputs import Columns, Row, as_mapping
 from aidl_lang.tools.sweeping.plan import shown
-from aidl_lang.tools.sweeping.rows import Columns, Row, as_mapping
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from PIL.ImageFont import FreeTypeFont
 
 
-# --- Lays the variants of a sweep out in rows of cells, on whatever can be painted on. Lengths are in mm, y
-# runs down.
+# --- Lays the variants out in rows of cells, on whatever can be painted on. Lengths in mm, y runs down.
 
 MARGIN = 12.0
 _HEAD = 10.0
@@ -283,16 +282,7 @@ class _Pixels:
 
     def box(self, x: float, y: float, width: float, height: float, fill: str, line: str) -> None:
         k = self._per_mm
-        self._draw.rectangle(
-            (
-                x * k,
-                y * k,
-                (x + width) * k,
-                (y + height) * k,
-            ),
-            fill=fill,
-            outline=line,
-        )
+        self._draw.rectangle((x * k, y * k, (x + width) * k, (y + height) * k), fill=fill, outline=line)
 
     def text(self, x: float, y: float, size: float, colour: str, text: str) -> None:
         k = self._per_mm

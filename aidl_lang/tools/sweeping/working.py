@@ -5,7 +5,7 @@ checked, and the places that the last variant had.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from aidl_lang import pipeline
@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
 from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.export import Exported, Options
+from aidl_lang.export import Options
 from aidl_lang.geometry.survey import NothingThereError, Part
 from aidl_lang.pipeline import Front
 from aidl_lang.solver.riding import Memory
@@ -108,15 +108,14 @@ def _outcome(compiled: Compiled, making: Making) -> Outcome:
         tuple(map(fault, [*errors, *warnings][:_MOST_FAULTS])),
         {knob.path: knob.value for knob in compiled.knobs},
         measures,
-        ()
-        if model is None
-        else tuple(
+        tuple(
             Change(c.path, significant(c.written), significant(c.solved))
-            for c in model.changed[:_MOST_CHANGES]
+            for c in (model.changed[:_MOST_CHANGES] if model is not None else ())
         ),
-        0
-        if compiled.built is None
-        else sum(not a.shape and not a.extent and a.outline is None for a in compiled.built.assertions),
+        sum(
+            not (a.shape or a.extent or a.outline is not None)
+            for a in (compiled.built.assertions if compiled.built is not None else ())
+        ),
         None if model is None else model.degrees,
         files=files,
         picture=picture,
@@ -143,23 +142,22 @@ def _measured(whole: Part) -> Measures:
 
 def _files(compiled: Compiled, making: Making) -> tuple[dict[str, tuple[bytes, ...]], list[Diagnostic]]:
     """Returns the files in all formats; none of them if one could not be made."""
-    write = _drafting(compiled, making) if making.drafted else compiled.exporting(making.options)
+    exporting = compiled.exporting(making.options)
     files: dict[str, tuple[bytes, ...]] = {}
     said: list[Diagnostic] = []
     for suffix in making.suffixes:
         try:
-            made = write(suffix)
+            if making.drafted:
+                from aidl_lang.export.drafting import Draft
+
+                (made,) = compiled.drafted([suffix], Draft(), making.options)
+            else:
+                made = exporting(suffix)
         except AidlError as reason:
             return {}, [*said, *reason.diagnostics]
         files[suffix] = (made.data, *made.further)
         said += [note for note in made.notes if note not in said]
     return files, said
-
-
-def _drafting(compiled: Compiled, making: Making) -> Callable[[str], Exported]:
-    from aidl_lang.export.drafting import Draft
-
-    return lambda suffix: compiled.drafted([suffix], Draft(), making.options)[0]
 
 
 def _picture(compiled: Compiled, making: Making) -> bytes:

@@ -13,8 +13,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
 
-# --- The picture protocols of a terminal, the size of its screen, and pixels in the form of each.
-
 # --- The size of a terminal, and of a picture in it.
 
 CELL = (8, 16)
@@ -83,9 +81,7 @@ _CHUNK = 4096
 
 
 def kitty(png: bytes, columns: int, rows: int) -> str:
-    """Returns the picture over so many cells, in chunks. A terminal answers unless told not to (`q=2`), and
-    the shell would take the answer for typing.
-    """
+    """Returns the picture over so many cells, in chunks; `q=2`, or the terminal would answer to the shell."""
     text = standard_b64encode(png).decode()
     chunks = [text[k : k + _CHUNK] for k in range(0, len(text), _CHUNK)]
     heads = [f"a=T,f=100,q=2,c={columns},r={rows}"] + ["q=2"] * (len(chunks) - 1)
@@ -163,14 +159,8 @@ _BY_TERM = (
 _BY_PROGRAM = {"kitty": "kitty", "ghostty": "kitty", "WezTerm": "iterm", "iTerm.app": "iterm"}
 """WezTerm follows the protocol of iTerm2 more closely than that of kitty, which can be switched off there."""
 _OTHERS = (
-    "VTE_VERSION",
-    "XTERM_VERSION",
-    "KONSOLE_VERSION",
-    "ALACRITTY_WINDOW_ID",
-    "WT_SESSION",
-    "INSIDE_EMACS",
-    "VIM_TERMINAL",
-    "NVIM",
+    *("VTE_VERSION", "XTERM_VERSION", "KONSOLE_VERSION", "ALACRITTY_WINDOW_ID", "WT_SESSION"),
+    *("INSIDE_EMACS", "VIM_TERMINAL", "NVIM"),
 )
 """Set by terminals that show no pictures, or only if told to."""
 _TRUE_COLOUR = ("truecolor", "24bit")
@@ -220,8 +210,6 @@ def _encodable(name: str, sample: str, encoding: str) -> str:
         return "ascii"
     return name
 
-
-# --- Pictures made of characters: half blocks, dots of braille, ASCII by shape, and lettering in them.
 
 # --- Pictures made of characters: grids of cells, lettering in them, and the text that they become.
 
@@ -318,9 +306,7 @@ def _code(colour: Colour, true_colour: bool) -> str:
 
 
 def nearest(colour: Colour) -> int:
-    """Returns the number of the nearest of the 256 colours of xterm, without the first 16, which themes
-    change.
-    """
+    """Returns the nearest of xterm's 256 colours, without the first 16, which themes change."""
     cube = [min(range(6), key=lambda k: abs(_LEVELS[k] - part)) for part in colour]
     grey = min(max(round((sum(colour) / 3 - 8) / 10), 0), 23)
     choices = [
@@ -440,7 +426,6 @@ def _tiles(pixels: Any, across: int, down: int) -> Any:
 
 @cache
 def _shapes() -> tuple[str, Any]:
-    """Returns the characters, and the darkness of each in the pixels of its cell."""
     import numpy as np
 
     y, x = np.mgrid[0.5:8, 0.5:4]

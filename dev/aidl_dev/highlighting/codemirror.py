@@ -7,8 +7,7 @@ from collections.abc import Mapping
 
 from aidl_lang.tools.highlighting.classes import called
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.snippets import SNIPPETS
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import SNIPPETS, vocabulary
 
 _HEAD = "// Made by `make colours` from aidl_lang/tools/vocabulary.py; do not edit.\n"
 _LISTS = (

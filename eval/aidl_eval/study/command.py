@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files, serving
-from aidl_lang.tools.cli.files import UseError, say, show
+from aidl_lang.tools.cli.files import say, show
 
 if TYPE_CHECKING:
     from aidl_eval.store import Store, StoreError
@@ -36,13 +36,10 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_eval.store import Store, StoreError
+    from aidl_eval.store import Store
 
     store = Store(Path(arguments.folder))
-    try:
-        return _export(store, arguments.export) if arguments.export else _serve(store, arguments)
-    except StoreError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    return _export(store, arguments.export) if arguments.export else _serve(store, arguments)
 
 
 def _export(store: Store, name: str) -> int:

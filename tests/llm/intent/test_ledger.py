@@ -66,7 +66,7 @@ def changed(*pairs: tuple[str, str], text: str = CLOCK) -> str:
 
 def restored(text: str, *before: str) -> str:
     ledger = told(*before, text)
-    return ledger.restore(SourceFile("clock.aidl", text)).text
+    return ledger.restore(SourceFile("clock.aidl", text))[0]
 
 
 HAND = """    @detached
@@ -190,12 +190,12 @@ def test_what_fits_is_put_back(old: str, new: str) -> None:
 def test_a_structure_comes_back_with_what_spoke_of_it() -> None:
     after = changed((HAND, ""), ("        hand.bottom == face.center_y\n", ""))
     ledger = told(CLOCK, after)
-    result = ledger.restore(SourceFile("clock.aidl", after))
-    assert result.items == (
+    text, restored = ledger.restore(SourceFile("clock.aidl", after))
+    assert restored == (
         "structure `clock.hand` (solid, 1 geometry)",
         "`hand.bottom == face.center_y` (in `clock`)",
     )
-    assert phrases(CLOCK, result.text) == []
+    assert phrases(CLOCK, text) == []
 
 
 def test_a_constraint_comes_back_under_new_names() -> None:
@@ -228,7 +228,7 @@ def test_what_was_deleted_to_silence_an_error_is_missed() -> None:
         " `lid.width == 40`; say it in another way, or mend one of those"
     )
     assert loss.phrase in request(ledger.missing)
-    assert ledger.restore(SourceFile("clock.aidl", silenced)).text == silenced
+    assert ledger.restore(SourceFile("clock.aidl", silenced))[0] == silenced
     mended = changed(("        lid.width == 40\n", "        lid.width == 60\n"), text=LID)
     assert phrases(LID, silenced, mended) == []
 
@@ -415,7 +415,7 @@ def test_fewer_of_the_same_are_told(before: str, after: str, thing: str, counts:
     (loss,) = ledger.missing
     assert loss.phrase == f"{many} `{thing}` became {few}: unless fewer are meant, make as many again"
     assert loss.is_doubtful
-    assert ledger.restore(SourceFile("clock.aidl", after)).text == after
+    assert ledger.restore(SourceFile("clock.aidl", after))[0] == after
     assert phrases(before, after, before) == []
 
 

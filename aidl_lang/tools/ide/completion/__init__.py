@@ -1,27 +1,295 @@
-"""Completion at a place: finds the kind of place and collects its drafts; those of statements."""
+"""Completion at a place: finds the kind of place and collects its drafts; statements, members, arguments."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 
-from aidl_lang.checking.types import TextType
+from aidl_lang.checking import builtins
+from aidl_lang.checking.builtins import EDITS
+from aidl_lang.checking.facts import Fact, body_of, of_symbol
+from aidl_lang.checking.members import member_of
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
+from aidl_lang.checking.types import (
+    AnyType,
+    BoxType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RecordType,
+    Signature,
+    StructureType,
+    TextType,
+    TruthType,
+    Type,
+    accepts,
+)
+from aidl_lang.checking.units import ANGLE
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import KINDS, kind_of
 from aidl_lang.tools.ide.completion import drafts, names
-from aidl_lang.tools.ide.completion.constraints import constraints
-from aidl_lang.tools.ide.completion.context import CONDITION, Context, Use, context_of
-from aidl_lang.tools.ide.completion.drafts import MOST, Completion, Draft, Files, ranked, written_out
-from aidl_lang.tools.ide.completion.members import indices, members, named_arguments
-from aidl_lang.tools.ide.completion.names import importing
-from aidl_lang.tools.ide.signatures import of_public
+from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use, context_of
+from aidl_lang.tools.ide.completion.drafts import (
+    MOST,
+    Completion,
+    Draft,
+    Files,
+    ranked,
+    stop,
+    words_of,
+    written_out,
+)
+from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
+from aidl_lang.tools.ide.references import parameter_node
+from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, joined, of_parameter, of_public
 from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View, look
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.snippets import OF_WORD
-from aidl_lang.tools.vocabulary import vocabulary
+from aidl_lang.tools.reference.signatures import parts, things
+from aidl_lang.tools.vocabulary import OF_WORD, vocabulary
+
+# --- Completion after a dot, between the brackets of an index, and of named arguments.
+
+_MEMBERS, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
+_MOST_INDICES = 12
+_SEEN = frozenset(
+    (SymbolKind.PARAM, SymbolKind.LET, SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE)
+) | {SymbolKind.ARGUMENT}
+_NUMBER = re.compile(r"-?\d+")
+
+
+def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
+    """Yields members of the value before the dot, and calls that take it as first argument."""
+    check = context.view.program.inference
+    if isinstance(value, ast.Name):
+        symbol = context.view.resolution.uses.get(value)
+        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.scope is not None:
+            yield from _of_file(context, symbol.scope.spaces.get(symbol.name))
+            return
+    fact = check.fact(value)
+    if isinstance(value, ast.Number) or isinstance(fact.type, NumberType):
+        return
+    listed: set[str] = set()
+    for tier, name, describe in _names(context, fact):
+        if name not in listed:
+            listed.add(name)
+            yield _member(context, fact, name, tier, describe)
+    yield from _methods(context, fact)
+
+
+def _of_file(context: Context, scope: SymbolScope | None) -> Iterator[Draft]:
+    if scope is None:
+        return
+    check = context.view.program.inference
+    for name, symbol in scope.values.items():
+        if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
+            known = KnownName(name, symbol, of_symbol(check, symbol))
+            yield names.of_name(known, _MEMBERS)
+    for name in (*scope.callables, *scope.aliases):
+        found = scope.called(name)
+        if found is not None:
+            yield names.call(context, name, found[1], _MEMBERS, scope.aliases.get(name))
+
+
+_Named = Iterator[tuple[float, str, Symbol | None]]
+
+
+def _names(context: Context, fact: Fact) -> _Named:
+    match fact.type:
+        case StructureType() if fact.of is not None:
+            for name, symbol in context.view.resolution.scope_of(fact.of).values.items():
+                if symbol.kind in _SEEN:
+                    yield (
+                        _MEMBERS + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)),
+                        name,
+                        symbol,
+                    )
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
+            yield from _plain(builtins.STRUCTURE, _BOX + 0.5)
+        case GeometryType(kind):
+            if fact.of is not None:
+                yield from _of_shape(context, fact.of)
+            else:
+                yield from _plain(builtins.PRIMITIVE.get(kind, {}), _FIELDS)
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
+        case PointType():
+            yield from _plain(("x", "y"), _FIELDS)
+        case BoxType() | StructureType():
+            yield from _plain(builtins.BOX, _FIELDS)
+        case ListType():
+            yield from _plain(builtins.PATTERN.get(fact.pattern, {}), _MEMBERS)
+            yield from _names(context, fact.element())
+            yield from _plain((*builtins.BOX, "bb"), _BOX)
+        case _:
+            pass
+
+
+def _plain(found: Iterable[str], tier: float) -> _Named:
+    for name in found:
+        yield tier, name, None
+
+
+def _of_shape(context: Context, definition: ast.Node) -> _Named:
+    assert isinstance(definition, ast.ShapeDefinition)
+    scope = body_of(context.view.program.inference, definition)
+    for part in parts(definition):
+        name = part.name.partition("[")[0]
+        if name in scope.values:
+            yield _MEMBERS, name, scope.values[name]
+    for parameter in definition.parameters:
+        if (symbol := scope.values.get(parameter.name.text)) is not None:
+            yield _FIELDS, parameter.name.text, symbol
+
+
+def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol | None) -> Draft:
+    check = context.view.program.inference
+    identifier = ast.Identifier(name, span=context.path[-1].span)
+    nothing = ast.Name(name, span=context.path[-1].span)
+    fact = member_of(check, base, ast.Member(nothing, identifier, span=context.path[-1].span))
+    wanted = context.wanted
+    if wanted != CONDITION and wanted.distance(fact.type) is None:
+        tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
+    is_array = symbol is not None and symbol.is_array
+    if symbol is None:
+        return Draft(name, "field", tier, detail=str(fact.type), describe=partial(_field, name, fact))
+    kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
+    known = KnownName(name, symbol, fact)
+    text = names.detail(known) if not is_array else str(fact.type)
+    return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
+
+
+def _field(name: str, fact: Fact) -> str:
+    return joined([fenced(f"{name}: {fact.type}")])
+
+
+def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
+    """Yields `a.above(…)`: constraints among constraints, functions elsewhere."""
+    if isinstance(fact.type, AnyType | RecordType):
+        return
+    words = vocabulary()
+    above = context.site.parent(2)
+    is_demand = context.use is Use.CONSTRAINT and isinstance(
+        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
+    )
+    known: list[str] = []
+    if is_demand:
+        known += [*words.relations, *words.constraints]
+        known += sorted(EDITS & {*words.operations})
+    known += words.functions
+    own = [name for name, _ in context.callables()]
+    kind = thing_kind(fact)
+    for name in (*own, *known):
+        signatures = context.called(name)
+        distance = _first_fits(fact, signatures, name, kind) if signatures else None
+        demands = [s.kind is ast.ConstraintDefinition for s in signatures]
+        if distance is None or (not is_demand and all(demands)):
+            continue
+        tier = (_DEMANDS if is_demand and demands[0] else _METHODS) + 0.1 * distance
+        text = names.called(context, name, signatures, skipped=1)
+        yield names.of_call(name, "method", tier + 0.05 * (name not in own), text, signatures)
+
+
+def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
+    """Returns how well a callable's first parameter takes a thing; None if it does not."""
+    table: Mapping[str, object] = forms()
+    if name in table and all(s.standard for s in signatures):
+        pairs = [len(form.pairs) for form in forms()[name] if any(first == kind for first, _ in form.pairs)]
+        return min(pairs) / 100 if pairs else None
+    distances = [
+        d
+        for s in signatures
+        if s.parameters and (d := accepts(s.parameters[0][1], fact.type)) is not None and d < 3
+    ]
+    return min(distances) if distances else None
+
+
+def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
+    """Yields the indices of an array in the last drawing, the last one as `-1`."""
+    drawn = context.site.original.drawn
+    if drawn is None or drawn.model is None:
+        return
+    name = index.value.span.one_line.rpartition(".")[2]
+    found: set[int] = set()
+    for structure in drawn.model.root.walk():
+        things: list[SolvedStructure | SolvedGeometry] = [*structure.structures, *structure.geometry]
+        for member in things:
+            array, _, index_text = member.name.partition("[")
+            if array == name and (number := _NUMBER.match(index_text)):
+                found.add(int(number[0]))
+    for place in sorted(found)[:_MOST_INDICES]:
+        yield Draft(str(place), "word", _FIELDS, detail=f"{name}[{place}]")
+    if found:
+        yield Draft("-1", "word", _BOX, detail=f"the last of {len(found)}")
+
+
+# --- Completion of named arguments that a call does not have yet.
+
+_NEEDED, _OPTIONAL = 0.2, 0.6
+_NAMED = re.compile(r"\s*(:|=(?!=))")
+_LONGEST_DEFAULT = 20
+
+
+def named_arguments(context: Context) -> Iterator[Draft]:
+    """Yields parameters of the overloads still possible, required ones first."""
+    call = context.call
+    if call is None:
+        return
+    public = [r for r in context.readings if is_public(r.signature)] or context.readings
+    for order, reading in enumerate(public):
+        for place, (name, kind, is_optional) in enumerate(_open(reading, call[1])):
+            tier = (_OPTIONAL if is_optional else _NEEDED + order / 20) + place / 100
+            yield _argument(context, reading.signature, name, kind, tier)
+
+
+def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
+    taken = {name for n, name in enumerate(reading.taken) if n != number}
+    node = reading.signature.node
+    related = {p.name.text for p in things(node)} if isinstance(node, ast.ConstraintDefinition) else set()
+    return [p for p in reading.signature.parameters if p[0] not in taken and p[0] not in related]
+
+
+def _argument(context: Context, signature: Signature, name: str, kind: Type, tier: float) -> Draft:
+    node = parameter_node(signature, name)
+    default = node.default.span.one_line if node is not None and node.default is not None else ""
+    is_named = _NAMED.match(context.site.following) is not None
+    text = name if is_named else f"{name}: {_proposed(signature, name, kind, default)}"
+    return Draft(
+        f"{name}:",
+        "argument",
+        tier,
+        text,
+        str(kind) + (f" = {default}" if default else ""),
+        not is_named,
+        describe=partial(of_parameter, signature, name),
+    )
+
+
+def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
+    """Returns a snippet placeholder with a value that the parameter takes."""
+    if isinstance(kind, TextType) and (words := words_of(signature, name)):
+        listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
+        return f"${{1|{','.join(listed)}|}}"
+    if default and len(default) < _LONGEST_DEFAULT:
+        return stop(1, default)
+    match kind:
+        case NumberType(dimension, whole):
+            return stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
+        case PointType():
+            return "(${1:0}, ${2:0})"
+        case TextType():
+            return '"${1:text}"'
+        case TruthType():
+            return "${1|true,false|}"
+        case ListType():
+            return f"[{stop(1, name)}]"
+        case _:
+            return stop(1, name)
+
 
 # --- Completion of statements and of the words that continue one.
 
@@ -58,14 +326,10 @@ def statements(context: Context) -> Iterator[Draft]:
     yield from kinds(site, _KINDS)
     yield from _keywords(site, _STATEMENTS)
     for draft in names.values(context):
-        yield _later(draft, _NAMES)
-    yield from _operations(context)
+        yield replace(draft, tier=_NAMES + draft.tier / 100)
+    yield from _calls(context, vocabulary().operations, _OPERATIONS)
     yield from _shapes(context)
     yield from constraints(context, behind=_LOW)
-
-
-def _later(draft: Draft, tier: float) -> Draft:
-    return replace(draft, tier=tier + draft.tier / 100)
 
 
 def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
@@ -75,15 +339,8 @@ def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
     is_named = site.following.lstrip(" \t")[:1].isidentifier()
     for number, kind in enumerate(KINDS):
         text = kind if is_named else f"{kind} ${{1:name}}" + _BLOCK
-        yield Draft(
-            kind,
-            "kind",
-            tier + number / 10,
-            text,
-            "structure",
-            not is_named,
-            describe=partial(of_public, kind),
-        )
+        described = partial(of_public, kind)
+        yield Draft(kind, "kind", tier + number / 10, text, "structure", not is_named, describe=described)
 
 
 def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
@@ -98,28 +355,20 @@ def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
 def _statement(site: EditSite, word: str, tier: float) -> Draft:
     """Returns a statement with placeholders; the word alone if the statement goes on already."""
     rest = site.following.partition("\n")[0].strip()
-    is_alone = not rest or rest.startswith("}")
-    text = _beginning(word) if is_alone else word
+    if rest and not rest.startswith("}"):
+        return _keyword(word, tier, word)
+    return _keyword(word, tier, _OWN.get(word) or (written_out(OF_WORD[word]) if word in OF_WORD else word))
+
+
+def _keyword(word: str, tier: float, text: str = "") -> Draft:
     return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(of_public, word))
-
-
-def _beginning(word: str) -> str:
-    if word in _OWN:
-        return _OWN[word]
-    return written_out(OF_WORD[word]) if word in OF_WORD else word
-
-
-def _operations(context: Context) -> Iterator[Draft]:
-    """Yields statements that change existing geometry: `fillet(…)`, `move(…)`, `union(…)`."""
-    yield from _calls(context, vocabulary().operations, _OPERATIONS)
 
 
 def _calls(context: Context, found: tuple[str, ...], tier: float) -> Iterator[Draft]:
     for name in found:
-        called = context.scope.called(name)
         entry = reference().entries.get(name)
-        if called is not None and (entry is None or entry.topic != "path"):
-            yield names.call(context, name, called[1], tier)
+        if (called := context.called(name)) and (entry is None or entry.topic != "path"):
+            yield names.call(context, name, called, tier)
 
 
 def _shapes(context: Context) -> Iterator[Draft]:
@@ -129,24 +378,12 @@ def _shapes(context: Context) -> Iterator[Draft]:
     if context.site.following.startswith("("):
         return
     for name in (*own, *words.primitives, *words.shapes, *words.templates):
-        called = context.scope.called(name)
-        if called is None or all(
-            s.kind in (ast.ConstraintDefinition, ast.FunctionDefinition) and not s.standard for s in called[1]
+        called = context.called(name)
+        if any(
+            s.standard or s.kind not in (ast.ConstraintDefinition, ast.FunctionDefinition) for s in called
         ):
-            continue
-        draft = names.call(context, name, called[1], _SHAPES - 0.5 * (name in own))
-        yield Draft(
-            name,
-            draft.kind,
-            draft.tier,
-            f"${{1:name}} = {name}($2)",
-            draft.detail,
-            is_snippet=True,
-            describe=draft.describe,
-        )
-
-
-# --- Words that go on ------------------------------------------------------------------------------
+            draft = names.call(context, name, called, _SHAPES - 0.5 * (name in own))
+            yield replace(draft, text=f"${{1:name}} = {name}($2)", is_snippet=True)
 
 
 def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
@@ -158,14 +395,7 @@ def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
     ):
         if _goes_on(site, word, operand=operand, is_condition=is_condition):
             text = _CLAUSES.get(word, _OWN["else"] if word == "else" and _ends_block(site) else word)
-            yield Draft(
-                word,
-                "keyword",
-                number / 100 + _NAMES_FIRST * operand,
-                text,
-                is_snippet="$" in text,
-                describe=partial(of_public, word),
-            )
+            yield _keyword(word, number / 100 + _NAMES_FIRST * operand, text)
 
 
 def _ends_block(site: EditSite) -> bool:
@@ -173,38 +403,30 @@ def _ends_block(site: EditSite) -> bool:
 
 
 def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) -> bool:
-    if word in ("as", "from", "then"):
-        return _soft(site, word)
-    if word == "not":
-        return operand and is_condition and site.takes(word)
-    if word == "if":  # behind a value, not as a statement of its own
-        return (
-            not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
-        )
-    return site.takes(word)
-
-
-def _soft(site: EditSite, word: str) -> bool:
-    """Tells whether a contextual keyword, elsewhere a name, is a keyword here."""
     match word:
         case "as":
             return site.takes("as", "NAME", ";") and not site.automaton.between_statements
         case "from":
             return site.takes("from", "STRING") and not site.takes("NAME")
-        case _:
+        case "then":
             return site.takes(word) and not site.takes("NAME")
+        case "not":
+            return operand and is_condition and site.takes(word)
+        case "if":  # behind a value, not as a statement of its own
+            may_begin = operand or site.automaton.between_statements
+            return not may_begin and site.takes("if", "NAME", "else", "NAME")
+        case _:
+            return site.takes(word)
 
 
 def truths(site: EditSite) -> Iterator[Draft]:
     for word in ("true", "false"):
         if site.takes(word) and not site.following.startswith("("):
-            yield Draft(word, "keyword", 5.0, describe=partial(of_public, word))
+            yield _keyword(word, 5.0)
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:
-    """Returns the completions at an offset, the likeliest first, at most `MOST`. `files` lists the programs
-    of the workspace, for imports.
-    """
+    """Returns the likeliest `MOST` completions at an offset. `files` lists what may be imported."""
     spot = spot_at(view, offset)
     match spot.where:
         case Where.COMMENT:
@@ -214,12 +436,10 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
         case Where.NUMBER:
             drafts = list(_behind_number(view, spot))
         case _:
-            return _in_code(view, spot, files)
+            site = site_at(view, spot)
+            return ranked(_drafts(site, files), site.replaced, site.prefix)
     prefix = view.source.text[spot.start : spot.offset]
     return ranked(drafts, view.span(spot.start, spot.end), prefix)
-
-
-# --- Strings and numbers ---------------------------------------------------------------------------
 
 
 def _in_string(view: View, spot: Spot, files: Files | None) -> Iterator[Draft]:
@@ -264,21 +484,16 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     )
 
 
-# --- Code ------------------------------------------------------------------------------------------
-
-
-def _in_code(view: View, spot: Spot, files: Files | None) -> list[Completion]:
-    site = site_at(view, spot)
-    return ranked(_drafts(site, files), site.replaced, site.prefix)
-
-
 def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
     before = site.spot.before
     kind = before.kind if before is not None else ""
     if kind == "@":
         yield from drafts.attributes(site.following.startswith("("))
     elif kind in ("import", "from"):
-        yield from _of_import(site, files)
+        node = next((n for n in reversed(site.path) if isinstance(n, ast.Import)), None)
+        if node is not None:
+            yield from drafts.imported_names(site, node)
+        yield from drafts.files(site.original.path, files, quoted=True)
     elif _is_free(site):
         context = context_of(site)
         if context is not None:
@@ -289,15 +504,7 @@ def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
             yield from clauses(site, is_condition=context is not None and context.wanted == CONDITION)
 
 
-def _of_import(site: EditSite, files: Files | None) -> Iterator[Draft]:
-    node = next((n for n in reversed(site.path) if isinstance(n, ast.Import)), None)
-    if node is not None:
-        yield from drafts.imported_names(site, node)
-    yield from drafts.files(site.original.path, files, quoted=True)
-
-
 def _is_free(site: EditSite) -> bool:
-    """Tells whether anything can be proposed: not where a new name is given."""
     before = site.spot.before
     if before is None:
         return True
@@ -309,7 +516,6 @@ _NAMING = ("param", "var", "let", "fn", "shape", "constraint", "alias", "for", "
 
 
 def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
-    """Yields drafts by the node that the placeholder became."""
     site, node, above = context.site, context.site.node, context.site.parent()
     match node, above:
         case ast.Identifier(), ast.Member(value=value):
@@ -317,7 +523,10 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
         case ast.Identifier(), ast.Call(receiver=receiver) if receiver is not None:
             yield from members(context, receiver)
         case ast.Identifier(), ast.Call():
-            yield from _at_call(context, files)
+            is_statement = isinstance(context.site.parent(2), ast.ExpressionStatement)
+            if not is_statement or context.site.begins_statement or not context.site.may_end:
+                yield from statements(context) if is_statement else _value(context)
+                yield from importing(context, files)
         case ast.Identifier(), ast.Structure() if node is above.kind_word:
             yield from kinds(site, 1.0)
         case ast.Identifier(), ast.Parameter() if node is above.type:
@@ -329,31 +538,13 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
         case ast.Identifier(), ast.Alias() if node is above.target:
             yield from names.calls(context)
             yield from constraints(context)
-        case ast.Name(), ast.Argument() if _attribute(context) is not None:
-            attribute = _attribute(context)
-            assert attribute is not None
+        case ast.Name(), ast.Argument() if isinstance(attribute := site.parent(2), ast.Attribute):
             yield from drafts.of_attribute(attribute.name.text, is_quoted=False)
         case ast.Name(), _:
             yield from _value(context)
             yield from importing(context, files)
         case _:
             pass
-
-
-def _attribute(context: Context) -> ast.Attribute | None:
-    above = context.site.parent(2)
-    return above if isinstance(above, ast.Attribute) else None
-
-
-def _at_call(context: Context, files: Files | None) -> Iterator[Draft]:
-    """Yields statements for a call by itself, values for any other."""
-    if isinstance(context.site.parent(2), ast.ExpressionStatement):
-        if context.site.begins_statement or not context.site.may_end:
-            yield from statements(context)
-            yield from importing(context, files)
-    else:
-        yield from _value(context)
-        yield from importing(context, files)
 
 
 def _value(context: Context) -> Iterator[Draft]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
 
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
-from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
@@ -18,6 +17,7 @@ from aidl_lang.checking.types import (
     NumberType,
     PointType,
     RangeType,
+    Signature,
     StructureType,
     TextType,
     TruthType,
@@ -120,12 +120,50 @@ class Context:
 
     @cached_property
     def wanted(self) -> Wanted:
-        return Around(self.view.program.inference, self._of_argument).wanted(self.path)
+        return self._wanted(self.path)
+
+    def _wanted(self, path: Sequence[ast.Node]) -> Wanted:
+        """Returns the types wanted of the last node of a path."""
+        if len(path) < 2:
+            return Wanted()
+        node, above = path[-1], path[-2]
+        match above:
+            case ast.Argument() | ast.Unary(operator="-" | "+"):
+                return self._of_argument() if isinstance(above, ast.Argument) else self._wanted(path[:-1])
+            case ast.Binary(operator="+" | "-", left=left, right=right):
+                other = self.view.program.inference.fact(right if node is left else left).type
+                return _alike(other) if not isinstance(other, AnyType) else self._wanted(path[:-1])
+            case ast.Binary(operator="and" | "or") | ast.Unary():
+                return CONDITION
+            case ast.Binary():
+                return Wanted((_NUMBER, NumberType(None)))
+            case ast.Comparison(operands=operands):
+                return self._compared(node, operands)
+            case ast.Equation(left=left, right=right):
+                return self._compared(node, (left, right))
+            case ast.Conditional(test=test):
+                return CONDITION if node is test else self._wanted(path[:-1])
+            case ast.ArgumentBlock() | ast.ForArguments() if not _is_run_through(node, above):
+                return self._wanted(path[:-1])
+            case ast.IfArguments(test=test):
+                return CONDITION if node is test else self._wanted(path[:-1])
+            case ast.List():
+                return _member_of(self._wanted(path[:-1]))
+            case _:
+                return _of_place(node, above, path)
+
+    def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
+        """Returns the types comparable with the other sides."""
+        facts = [self.view.program.inference.fact(o) for o in operands if o is not node]
+        known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
+        return _alike(known) if known is not None else Wanted()
 
     def _of_argument(self) -> Wanted:
-        """Returns the parameter types that the argument may fill, over all possible overloads."""
         if self.call is None:
-            return self._of_attribute()
+            attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
+            if attribute is None:
+                return Wanted()
+            return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
         number = self.call[1]
         kinds: dict[Type, None] = {}
         name = ""
@@ -140,12 +178,6 @@ class Context:
                 kinds[kind.element] = None
             kinds[kind] = None
         return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
-
-    def _of_attribute(self) -> Wanted:
-        attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
-        if attribute is None:
-            return Wanted()
-        return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
 
     @cached_property
     def values(self) -> list[KnownName]:
@@ -202,10 +234,13 @@ class Context:
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)
 
+    def called(self, name: str) -> list[Signature]:
+        """Returns the definitions that a call of a name may mean here; none for another name."""
+        found = self.scope.called(name)
+        return found[1] if found is not None else []
+
     def callables(self) -> Iterator[tuple[str, Symbol | None]]:
-        """Yields the callable names of this program and its imports, the nearest first, with the alias of an
-        alias.
-        """
+        """Yields the callable names of this program and its imports, nearest first, with an alias."""
         seen: set[str] = set()
         outermost = self.view.resolution.library_scope
         for scope in self.scope.chain():
@@ -247,26 +282,7 @@ def _names_file(view: View, node: ast.Expression) -> bool:
 
 
 _DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation
-_STATEMENTS = (
-    ast.Structure,
-    ast.Param,
-    ast.Var,
-    ast.Let,
-    ast.Assign,
-    ast.ExpressionStatement,
-    ast.Constrain,
-    ast.Equation,
-    ast.Prefer,
-    ast.Assert,
-    ast.For,
-    ast.If,
-    ast.Import,
-    ast.FunctionDefinition,
-    ast.ShapeDefinition,
-    ast.ConstraintDefinition,
-    ast.Alias,
-    ast.Parameter,
-)
+_STATEMENTS = ast.Allowing | ast.Structure | ast.Assign | ast.Parameter
 
 
 _WHOLE = NumberType(None, whole=True)
@@ -283,9 +299,7 @@ class Wanted:
     name: str = ""
 
     def distance(self, given: Type) -> int | None:
-        """Returns how far a type is from the wanted ones; None if it does not fit. An unknown type may
-        fit.
-        """
+        """Returns how far a type is from the wanted ones; None if it does not fit, as an unknown one may."""
         if isinstance(given, AnyType):
             return _PERHAPS
         found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
@@ -296,55 +310,11 @@ CONDITION = Wanted((TruthType(),))
 """The type of a condition, which often begins with a value: `a.radius >= 3`."""
 
 
-@record()
-class Around:
-    """The nodes around a place; `argument` returns the types wanted of an argument."""
-
-    check: Inference
-    argument: Callable[[], Wanted]
-
-    def wanted(self, path: Sequence[ast.Node]) -> Wanted:
-        """Returns the types wanted of the last node of a path."""
-        if len(path) < 2:
-            return Wanted()
-        node, above = path[-1], path[-2]
-        match above:
-            case ast.Argument() | ast.Unary(operator="-" | "+"):
-                return self.argument() if isinstance(above, ast.Argument) else self.wanted(path[:-1])
-            case ast.Binary(operator="+" | "-", left=left, right=right):
-                other = self.check.fact(right if node is left else left).type
-                return _alike(other) if not isinstance(other, AnyType) else self.wanted(path[:-1])
-            case ast.Binary(operator="and" | "or") | ast.Unary():
-                return CONDITION
-            case ast.Binary():
-                return Wanted((_NUMBER, NumberType(None)))
-            case ast.Comparison(operands=operands):
-                return self._compared(node, operands)
-            case ast.Equation(left=left, right=right):
-                return self._compared(node, (left, right))
-            case ast.Conditional(test=test):
-                return CONDITION if node is test else self.wanted(path[:-1])
-            case ast.ArgumentBlock() | ast.ForArguments() if not _is_run_through(node, above):
-                return self.wanted(path[:-1])
-            case ast.IfArguments(test=test):
-                return CONDITION if node is test else self.wanted(path[:-1])
-            case ast.List():
-                return _member_of(self.wanted(path[:-1]))
-            case _:
-                return _of_place(node, above, path)
-
-    def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        facts = [self.check.fact(o) for o in operands if o is not node]
-        known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
-        return _alike(known) if known is not None else Wanted()
-
-
 def _is_run_through(node: ast.Node, above: ast.Node) -> bool:
     return isinstance(above, ast.For | ast.ForArguments | ast.Comprehension) and node is above.iterable
 
 
 def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Wanted:
-    """Returns the types that a statement, or another fixed place, wants."""
     match above:
         case ast.Point():
             return Wanted((NumberType(LENGTH),))
@@ -356,7 +326,9 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted((_NUMBER, _WHOLE))
         case ast.For() | ast.ForArguments() | ast.Comprehension() if _is_run_through(node, above):
             return Wanted((ListType(ANY), RangeType()))
-        case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
+        case ast.Index() | ast.Structure() | ast.Assign() if (
+            node is above.index if isinstance(above, ast.Index) else node in above.indices
+        ):
             return Wanted((_WHOLE,))
         case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
             return CONDITION
@@ -372,12 +344,7 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted()
 
 
-def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> bool:
-    return node is above.index if isinstance(above, ast.Index) else node in above.indices
-
-
 def _alike(kind: Type) -> Wanted:
-    """Returns the types that may be compared with, or added to, a type."""
     match kind:
         case NumberType(dimension):
             return Wanted((NumberType(dimension), NumberType(None)))

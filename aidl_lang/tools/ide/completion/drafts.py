@@ -13,7 +13,7 @@ from aidl_lang.building.outlines import CORNER_WORDS
 from aidl_lang.checking import library
 from aidl_lang.checking.builtins import WORDED
 from aidl_lang.checking.types import PARAMETER_TYPES, AnyType, NumberType, Signature, TextType
-from aidl_lang.checking.units import UNITS, Dimension
+from aidl_lang.checking.units import UNITS
 from aidl_lang.common.colors import COLOR_NAMES
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.materials import densities
@@ -25,44 +25,42 @@ from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.signatures import Reading, of_callable, of_public
 from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.snippets import SNIPPETS, Snippet, expanded
-from aidl_lang.tools.vocabulary import vocabulary
-
-# --- One completion entry.
+from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, expanded, vocabulary
 
 MOST = 200
-"""Most entries of a list. A list of that length may be incomplete: the editor asks again as the word
-grows.
-"""
-
-
-def nothing() -> str:
-    return ""
+"""Most entries of a list. After that many the editor asks again as the word grows."""
 
 
 @record()
-class Completion:
-    """A completion entry.
+class Draft:
+    """A completion entry before it is ranked.
 
     label    the text shown, and compared with the typed text
     kind     `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`, `argument`,
              `field`, `method`, or a `SymbolKind` in its words
+    tier     0 for the likeliest; equal ones keep the order of drafting
+    text     what is written; a snippet has placeholders: `${1:name}`, `${1|a,b|}`, `$0`
     detail   its type, or its call, in a few words
-    text     the replacement of `span`; a snippet has placeholders: `${1:name}`, `${1|a,b|}`, `$0`
-    rank     its place in the list, 0 for the best
     extra    edits elsewhere that it needs, as an import
     describe makes its documentation in Markdown; too slow for a whole list
     """
 
     label: str
     kind: str
-    text: str
-    span: Span
+    tier: float
+    text: str = ""
     detail: str = ""
     is_snippet: bool = False
-    rank: int = 0
     extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=nothing, repr=False, compare=False)
+    describe: Callable[[], str] = field(default=str, repr=False, compare=False)
+
+
+@record()
+class Completion(Draft):
+    """An entry whose text replaces `span`; `rank` is its place in the list, 0 for the best."""
+
+    span: Span = field(kw_only=True)
+    rank: int = field(kw_only=True)
 
     @property
     def documentation(self) -> str:
@@ -74,20 +72,6 @@ class Completion:
         return expanded(self.text) if self.is_snippet else self.text
 
 
-@record()
-class Draft:
-    """`tier` ranks it, 0 the likeliest; equal ones keep the order of drafting."""
-
-    label: str
-    kind: str
-    tier: float
-    text: str = ""
-    detail: str = ""
-    is_snippet: bool = False
-    extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=nothing, repr=False)
-
-
 def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]:
     """Returns entries by tier, each label once, of those that the prefix may abbreviate."""
     chosen: dict[tuple[str, str], Draft] = {}
@@ -95,9 +79,7 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
         chosen.setdefault((draft.label, draft.text), draft)
     fitting = [d for d in chosen.values() if is_spelled_in(prefix, d.label)]
     return [
-        Completion(
-            d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe
-        )
+        Completion(**{**vars(d), "text": d.text or d.label}, span=span, rank=rank)
         for rank, d in enumerate(fitting[:MOST])
     ]
 
@@ -110,9 +92,7 @@ def escaped(text: str) -> str:
 
 
 def written_out(snippet: Snippet) -> str:
-    """Writes a snippet for completion: indented as programs are, the cursor at its end unless it says
-    otherwise.
-    """
+    """Writes a snippet for completion: indented as programs are, without `$0` at its end."""
     return snippet.body.replace("\t", "    ").removesuffix("$0")
 
 
@@ -135,9 +115,6 @@ _FAVOURITES = ("mm", "deg")
 _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool", "list", "box")
 
 
-# --- Numbers ---------------------------------------------------------------------------------------
-
-
 def units(context: Context | None) -> Iterator[Draft]:
     """Yields units after a number, those of the wanted dimension first."""
     wanted = context.wanted.types if context is not None else ()
@@ -145,15 +122,8 @@ def units(context: Context | None) -> Iterator[Draft]:
     for number, (unit, (factor, dimension)) in enumerate(UNITS.items()):
         fits = dimension in dimensions
         tier = number / 10 + 2.0 * (bool(dimensions) and not fits) - (unit in _FAVOURITES)
-        yield Draft(unit, "unit", tier, detail=_worth(unit, factor, dimension))
-
-
-def _worth(unit: str, factor: float, dimension: Dimension) -> str:
-    base = "mm" if dimension == UNITS["mm"][1] else "degrees"
-    return str(dimension) if factor == 1.0 else f"{factor:.6g} {base}"
-
-
-# --- Attributes ------------------------------------------------------------------------------------
+        base = "mm" if dimension == UNITS["mm"][1] else "degrees"
+        yield Draft(unit, "unit", tier, detail=(str(dimension) if factor == 1.0 else f"{factor:.6g} {base}"))
 
 
 def attributes(is_called: bool) -> Iterator[Draft]:
@@ -187,24 +157,17 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
         yield Draft(word, kind, 0.0, word if is_quoted or (bare and kind == "word") else f'"{word}"')
 
 
-# --- Types -----------------------------------------------------------------------------------------
-
-
-def types(context: Context | None) -> Iterator[Draft]:
+def types(context: Context) -> Iterator[Draft]:
     """Yields types after `:` in a parameter, and shapes by their names."""
     for number, word in enumerate(dict.fromkeys((*_PLAIN_TYPES, *PARAMETER_TYPES))):
         yield Draft(word, "type", number / 100, detail=str(PARAMETER_TYPES[word]))
     words = vocabulary()
-    own = [name for name, _ in context.callables()] if context is not None else []
+    own = [name for name, _ in context.callables()]
     for name in (*own, *words.shapes):
-        found = context.scope.called(name) if context is not None else None
-        if found is not None and found[1][0].kind is ast.ShapeDefinition:
-            yield Draft(
-                name, "shape", 2.0 - (name in own), describe=partial(of_callable, name, tuple(found[1]))
-            )
-
-
-# --- The choices of an argument --------------------------------------------------------------------
+        signatures = context.called(name)
+        if signatures and signatures[0].kind is ast.ShapeDefinition:
+            described = partial(of_callable, name, tuple(signatures))
+            yield Draft(name, "shape", 2.0 - (name in own), describe=described)
 
 
 def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:
@@ -266,9 +229,6 @@ def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
 
 def _is_name(node: ast.Expression, name: str) -> bool:
     return isinstance(node, ast.Name) and node.text == name
-
-
-# --- Files -----------------------------------------------------------------------------------------
 
 
 def files(site_path: Path, listed: Files | None, *, quoted: bool = False) -> Iterator[Draft]:

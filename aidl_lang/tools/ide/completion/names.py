@@ -1,12 +1,15 @@
-"""Completion of values and callables by their names, in this program and in other files of the workspace."""
+"""Completion of values, callables and constraints by their names, in this program and in other files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import lru_cache, partial
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache, lru_cache, partial
 
 from aidl_lang.checking import builtins
-from aidl_lang.checking.facts import result
+from aidl_lang.checking.facts import Fact, result
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.declare import is_definition
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
@@ -15,19 +18,24 @@ from aidl_lang.checking.types import (
     AnyType,
     GeometryType,
     ListType,
+    NumberType,
     PointType,
     Signature,
     StructureType,
+    TextType,
     TruthType,
     Type,
+    accepts,
 )
 from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.records import record
+from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import FileError
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
-from aidl_lang.tools.ide.completion.drafts import Draft, Files, importable
+from aidl_lang.tools.ide.completion.drafts import Draft, Files, choice, importable, stop
 from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_entry
 from aidl_lang.tools.ide.workspace import insert
 from aidl_lang.tools.reference.collect import reference
@@ -45,13 +53,7 @@ _HAVING_PARTS = (StructureType, GeometryType, PointType)
 def values(context: Context) -> Iterator[Draft]:
     """Yields the names that may be read here, those of a wanted type first."""
     for known in context.values:
-        yield Draft(
-            known.name,
-            str(known.symbol.kind),
-            _tier(context, known),
-            detail=detail(known),
-            describe=partial(about, known.symbol),
-        )
+        yield of_name(known, _tier(context, known))
 
 
 def _tier(context: Context, known: KnownName) -> float:
@@ -65,6 +67,11 @@ def _tier(context: Context, known: KnownName) -> float:
     if isinstance(kind, AnyType):
         return MAYBE + general
     return (PARTS if isinstance(kind, _HAVING_PARTS) else OTHERS) + general
+
+
+def of_name(known: KnownName, tier: float) -> Draft:
+    kind, described = str(known.symbol.kind), partial(about, known.symbol)
+    return Draft(known.name, kind, tier, detail=detail(known), describe=described)
 
 
 def detail(known: KnownName) -> str:
@@ -84,44 +91,24 @@ def about(symbol: Symbol) -> str:
     return of_entry(entry) if entry is not None else ""
 
 
-# --- Callables -------------------------------------------------------------------------------------
-
-
 def calls(context: Context) -> Iterator[Draft]:
     """Yields the callables that give a value."""
-    is_whole = _is_whole_value(context)
+    is_whole = isinstance(context.site.parent(), ast.Assign) and not context.in_items  # as in `rim = …`
     for name, alias in context.callables():
-        found = context.scope.called(name)
-        if found is None or all(s.kind is ast.ConstraintDefinition for s in found[1]):
-            continue
-        yield call(context, name, found[1], _call_tier(context, found[1], is_whole), alias)
+        signatures = context.called(name)
+        if any(s.kind is not ast.ConstraintDefinition for s in signatures):
+            yield call(context, name, signatures, _call_tier(context, signatures, is_whole), alias)
     words = vocabulary()
-    shapes = (*words.primitives, *words.shapes, *words.operations)
-    groups: list[tuple[Sequence[str], bool]] = [
-        (shapes, True),
-        (words.templates, True),
-        (words.exactness, False),
-        (words.functions, False),
-        (words.built_in, False),
-    ]
-    for names, makes in groups:
-        for name in names:
-            found = context.scope.called(name)
-            if found is None or not _belongs(context, name):
-                continue
-            if makes and not is_whole and not _takes_things(context):
-                continue
-            yield call(context, name, found[1], _call_tier(context, found[1], is_whole and makes))
-
-
-def _is_whole_value(context: Context) -> bool:
-    """True if the place is the whole value of a name: `rim = …`."""
-    above = context.site.parent()
-    return isinstance(above, ast.Assign) and not context.in_items
+    makers = (*words.primitives, *words.shapes, *words.operations, *words.templates)
+    for name in (*makers, *words.exactness, *words.functions, *words.built_in):
+        signatures, makes = context.called(name), name in makers
+        if not signatures or not _belongs(context, name):
+            continue
+        if not makes or is_whole or _takes_things(context):
+            yield call(context, name, signatures, _call_tier(context, signatures, is_whole and makes))
 
 
 def _takes_things(context: Context) -> bool:
-    """True if geometry may stand at the place."""
     kinds = context.wanted.types
     things = (GeometryType, StructureType, ListType, AnyType)
     if context.call is None:
@@ -180,27 +167,21 @@ def result_type(context: Context, signature: Signature) -> Type:
 def call(
     context: Context, name: str, signatures: Sequence[Signature], tier: float, alias: Symbol | None = None
 ) -> Draft:
-    text, is_snippet = called(context, name, signatures)
-    return Draft(
-        name,
-        str(kind_of(signatures[0])) if alias is None else str(SymbolKind.ALIAS),
-        tier,
-        text,
-        brief(signatures),
-        is_snippet,
-        describe=partial(about_call, name, tuple(signatures)),
-    )
+    kind = SymbolKind.ALIAS if alias is not None else kind_of(signatures[0])
+    return of_call(name, kind, tier, called(context, name, signatures), signatures)
 
 
-def called(
-    context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0
-) -> tuple[str, bool]:
-    """Returns the text of a call, and True for a snippet; the name alone before an existing `(`."""
+def of_call(name: str, kind: str, tier: float, text: str, signatures: Sequence[Signature]) -> Draft:
+    described = partial(of_callable, name, tuple(signatures))
+    return Draft(name, str(kind), tier, text, brief(signatures), "$" in text, describe=described)
+
+
+def called(context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0) -> str:
+    """Returns the text of a call, a snippet if it takes something; the name alone before an existing `(`."""
     if context.site.following.startswith("("):
-        return name, False
-    if all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures):
-        return f"{name}()", False
-    return f"{name}($1)", True
+        return name
+    is_bare = all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures)
+    return f"{name}()" if is_bare else f"{name}($1)"
 
 
 def brief(signatures: Sequence[Signature]) -> str:
@@ -224,10 +205,6 @@ def kind_of(signature: Signature) -> SymbolKind:
             return SymbolKind.FUNCTION
 
 
-def about_call(name: str, signatures: tuple[Signature, ...]) -> str:
-    return of_callable(name, signatures)
-
-
 # --- Completion of definitions in other files of the workspace, each with its import.
 
 MOST_FILES = 40
@@ -246,7 +223,7 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
         except FileError:
             continue  # gone since, or unreadable: an import of it would report that
         for node in definitions(name, text):
-            if context.scope.called(node.name.text) is None and _may_stand(context, node):
+            if not context.called(node.name.text) and _may_stand(context, node):
                 yield _draft(context, name, node)
 
 
@@ -265,9 +242,7 @@ def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
 
 
 def _may_stand(context: Context, node: ast.Callable) -> bool:
-    """Tells whether a definition fits the place: constraints among constraints, elsewhere callables that give
-    a value.
-    """
+    """Tells whether a definition fits: constraints among constraints, what gives a value elsewhere."""
     is_demand = context.use is Use.CONSTRAINT
     return isinstance(node, ast.ConstraintDefinition) == is_demand or isinstance(node, ast.FunctionDefinition)
 
@@ -275,16 +250,11 @@ def _may_stand(context: Context, node: ast.Callable) -> bool:
 def _draft(context: Context, file: str, node: ast.Callable) -> Draft:
     name = node.name.text
     made = signature(node)
-    text, is_snippet = called(context, name, [made])
-    return Draft(
-        name,
-        str(kind_of(made)),
-        _TIER,
-        text,
-        f'{brief([made])} from "{file}"',
-        is_snippet,
-        (_import(context, file, name),),
-        partial(of_definition, node),
+    return replace(
+        of_call(name, kind_of(made), _TIER, called(context, name, [made]), [made]),
+        detail=f'{brief([made])} from "{file}"',
+        extra=(_import(context, file, name),),
+        describe=partial(of_definition, node),
     )
 
 
@@ -300,9 +270,215 @@ def _import(context: Context, file: str, name: str) -> Edit:
     if imports:
         end = imports[-1].span.end
         return insert(view.source, end, f"\n{statement}")
-    return insert(view.source, int(_has_mark(view.source.text)), f"{statement}\n")
+    return insert(view.source, int(view.source.text.startswith("\ufeff")), f"{statement}\n")
 
 
-def _has_mark(text: str) -> bool:
-    """True for a text that begins with a byte order mark, which stays first."""
-    return text.startswith("\ufeff")
+# --- The kinds of things that each constraint takes, from the reference's table of all pairs.
+#
+# That table was made by compiling a program for each of its cells.
+
+_TABLE = "docs/reference/coverage.md"
+_FORM = re.compile(r"^`([^`]+)`(?:: (.*))?$")
+_ROW = re.compile(r"^\| \*\*(\w+)\*\* \|(.*)\|$")
+_MARK = "●"
+_HEAD = "| a ╲ b |"
+
+
+@record()
+class Form:
+    """A form of a constraint, and the kinds of things (a, b) that it takes; of a single one b is ""."""
+
+    name: str
+    text: str
+    pairs: frozenset[tuple[str, str]]
+
+
+@cache
+def forms() -> Mapping[str, tuple[Form, ...]]:
+    """Returns the forms of each constraint of the library, in the order of the reference."""
+    return read(resource(_TABLE).read_text("utf-8"))
+
+
+@cache
+def kinds() -> tuple[str, ...]:
+    """Returns the kinds of things, as the heads of the tables name them."""
+    lines = resource(_TABLE).read_text("utf-8").splitlines()
+    head = next(line for line in lines if line.startswith(_HEAD))
+    return tuple(cell.strip() for cell in head.removeprefix(_HEAD).removesuffix("|").split("|"))
+
+
+def read(page: str) -> Mapping[str, tuple[Form, ...]]:
+    found: dict[str, list[Form]] = {}
+    name = ""
+    for line in page.splitlines():
+        if line.startswith("## "):
+            name = line[3:].strip()
+        elif name and (form := _FORM.match(line)):
+            found.setdefault(name, []).append(Form(name, form[1], _told(form[2] or "")))
+        elif name in found and (row := _ROW.match(line)):
+            cells = [cell.strip() == _MARK for cell in row[2].split("|")]
+            more = {(row[1], kind) for kind, works in zip(kinds(), cells, strict=True) if works}
+            last = found[name][-1]
+            found[name][-1] = Form(last.name, last.text, last.pairs | more)
+    return {name: tuple(listed) for name, listed in found.items()}
+
+
+def _told(words: str) -> frozenset[tuple[str, str]]:
+    if words.startswith("any two"):
+        but = {word.strip() for word in re.split(r", but no | and no ", words)[1:]}
+        left = [kind for kind in kinds() if kind not in but]
+        return frozenset((a, b) for a in left for b in left)
+    return frozenset((kind, "") for kind in re.split(r",\s*", words) if kind in kinds())
+
+
+def thing_kind(fact: Fact) -> str:
+    """Returns the kind of a thing in that table; "" for a thing that is not in it."""
+    return _kind(fact.type, is_unknown=bool(fact.reads))
+
+
+def _kind(kind: Type, *, is_unknown: bool) -> str:
+    match kind:
+        case PointType():
+            return "point" if is_unknown else ""
+        case GeometryType(name) if name in kinds():
+            return name
+        case GeometryType():
+            return "shape"
+        case StructureType():
+            return "structure"
+        case ListType():
+            return "list" if is_unknown else ""
+        case NumberType():
+            return "number" if is_unknown else ""
+        case _:
+            return ""
+
+
+_FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
+_MOST_NAMES = 8
+_FEW_PAIRS = 40
+"""Most pairs of kinds that a specific constraint takes; a constraint with more takes nearly all."""
+_LETTER = re.compile(r"\b([abpq]|box)\b(?!\()|(?<![\w.])(\d+)(?=deg\b|\b)")
+
+
+def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
+    """Yields all constraints possible here; `behind` is added to each tier."""
+    things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
+    for name, alias in context.callables():
+        signatures = context.called(name)
+        if any(s.kind is ast.ConstraintDefinition for s in signatures):
+            yield _own(context, name, signatures, things, behind + _BARE * (alias is not None))
+    words = vocabulary()
+    table = forms()
+    for name in (*words.constraints, *words.relations, *(n for n in table if n in words.functions)):
+        if signatures := context.called(name):
+            yield _standard(context, name, signatures, table.get(name, ()), things, behind)
+
+
+def _latest(things: Sequence[KnownName]) -> list[KnownName]:
+    counts: Counter[str] = Counter()
+    found = []
+    for known in reversed(things):
+        kind = thing_kind(known.fact)
+        counts[kind] += 1
+        if counts[kind] <= _MOST_NAMES:
+            found.append(known)
+    return found[::-1]
+
+
+def _is_self(known: KnownName) -> bool:
+    return known.symbol.kind is SymbolKind.BUILTIN or known.symbol.scope is None
+
+
+def _standard(
+    context: Context,
+    name: str,
+    signatures: Sequence[Signature],
+    listed: Sequence[Form],
+    things: Sequence[KnownName],
+    behind: float,
+) -> Draft:
+    best = min(((_form_tier(form, things), n, form) for n, form in enumerate(listed)), default=None)
+    tier = _FITS_NOT if best is None else best[0]
+    text = f"{name}($1)" if best is None else _filled(best[2], things)
+    text = name if context.site.following.startswith("(") else text
+    return of_call(name, SymbolKind.CONSTRAINT, tier + behind, text, signatures)
+
+
+def _form_tier(form: Form, things: Sequence[KnownName]) -> float:
+    """Returns the tier of a form: a specific one whose things exist before one that takes anything."""
+    found = [
+        pair for a, b in _chosen(form, things) if (pair := (thing_kind(a.fact), b and thing_kind(b.fact)))
+    ]
+    if not found:
+        return _FITS_NOT + len(form.pairs) / 1000
+    if "structure" in found[0] and form.name in vocabulary().relations:
+        return _FITS_PARTS
+    return (_FITS if len(form.pairs) < _FEW_PAIRS else _FITS_ANY) + len(form.pairs) / 1000
+
+
+def _chosen(form: Form, things: Sequence[KnownName]) -> Iterator[tuple[KnownName, KnownName | None]]:
+    for number, a in enumerate(things):
+        first = thing_kind(a.fact)
+        if (first, "") in form.pairs:
+            yield a, None
+        for b in (*things[number + 1 :], *things[:number]):
+            if (first, thing_kind(b.fact)) in form.pairs:
+                yield a, b
+
+
+def _filled(form: Form, things: Sequence[KnownName]) -> str:
+    """Returns the form as a snippet, with names of things for its operands."""
+    pairs = list(_chosen(form, things))
+    firsts = list(dict.fromkeys(a.name for a, _ in pairs))[:_MOST_NAMES]
+    default = pairs[0][1] if pairs else None
+    seconds = [default.name] if default is not None else []
+    seconds += [b.name for _, b in pairs if b is not None]
+    letters = {"a": firsts, "b": list(dict.fromkeys(seconds))[:_MOST_NAMES]}
+    number = 0
+
+    def place(match: re.Match[str]) -> str:
+        nonlocal number
+        number += 1
+        word = match[0]
+        return choice(number, letters[word]) if letters.get(word) else stop(number, word)
+
+    head, bracket, rest = form.text.partition("(")
+    return head + bracket + _LETTER.sub(place, rest)
+
+
+def _own(
+    context: Context, name: str, signatures: Sequence[Signature], things: Sequence[KnownName], behind: float
+) -> Draft:
+    made = [_stated(name, signature, things) for signature in signatures]
+    text, fits = max(made, key=lambda m: m[1])
+    text = name if context.site.following.startswith("(") else text
+    tier = (_FITS if fits else _FITS_NOT) + behind
+    return of_call(name, SymbolKind.CONSTRAINT, tier, text, signatures)
+
+
+def _stated(name: str, signature: Signature, things: Sequence[KnownName]) -> tuple[str, bool]:
+    """Returns a call with the names of fitting things, and True if there are enough of them."""
+    items: list[str] = []
+    used: list[str] = []
+    fits = True
+    for parameter, kind, is_optional in signature.parameters:
+        if is_optional:
+            continue
+        number = len(items) + 1
+        if isinstance(kind, NumberType | TextType | TruthType):
+            items.append(f"{parameter}: {stop(number, parameter)}")
+            continue
+        fitting = [t.name for t in things if _takes(kind, t)]
+        ordered = sorted(fitting, key=used.count)[:_MOST_NAMES]
+        fits &= any(n not in used for n in fitting)
+        items.append(choice(number, ordered) if ordered else stop(number, parameter))
+        used += ordered[:1]
+    return f"{name}({', '.join(items)})", fits
+
+
+def _takes(kind: Type, thing: KnownName) -> bool:
+    if isinstance(kind, AnyType | ListType):
+        return True
+    distance = accepts(kind, thing.fact.type)
+    return distance is not None and not isinstance(thing.fact.type, AnyType)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import field, replace
 from functools import cached_property, lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,19 +16,20 @@ from numpy.typing import NDArray
 from aidl_lang import pipeline
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.lower import Lowered, lower
-from aidl_lang.building.model import Model
+from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.names import fold
 from aidl_lang.common.prose import first_few, shortest, ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Settings, Solution, Status, solve
-from aidl_lang.tools.ide.dragging.by_params import moved_by_params, turned
+from aidl_lang.syntax import ast
+from aidl_lang.tools.agents.workspace import RefusalError, edit_at
 from aidl_lang.tools.ide.dragging.mobility import (
     AXES,
     Grip,
-    Way,
     Ways,
     belongs,
     grips,
@@ -37,10 +40,226 @@ from aidl_lang.tools.ide.dragging.mobility import (
     ways,
 )
 from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
-from aidl_lang.tools.ide.references import Refusal
-from aidl_lang.tools.ide.workspace import View, edited, hasty
+from aidl_lang.tools.ide.references import CannotError
+from aidl_lang.tools.ide.workspace import View, edited, hasty, run
 
-# --- Pulls a point of a solved model towards a place with as little other motion as possible.
+# --- Points that follow a `param`: found by turning each param a little; the value wanted by a secant.
+
+MOST_KNOBS = 12
+_SECONDS = 0.6
+"""Time for trying all params once; the rest are not used for dragging."""
+_NUDGE = 1e-3
+"""Change of a param that shows what follows it, as a share of its range or value."""
+_FOLLOWS = 1e-2
+"""Least motion of a point that follows a param, mm per unit."""
+_LAZY = 0.1
+"""Motion per unit, mm, at which a param is preferred half as much as one with a large effect."""
+_ROUNDS = 3
+_BESIDE = 0.3
+"""Sine of the least angle between the ways of two params that count as different."""
+
+_KEPT = 16
+"""Most values of params whose places are kept for the next step of a drag."""
+Values: TypeAlias = frozenset[tuple[str, float]]
+"""Values of params by their paths."""
+
+
+def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]]:
+    """Returns the program with one or two params changed, the point, and the edits of their defaults."""
+    ways, tries = dict(slopes(view).get(grip, {})), _tries(view)
+    values: dict[str, float] = {}
+    at = _places(view).get(grip)
+    for _ in range(2):
+        if at is None or not ways or math.dist(at, to) <= step:
+            break
+        wanted = to[0] - at[0], to[1] - at[1]
+        best = max(ways, key=lambda path: _promise(tries.knobs[path], wanted, ways[path]))
+        way = ways.pop(best)
+        value = tries.value(grip, best, values, to, way, step)
+        if value is not None:
+            values[best] = value
+            at = tries.place(grip, values)
+            ways = {path: other for path, other in ways.items() if _is_beside(other, way)}
+    shown = tries.run(values)
+    at = _places(shown).get(grip)
+    if at is None:
+        raise CannotError("the program does not solve with the param turned that far")
+    try:
+        edits = tuple(edit for path, value in values.items() for edit in _set(view, path, value))
+    except RefusalError as refused:
+        raise CannotError(refused.diagnostics[0].message) from None
+    return shown, at, edits
+
+
+@lru_cache(maxsize=4)
+def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
+    """Returns for each point the params that it follows, with its velocity per unit of each."""
+    before, found = _places(view), dict[str, dict[str, Vec]]()
+    until = time.monotonic() + _SECONDS
+    for knob in list(_numeric(view))[:MOST_KNOBS] if before else ():
+        if time.monotonic() > until:
+            break
+        nudge = _nudge(knob)
+        for name, at in _turned(view, {knob.path: float(knob.value) + nudge}).items():
+            if name in before:
+                x, y = ((b - a) / nudge for a, b in zip(before[name], at, strict=True))
+                if is_somewhere((x, y)) and math.hypot(x, y) > _FOLLOWS:
+                    found.setdefault(name, {})[knob.path] = x, y
+    return found
+
+
+def _numeric(view: View) -> Iterator[Knob]:
+    """Yields the params with a number in the text of the view that are not set from outside."""
+    assert view.outcome is not None
+    given = {fold(name.strip()) for name in view.params or ()}
+    for knob in view.outcome.knobs:
+        is_number = isinstance(knob.value, float) and not knob.choices
+        if is_number and _declaration(view, knob) is not None and fold(knob.path) not in given:
+            yield knob
+
+
+def _declaration(view: View, knob: Knob) -> ast.Param | None:
+    if knob.span is None or knob.span.source is not view.source:
+        return None
+    if (node := view.params_written.get(knob.span)) is None:
+        return None
+    number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
+    return node if isinstance(number, ast.Number) else None
+
+
+def _set(view: View, path: str, value: float) -> Iterator[Edit]:
+    """Yields the edits that set a param. Raises RefusalError for a value that does not fit."""
+    for knob in view.outcome.knobs if view.outcome is not None else ():
+        declared = _declaration(view, knob)
+        if knob.path == path and declared is not None:
+            yield edit_at(knob, declared, value)
+
+
+def _nudge(knob: Knob) -> float:
+    value = float(knob.value)
+    if knob.low is None or knob.high is None:
+        return knob.step or _NUDGE * max(1.0, abs(value))
+    nudge = knob.step or _NUDGE * (knob.high - knob.low) or _NUDGE
+    return nudge if value + nudge <= knob.high else -nudge
+
+
+def _places(view: View) -> dict[str, Vec]:
+    """Returns all points; none of a program that does not solve."""
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+        return {}
+    return {grip.id: grip.at(outcome.evaluate) for grip in grips(outcome.built)}
+
+
+def _turned(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
+    """Returns all points with other values of params; none if that does not solve."""
+    found = pipeline.placed(view.program, {**(view.params or {}), **values})
+    return {} if found is None else {grip.id: grip.at(found[1]) for grip in grips(found[0])}
+
+
+class _Tries:
+    """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
+
+    def __init__(self, view: View) -> None:
+        assert view.outcome is not None
+        self.view = view
+        self.knobs = {knob.path: knob for knob in reversed(view.outcome.knobs)}
+        self._shown: dict[Values, View] = {}
+        self._places: dict[Values, Mapping[str, Vec]] = {}
+
+    def run(self, values: Mapping[str, float]) -> View:
+        """Returns the view with these values, drawn."""
+        key = frozenset(values.items())
+        if key not in self._shown:
+            shown = run(self.view, self.view, params={**(self.view.params or {}), **values}, settings=hasty())
+            self._shown = {key: shown}
+        return self._shown[key]
+
+    def place(self, grip: str, values: Mapping[str, float], *, likely: bool = False) -> Vec | None:
+        """Returns a point's place with these values, None if unsolved. `likely` ones will be shown."""
+        key = frozenset(values.items())
+        if key not in self._places:
+            is_shown = likely or key in self._shown
+            found = _places(self.run(values)) if is_shown else _turned(self.view, values)
+            self._places = {**dict(list(self._places.items())[1 - _KEPT :]), key: found}
+        return self._places[key].get(grip)
+
+    def nearest(self, grip: str, path: str, values: Mapping[str, float], to: Vec) -> tuple[float, Vec] | None:
+        """Returns the value of a param, beside others, that brought a point nearest to a place; and where."""
+        beside = frozenset((other, value) for other, value in values.items() if other != path)
+        known = [
+            (value, at)
+            for key, places in self._places.items()
+            if (at := places.get(grip)) is not None and beside <= key and len(key) == len(beside) + 1
+            for name, value in key - beside
+            if name == path
+        ]
+        return min(known, key=lambda each: math.dist(each[1], to), default=None)
+
+    def value(
+        self, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
+    ) -> float | None:
+        """Returns the value that brings a point nearest to a place along its way; None if no other solves."""
+        knob, slope = self.knobs[path], math.hypot(*way)
+        value, best = float(knob.value), None
+        at = self.place(grip, values) if values else _places(self.view).get(grip)
+        if (known := self.nearest(grip, path, values, to)) is not None:
+            value, at = known
+            best = value
+        for _ in range(_ROUNDS):
+            if at is None:
+                break
+            off = _along((to[0] - at[0], to[1] - at[1]), way)
+            if best is not None and abs(off) <= step:
+                break
+            aimed = _rounded(knob, _clamped(knob, value + off / slope), step / slope)
+            if aimed == value:
+                break
+            before, value = (value, at), aimed
+            at = self.place(grip, {**values, path: value}, likely=best is not None)
+            if at is not None:
+                best = value
+                gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
+                slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
+        return None if best == float(knob.value) else best
+
+
+@lru_cache(maxsize=4)
+def _tries(view: View) -> _Tries:
+    return _Tries(view)
+
+
+def _promise(knob: Knob, wanted: Vec, way: Vec) -> float:
+    """Returns how far a param could move a point along a way in its range, weighted by effect per unit."""
+    slope, along, value = math.hypot(*way), _along(wanted, way), float(knob.value)
+    room = abs(_clamped(knob, value + along / slope) - value) * slope
+    return min(abs(along), room) * slope / (slope + _LAZY)
+
+
+def _clamped(knob: Knob, value: float) -> float:
+    low = -math.inf if knob.low is None else knob.low
+    high = math.inf if knob.high is None else knob.high
+    return min(max(value, low), high)
+
+
+def _rounded(knob: Knob, value: float, tolerance: float) -> float:
+    """Rounds a value to the steps of a param, or to few digits; keeps the ends of its range."""
+    if value in (knob.low, knob.high):
+        return value
+    if knob.step:
+        start = knob.low or 0.0
+        value = start + round((value - start) / knob.step) * knob.step
+        return _clamped(knob, float(shortest(value, 1e-9)))
+    return _clamped(knob, float(shortest(value, abs(tolerance) / 2)))
+
+
+def _along(v: Vec, way: Vec) -> float:
+    return (v[0] * way[0] + v[1] * way[1]) / math.hypot(*way)
+
+
+def _is_beside(a: Vec, b: Vec) -> bool:
+    return abs(a[0] * b[1] - a[1] * b[0]) > _BESIDE * math.hypot(*a) * math.hypot(*b)
+
 
 _WEIGHT = 1e4
 """Weight of the wish that moves the point, beside the preferences of the program."""
@@ -49,92 +268,6 @@ _DEAR = 1e-3
 _CHANGED = 1e-9
 _THERE = 1e-6
 _SETTINGS = Settings(tolerance=1e-10, seconds=1.0, explain=False)
-
-
-@record()
-class Pull:
-    """The drag of one point, and the numbers that may change by it.
-
-    way      how the point can go, and `pin` the point that stays meanwhile
-    written  numbers in the text; `movable` those and what follows them
-    sizes    kept sizes that are to change; positions then only follow
-    """
-
-    grip: Grip
-    way: Way
-    pin: Grip | None
-    written: AbstractSet[Unknown]
-    movable: AbstractSet[Unknown]
-    sizes: AbstractSet[Unknown]
-
-
-def pulled(outcome: Compiled, pull: Pull, to: Vec) -> tuple[Compiled, Vec] | None:
-    """Returns the outcome with the point as near to a place as it can come, and its place; None if the
-    constraints do not hold then. Unknowns without a number in the text move only if nothing else will do.
-    Raises TooLongError.
-    """
-    if outcome.built is None or outcome.evaluate is None:
-        return None
-    lowered = lower(_wishing(outcome.built, outcome.evaluate, pull, to))
-
-    def off(found: tuple[Solution, Vec]) -> float:
-        x, y = found[1][0] - to[0], found[1][1] - to[1]
-        return max(abs(u * x + v * y) for u, v in pull.way.directions)
-
-    found: list[tuple[Solution, Vec]] = []
-    for loose in (pull.written, pull.movable):
-        if (each := _solved(lowered, outcome.evaluate, pull, loose)) is not None:
-            found.append(each)
-            if off(each) <= _THERE:
-                break
-    best = min(found, key=lambda each: round(off(each), 6), default=None)
-    return (pipeline.redrawn(outcome, lowered, best[0]), best[1]) if best is not None else None
-
-
-def _wishing(model: Model, evaluate: Evaluator, by: Pull, to: Vec) -> Model:
-    """Returns the model with the wish that moves the point, and the pin that holds another."""
-    more = [pull(model, by.grip, by.way.directions, to, _WEIGHT)]
-    if by.pin is not None:
-        more.append(pull(model, by.pin, AXES, by.pin.at(evaluate), None))
-    return replace(model, constraints=[*model.constraints, *more])
-
-
-def _solved(
-    lowered: Lowered, evaluate: Evaluator, by: Pull, loose: AbstractSet[Unknown]
-) -> tuple[Solution, Vec] | None:
-    """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
-    point's place. All is solved at once, since it all holds as it is.
-    """
-    problem, at = lowered.problem, values_at(lowered, evaluate)
-    resized, said = _are(lowered, by.sizes), _are(lowered, by.written) & ~problem.kept
-    free = resized | (_are(lowered, loose) & ~problem.kept)
-    leads = resized if by.sizes else said
-    flat = replace(
-        problem,
-        initial=at,
-        scale=np.where(leads, 1.0, _DEAR) * problem.scale,
-        kept=~free,
-        group=np.zeros(len(at), dtype=np.intp),
-        frame_of=np.full(len(at), -1),
-        parent=np.array([-1]),
-        holder=np.zeros_like(problem.holder),
-        named=False,
-        standing=_are(lowered, frozenset()),
-        spanned=_are(lowered, frozenset()),
-        thing=np.zeros(len(at), dtype=np.intp),
-        observables=(),
-    )
-    solution = solve(flat, _SETTINGS)
-    place = by.grip.at(Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))))
-    if solution.status is not Status.SOLVED or not is_somewhere(place):
-        return None
-    guessed = np.array([u.guess for u in lowered.unknowns])
-    changed = problem.kept & (np.abs(solution.values - guessed) > _CHANGED * problem.scale)
-    return replace(solution, changed=tuple(np.flatnonzero(changed).tolist())), place
-
-
-def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
-    return np.array([u in unknowns for u in lowered.unknowns], dtype=np.bool_)
 
 
 # A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; its
@@ -171,9 +304,7 @@ class Handle:
 
 @record()
 class Dragged:
-    """The result of dragging a point: `view` is the program as shown meanwhile, `at` the place of the point.
-    `edits` are tried, which takes longer than the rest.
-    """
+    """A dragged point: `view` is the program meanwhile, `at` the point's place; `edits` take longer."""
 
     view: View
     at: Vec
@@ -183,154 +314,141 @@ class Dragged:
     _settled: tuple[Edit, ...] | None = field(default=None, repr=False)
 
     @cached_property
-    def edits(self) -> tuple[Edit, ...] | Refusal:
-        """Returns the edits that keep the point there: only the numbers that changed."""
-        if self._settled is not None:
-            return self._settled
-        return _edits(self._origin, self)
+    def edits(self) -> tuple[Edit, ...]:
+        """Returns the edits that keep the point there: only the numbers that changed. Raises CannotError."""
+        return self._settled if self._settled is not None else _edits(self._origin, self)
 
 
-def handles(view: View, *, params: bool = True) -> list[Handle]:
-    """Returns the points that can be dragged; without `params`, only those found without further runs."""
-    found = [*_by_numbers(view)]
-    if params and view.outcome is not None and view.outcome.built is not None:
-        taken = {handle.id for handle in found if not _is_slide(view, handle.id)}
-        known = moved_by_params(view, _grips(view))
-        by_param = [
-            Handle(grip.id, grip.path, at, "param", _by_param(grip, known[grip.id]))
-            for grip, at in _places(view)
-            if grip.id in known and grip.id not in taken
-        ]
-        found = [h for h in found if h.id not in known or h.id in taken] + by_param
-        found = [h for h in found if not _is_slide(view, h.id) or h.moves == "param" or _slides(view, h.id)]
-    return _outermost(view, found)
+@record(eq=False)
+class _Hold:
+    """What can be taken hold of in a solved view, and the numbers that move it."""
 
+    view: View
+    outcome: Compiled
+    model: Model
+    evaluate: Evaluator
 
-def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refusal:
-    """Returns the program with a point dragged as near to a place as it can come."""
-    if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
-        return Refusal("that place is too far away")
-    if not (math.isfinite(step) and step > 0):
-        return Refusal("the step is a length")
-    found = next((h for h in handles(view) if h.id == handle), None)
-    grip = next((g for g in _grips(view) if g.id == handle), None)
-    if found is None or grip is None:
-        return Refusal("there is nothing to drag by this name")
-    if found.moves == "param":
-        turn = turned(view, grip, to, step)
-        if isinstance(turn, Refusal):
-            return turn
-        shown, at, edits = turn
-        return Dragged(shown, at, view, grip, step, edits)
-    return _pulled(view, grip, to, step)
+    @cached_property
+    def editable(self) -> list[Guess]:
+        """The numbers that dragging may write."""
+        return [guess for guess in guesses(self.view) if not guess.is_shared]
 
+    @cached_property
+    def written(self) -> frozenset[Unknown]:
+        return frozenset(u for guess in self.editable for u in guess.unknowns)
 
-# --- What can be dragged -------------------------------------------------------------------------
+    @cached_property
+    def movable(self) -> frozenset[Unknown]:
+        return movable(self.model, self.evaluate, self.written)
 
+    @cached_property
+    def grips(self) -> dict[str, Grip]:
+        found = [grip for grip in grips(self.model) if not grip.is_frame or grip.frame & self.written]
+        return {grip.id: grip for grip in sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS]}
 
-def _grips_of(view: View) -> dict[str, Grip]:
-    return {grip.id: grip for grip in _grips(view)}
+    @cached_property
+    def places(self) -> list[tuple[Grip, Vec]]:
+        placed = ((grip, grip.at(self.evaluate)) for grip in self.grips.values())
+        return [(grip, at) for grip, at in placed if is_somewhere(at)]
 
+    @cached_property
+    def ways(self) -> Ways:
+        found = [grip for grip, _ in self.places]
+        return ways(self.model, found, self.evaluate, self.written, self.movable)
 
-@lru_cache(maxsize=4)
-def _grips(view: View) -> tuple[Grip, ...]:
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.status != "solved" or view.is_stale:
-        return ()
-    written = _written(view)
-    found = [grip for grip in grips(outcome.built) if not grip.is_frame or grip.frame & written]
-    return tuple(sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS])
+    def by_numbers(self) -> Iterator[Handle]:
+        known = self.ways
+        for grip, at in self.places:
+            name = _name(grip)
+            if grip.id in known.own:
+                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
+            elif grip.id in known.sizes:
+                yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
+            elif grip.id in known.whole:
+                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
 
+    def is_slide(self, handle: str) -> bool:
+        """True for a point that moves only with everything else."""
+        known = self.ways
+        return handle in known.whole and handle not in known.own and handle not in known.sizes
 
-def _places(view: View) -> Iterator[tuple[Grip, Vec]]:
-    outcome = view.outcome
-    if outcome is not None and outcome.evaluate is not None:
-        for grip in _grips(view):
-            at = grip.at(outcome.evaluate)
-            if is_somewhere(at):
-                yield grip, at
+    def slides(self, handle: str) -> bool:
+        """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway."""
+        directions = self.ways.whole[handle].directions
+        if directions not in self._tried:
+            self._tried[directions] = self._can_slide(directions)
+        return self._tried[directions]
 
+    @cached_property
+    def _tried(self) -> dict[tuple[Vec, ...], bool]:
+        return {}
 
-@lru_cache(maxsize=4)
-def _ways(view: View) -> Ways:
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return Ways()
-    found = [grip for grip, _ in _places(view)]
-    return ways(outcome.built, found, outcome.evaluate, _written(view), _movable(view))
-
-
-@lru_cache(maxsize=4)
-def _editable(view: View) -> tuple[Guess, ...]:
-    """Returns the numbers that dragging may write."""
-    return tuple(guess for guess in guesses(view) if not guess.is_shared)
-
-
-@lru_cache(maxsize=4)
-def _written(view: View) -> frozenset[Unknown]:
-    return frozenset(u for guess in _editable(view) for u in guess.unknowns)
+    def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
+        """Tries it with one of the points that move along some directions: all of them move alike."""
+        for grip, (x, y) in self.places:
+            way = self.ways.whole.get(grip.id)
+            if way is not None and way.directions == directions and self.is_slide(grip.id):
+                dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
+                try:
+                    return bool(_pulled(self, grip, (x + dx, y + dy), STEP).edits)
+                except CannotError:
+                    return False
+        return False
 
 
 @lru_cache(maxsize=4)
-def _movable(view: View) -> frozenset[Unknown]:
+def _hold(view: View) -> _Hold | None:
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return frozenset()
-    return movable(outcome.built, outcome.evaluate, _written(view))
+        return None
+    is_shown = outcome.status == "solved" and not view.is_stale
+    return _Hold(view, outcome, outcome.built, outcome.evaluate) if is_shown else None
 
 
-def _by_numbers(view: View) -> Iterator[Handle]:
-    known = _ways(view)
-    for grip, at in _places(view):
-        name = _name(grip)
-        if grip.id in known.own:
-            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
-        elif grip.id in known.sizes:
-            yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
-        elif grip.id in known.whole:
-            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
-
-
-def _is_slide(view: View, handle: str) -> bool:
-    """True for a point that moves only with everything else."""
-    known = _ways(view)
-    return handle in known.whole and handle not in known.own and handle not in known.sizes
-
-
-def _slides(view: View, handle: str) -> bool:
-    """Tells whether numbers of the text hold the whole drawing where a point is dragged: often there are
-    some, and the solver puts it back all the same.
-    """
-    return _can_slide(view, _ways(view).whole[handle].directions)
-
-
-@lru_cache(maxsize=16)
-def _can_slide(view: View, directions: tuple[Vec, ...]) -> bool:
-    """Tries it with one of the points that move along some directions: all of them move alike."""
-    known = _ways(view)
-    for grip, (x, y) in _places(view):
-        way = known.whole.get(grip.id)
-        if way is None or way.directions != directions or not _is_slide(view, grip.id):
-            continue
-        dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
-        dragged = _pulled(view, grip, (x + dx, y + dy), STEP)
-        return isinstance(dragged, Dragged) and not isinstance(dragged.edits, Refusal)
-    return False
-
-
-def _outermost(view: View, found: list[Handle]) -> list[Handle]:
-    """Returns one handle for each place, those of outer things first, and far ones before near ones."""
-    outcome = view.outcome
-    if outcome is None or outcome.model is None:
+def handles(view: View) -> list[Handle]:
+    """Returns the points that can be dragged."""
+    hold = _hold(view)
+    if hold is None:
         return []
-    depth = {grip.id: grip.depth for grip in _grips(view)}
-    box = outcome.model.root.box
+    found = list(hold.by_numbers())
+    taken = {handle.id for handle in found if not hold.is_slide(handle.id)}
+    known = slopes(view)
+    by_param = [
+        Handle(grip.id, grip.path, at, "param", _by_param(grip, known[grip.id]))
+        for grip, at in hold.places
+        if grip.id in known and grip.id not in taken
+    ]
+    found = [h for h in found if h.id not in known or h.id in taken] + by_param
+    found = [h for h in found if not hold.is_slide(h.id) or h.moves == "param" or hold.slides(h.id)]
+    return _outermost(hold, found)
+
+
+def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged:
+    """Returns the program with a point dragged as near to a place as it can come. Raises CannotError."""
+    if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
+        raise CannotError("that place is too far away")
+    if not (math.isfinite(step) and step > 0):
+        raise CannotError("the step is a length")
+    hold = _hold(view)
+    found = next((h for h in handles(view) if h.id == handle), None)
+    if hold is None or found is None:
+        raise CannotError("there is nothing to drag by this name")
+    grip = hold.grips[handle]
+    if found.moves != "param":
+        return _pulled(hold, grip, to, step)
+    shown, at, edits = turned(view, handle, to, step)
+    return Dragged(shown, at, view, grip, step, edits)
+
+
+def _outermost(hold: _Hold, found: list[Handle]) -> list[Handle]:
+    """Returns one handle for each place, those of outer things first, and far ones before near ones."""
+    depth = {grip.id: grip.depth for grip in hold.grips.values()}
+    box = hold.outcome.model.root.box if hold.outcome.model is not None else None
     middle = ((box.left + box.right) / 2, (box.bottom + box.top) / 2) if box is not None else (0.0, 0.0)
     kinds = ("guess", "size", "param")
-    slides = {handle.id for handle in found if _is_slide(view, handle.id)}
 
     def order(handle: Handle) -> tuple[float, ...]:
-        return handle.id in slides, kinds.index(handle.moves), depth[handle.id]
+        return hold.is_slide(handle.id), kinds.index(handle.moves), depth[handle.id]
 
     places: dict[tuple[float, float], Handle] = {}
     for handle in sorted(found, key=order):
@@ -344,92 +462,125 @@ def _name(grip: Grip) -> str:
     return f"{path}.{grip.name}" if grip.name else path
 
 
-def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
-    return f"{_name(grip)}: drag to change {first_few(ticked(params), _NAMED, ' or others', ' or ')}"
+def _by_param(grip: Grip, params: Iterable[str]) -> str:
+    names = ticked(path.rpartition(".")[2] for path in params)
+    return f"{_name(grip)}: drag to change {first_few(names, _NAMED, ' or others', ' or ')}"
 
 
-def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
-    outcome, known = view.outcome, _ways(view)
+# --- Pulls a point towards a place with as little other motion as possible.
+
+
+def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
+    """Returns the program with the point as near to a place as it can come. Unknowns without a number in the
+    text move only if nothing else will do.
+    """
+    known, evaluate = hold.ways, hold.evaluate
     way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
-    if outcome is None or way is None:
-        return Refusal("there is nothing to drag")
+    if way is None:
+        raise CannotError("there is nothing to drag")
     by_sizes = grip.id in known.sizes and grip.id not in known.own
-    written = _written(view)
-    sizes = frozenset(u for u in written if by_sizes and u.kept and belongs(u, grip.thing))
-    pin = _grips_of(view).get(way.pin or "")
+    sizes = frozenset(u for u in hold.written if by_sizes and u.kept and belongs(u, grip.thing))
+    more = [pull(hold.model, grip, way.directions, to, _WEIGHT)]
+    if (pin := hold.grips.get(way.pin or "")) is not None:  # a point that stays meanwhile
+        more.append(pull(hold.model, pin, AXES, pin.at(evaluate), None))
+    lowered = lower(replace(hold.model, constraints=[*hold.model.constraints, *more]))
+
+    def off(found: tuple[Solution, Vec]) -> float:
+        x, y = found[1][0] - to[0], found[1][1] - to[1]
+        return max(abs(u * x + v * y) for u, v in way.directions)
+
+    found: list[tuple[Solution, Vec]] = []
+    for loose in (hold.written, hold.movable):
+        if (each := _solved(hold, lowered, grip, sizes, loose)) is not None:
+            found.append(each)
+            if off(each) <= _THERE:
+                break
+    if not found:
+        raise CannotError(f"`{_name(grip)}` cannot go there: the constraints would not hold")
+    solution, at = min(found, key=lambda each: round(off(each), 6))
     try:
-        found = pulled(outcome, Pull(grip, way, pin, written, _movable(view), sizes), to)
+        shown = pipeline.redrawn(hold.outcome, lowered, solution)
     except TooLongError as reason:
-        return Refusal(str(reason))
-    if found is None:
-        return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
-    shown, at = found
-    return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
+        raise CannotError(str(reason)) from None
+    return Dragged(replace(hold.view, outcome=shown, drawn=shown), at, hold.view, grip, step)
 
 
-# --- Writing it into the text --------------------------------------------------------------------
+def _solved(
+    hold: _Hold, lowered: Lowered, grip: Grip, sizes: AbstractSet[Unknown], loose: AbstractSet[Unknown]
+) -> tuple[Solution, Vec] | None:
+    """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
+    point's place. All is solved at once, since it all holds as it is. With sizes, positions only follow.
+    """
+    problem, at = lowered.problem, values_at(lowered, hold.evaluate)
+    resized, said = _are(lowered, sizes), _are(lowered, hold.written) & ~problem.kept
+    free = resized | (_are(lowered, loose) & ~problem.kept)
+    flat = replace(
+        problem,
+        initial=at,
+        scale=np.where(resized if sizes else said, 1.0, _DEAR) * problem.scale,
+        kept=~free,
+        group=np.zeros(len(at), dtype=np.intp),
+        frame_of=np.full(len(at), -1),
+        parent=np.array([-1]),
+        holder=np.zeros_like(problem.holder),
+        named=False,
+        standing=_are(lowered, frozenset()),
+        spanned=_are(lowered, frozenset()),
+        thing=np.zeros(len(at), dtype=np.intp),
+        observables=(),
+    )
+    solution = solve(flat, _SETTINGS)
+    place = grip.at(Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))))
+    if solution.status is not Status.SOLVED or not is_somewhere(place):
+        return None
+    guessed = np.array([u.guess for u in lowered.unknowns])
+    changed = problem.kept & (np.abs(solution.values - guessed) > _CHANGED * problem.scale)
+    return replace(solution, changed=tuple(np.flatnonzero(changed).tolist())), place
 
 
-def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
+def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
+    return np.array([u in unknowns for u in lowered.unknowns], dtype=np.bool_)
+
+
+# --- Writes it into the text.
+
+
+def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...]:
     """Returns the fewest and shortest numbers that place the point as shown."""
-    shown = dragged.view.outcome
+    hold, shown = _hold(view), dragged.view.outcome
+    assert hold is not None
     assert shown is not None
-    changed = _changed(view, shown)
-    if not changed:
-        return Refusal("no number of the text would change by it")
-    everything = [
-        (g, v)
-        for g in _editable(view)
-        if shown.evaluate is not None and (v := g.valued(shown.evaluate)) is not None
+    assert shown.evaluate is not None
+    everything = [(g, v) for g in hold.editable if (v := g.valued(shown.evaluate)) is not None]
+    changed = [
+        (guess, after)
+        for guess, after in everything
+        if (before := guess.valued(hold.evaluate)) is not None and abs(after - before) * guess.factor > _FINE
     ]
+    if not changed:
+        raise CannotError("no number of the text would change by it")
     for numbers in (changed, everything):
         for step in (dragged._step, _FINE):
-            edits = tuple(_written_as(view, numbers, step))
-            if edits and _comes_to(view, edits, dragged, 2 * max(step, _FINE * 10)):
+            texts = ((g, shortest(value, step / 2 / g.factor) + g.unit) for g, value in numbers)
+            edits = tuple(Edit(g.span, text) for g, text in texts if text != g.span.text)
+            if edits and _comes_to(hold, edits, dragged, 2 * max(step, _FINE * 10)):
                 return edits
-    return Refusal("no numbers in the text would hold it there")
+    raise CannotError("no numbers in the text would hold it there")
 
 
-def _changed(view: View, shown: Compiled) -> list[tuple[Guess, float]]:
-    """Returns the numbers that dragging changed, with their new values."""
-    assert view.outcome is not None
-    assert view.outcome.evaluate is not None
-    assert shown.evaluate is not None
-    found = []
-    for guess in _editable(view):
-        before, after = guess.valued(view.outcome.evaluate), guess.valued(shown.evaluate)
-        if before is not None and after is not None and abs(after - before) * guess.factor > _FINE:
-            found.append((guess, after))
-    return found
-
-
-def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> Iterator[Edit]:
-    for guess, value in numbers:
-        text = shortest(value, step / 2 / guess.factor) + guess.unit
-        if text != guess.span.text:
-            yield Edit(guess.span, text)
-
-
-def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
-    """Tells whether the edited text solves with the point where it was shown, without errors other than those
-    shown meanwhile.
-    """
-    again = edited(view, edits, hasty())
-    assert again.outcome is not None
-    assert view.outcome is not None
-    grip = _grips_of(again).get(dragged._grip.id)
-    if grip is None or again.outcome.evaluate is None:
+def _comes_to(hold: _Hold, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
+    """Tells whether the edited text solves with the point as shown, and with no further errors."""
+    again, shown = _hold(edited(hold.view, edits, hasty())), dragged.view.outcome
+    if again is None or shown is None or (grip := again.grips.get(dragged._grip.id)) is None:
         return False
-    errors = {d.code for d in again.outcome.errors}
-    shown = dragged.view.outcome
-    known = (*view.outcome.errors, *(shown.errors if shown is not None else ()))
-    if not errors <= {d.code for d in known}:
+    known = {d.code for d in (*hold.outcome.errors, *shown.errors)}
+    if not {d.code for d in again.outcome.errors} <= known:
         return False
-    if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
+    if math.dist(grip.at(again.evaluate), dragged.at) <= tolerance:
         return True
     # A drawing that the text does not place may move as a whole.
-    is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
-    return is_same_shape and not _is_slide(view, grip.id)
+    is_same_shape = is_same(shown, again.outcome, slid=True, tolerance=tolerance)
+    return is_same_shape and not hold.is_slide(grip.id)
 
 
 __all__ = ["MOST_HANDLES", "Dragged", "Handle", "drag", "grips", "handles", "is_somewhere"]

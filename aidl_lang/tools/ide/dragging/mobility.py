@@ -27,8 +27,6 @@ from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.gradients import components, linearise
 from aidl_lang.solver.problem import violations
 
-# --- The points of a drawing that somebody may want to take hold of.
-
 MOST_PARTS = 16
 """Points of one shape; of a shape with more, only those that it is made by."""
 
@@ -72,7 +70,11 @@ def grips(model: Model) -> Iterator[Grip]:
     """All points of a model by which it might be moved, in order of writing; none of copies."""
     for depth, structure in _structures(model.root, 0):
         if structure.parent is not None:
-            yield from _of_structure(model, structure, depth)
+            box = box_of(structure, model.root)
+            middle = box.field("center") if box is not None else None
+            if isinstance(middle, PointVal):
+                x, y = spelled_out(*xy(middle))
+                yield Grip(f"{structure.path} at", structure.path, "", x, y, structure, depth)
         for geometry in structure.own():
             if geometry.source is None and not geometry.construction:
                 yield from _of_geometry(model, geometry, depth)
@@ -83,15 +85,6 @@ def _structures(structure: Structure, depth: int) -> Iterator[tuple[int, Structu
         yield depth, structure
         for child in structure.children:
             yield from _structures(child, depth + 1)
-
-
-def _of_structure(model: Model, structure: Structure, depth: int) -> Iterator[Grip]:
-    """A structure by the middle of its box."""
-    box = box_of(structure, model.root)
-    middle = box.field("center") if box is not None else None
-    if isinstance(middle, PointVal):
-        x, y = spelled_out(*xy(middle))
-        yield Grip(f"{structure.path} at", structure.path, "", x, y, structure, depth)
 
 
 def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]:
@@ -106,7 +99,6 @@ def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]
 
 
 def _arguments(geometry: Geometry) -> Iterator[tuple[str, PointVal]]:
-    """The points that a compound shape is made by."""
     if isinstance(geometry.scope, Scope):
         for name in geometry.arguments:
             value = geometry.scope.values.get(name)
@@ -155,9 +147,7 @@ _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 @record()
 class Way:
-    """The motion of a point: along any of some directions (unit vectors, one or two), while another point, by
-    its id, stays, since otherwise everything would move along.
-    """
+    """The motion of a point along one or two unit vectors; the point `pin` stays, lest everything move."""
 
     directions: tuple[Vec, ...]
     pin: str | None = None
@@ -178,9 +168,7 @@ class Ways:
 
 
 def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
-    """Returns the wish that a point be somewhere, along some directions; without a weight, a hard
-    constraint.
-    """
+    """Returns the wish that a point be somewhere along some directions; hard without a weight."""
     rows = []
     for u, v in directions:
         x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)

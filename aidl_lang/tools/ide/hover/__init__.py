@@ -13,8 +13,14 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token, kind_of
 from aidl_lang.tools.ide.guesses import guesses
-from aidl_lang.tools.ide.hover.solved_values import Solved, solved_of
-from aidl_lang.tools.ide.hover.telling import compared, constraint_lines, lines, number_text
+from aidl_lang.tools.ide.hover.solved_values import (
+    Solved,
+    compared,
+    constraint_lines,
+    lines,
+    number_text,
+    solved_of,
+)
 from aidl_lang.tools.ide.references import Mention, chosen, mention_at, parameter_node
 from aidl_lang.tools.ide.signatures import (
     fenced,
@@ -36,10 +42,17 @@ from aidl_lang.tools.vocabulary import vocabulary
 # Each answer is Markdown with the place that it is about.
 
 _GUIDE = "`aidl guide` tells the language in a few pages."
-Description = tuple[str, Span]
 
 
-def of_word(view: View, offset: int) -> Description | None:
+@record()
+class Hover:
+    """`text` is Markdown, about what stands at `span`."""
+
+    text: str
+    span: Span
+
+
+def of_word(view: View, offset: int) -> Hover | None:
     """Describes a keyword, a kind, or the sign of a comparison."""
     token = token_at(view, offset)
     if token is None:
@@ -48,13 +61,13 @@ def of_word(view: View, offset: int) -> Description | None:
     words = vocabulary()
     if token.kind in words.comparisons:
         text = _compared(view, token)
-        return (text, span) if text else None
+        return Hover(text, span) if text else None
     word = token.text.strip("( \t")
     kind = kind_of(word)
     entry = reference().entries.get(kind or word)
     if entry is None or (token.kind == "NAME" and kind is None):
         return None
-    return (_keyword(entry), view.span(token.start, token.start + len(word)))
+    return Hover(_keyword(entry), view.span(token.start, token.start + len(word)))
 
 
 def _keyword(entry: Entry) -> str:
@@ -64,7 +77,6 @@ def _keyword(entry: Entry) -> str:
 
 
 def _compared(view: View, token: Token) -> str:
-    """Returns both sides of a comparison, and how well it holds."""
     path = around(view.module, token.start)
     node = path[-1]
     if not isinstance(node, ast.Comparison):
@@ -76,7 +88,7 @@ def _compared(view: View, token: Token) -> str:
     return joined([stated_at(view, node, path), listed(compared(solved, sides))])
 
 
-def of_attribute(view: View, offset: int) -> Description | None:
+def of_attribute(view: View, offset: int) -> Hover | None:
     """Describes the attribute after an `@`."""
     path = reversed(around(view.module, offset))
     stated = (ast.attributes(n) for n in path if isinstance(n, ast.Structure | ast.Assign | ast.Allowing))
@@ -86,10 +98,11 @@ def of_attribute(view: View, offset: int) -> Description | None:
         return None
     name = node.name.text
     entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")
-    return (_keyword(entry), view.span(node.span.start, node.name.span.end)) if entry is not None else None
+    span = view.span(node.span.start, node.name.span.end)
+    return Hover(_keyword(entry), span) if entry is not None else None
 
 
-def of_number(view: View, start: int) -> Description | None:
+def of_number(view: View, start: int) -> Hover | None:
     """Describes a number in mm or degrees, with its solved value."""
     path = around(view.module, start)
     node = path[-1]
@@ -103,7 +116,7 @@ def of_number(view: View, start: int) -> Description | None:
             many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
             change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
             blocks.append(f"`{guess.path}`{many}: {what}, {change}")
-    return (joined(blocks), node.span) if blocks else None
+    return Hover(joined(blocks), node.span) if blocks else None
 
 
 def _converted(node: ast.Number) -> Iterator[str]:
@@ -150,33 +163,15 @@ def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
     return ""
 
 
-_VALUES = frozenset(
-    (
-        SymbolKind.PARAM,
-        SymbolKind.LET,
-        SymbolKind.VAR,
-        SymbolKind.LOOP,
-        SymbolKind.ARGUMENT,
-        SymbolKind.GEOMETRY,
-        SymbolKind.STRUCTURE,
-        SymbolKind.FIELD,
-        SymbolKind.BUILTIN,
-    )
-)
-
-
-@record()
-class Hover:
-    """`text` is Markdown, about what stands at `span`."""
-
-    text: str
-    span: Span
+_VALUES = frozenset(SymbolKind) - {
+    *(SymbolKind.FUNCTION, SymbolKind.SHAPE, SymbolKind.CONSTRAINT, SymbolKind.TEMPLATE),
+    *(SymbolKind.ALIAS, SymbolKind.NAMESPACE, SymbolKind.WORD),
+}
+"""Kinds of names that have solved values."""
 
 
 def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
-    """Returns the hover for the word at an offset, or for the expression selected from there to `end`; None
-    for anything else.
-    """
+    """Returns the hover for the word at an offset, or for the expression from there to `end`."""
     if end is not None and end > offset:
         return _of_selection(view, offset, end)
     spot = spot_at(view, offset)
@@ -184,16 +179,11 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
-        told = of_number(view, token.start)
-    else:
-        told = of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
-    return Hover(*told) if told is not None else None
+        return of_number(view, token.start)
+    return of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
 
 
-# --- Names -----------------------------------------------------------------------------------------
-
-
-def _of_name_at(view: View, offset: int) -> Description | None:
+def _of_name_at(view: View, offset: int) -> Hover | None:
     mention = mention_at(view, offset)
     if mention is None:
         return None
@@ -204,18 +194,14 @@ def _of_name_at(view: View, offset: int) -> Description | None:
     elif isinstance(node, ast.Call):
         text = _of_call(view, node, path, mention.symbol)
     else:
-        text = _of_name(view, mention, path)
-    return (text, mention.span) if text else None
-
-
-def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    symbol = mention.symbol
-    blocks = [_headed(view, mention), _doc(symbol)]
-    if symbol.kind in _VALUES:
-        blocks.append(_values(view, mention, path))
-    elif mention.symbol.node is None:
-        blocks.append(of_public(symbol.name))
-    return joined(blocks)
+        symbol = mention.symbol
+        blocks = [_headed(view, mention), _doc(symbol)]
+        if symbol.kind in _VALUES:
+            blocks.append(_values(view, mention, path))
+        elif mention.symbol.node is None:
+            blocks.append(of_public(symbol.name))
+        text = joined(blocks)
+    return Hover(text, mention.span) if text else None
 
 
 def _headed(view: View, mention: Mention) -> str:
@@ -244,7 +230,6 @@ def _doc(symbol: Symbol) -> str:
 
 
 def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    """Returns the solved values of a name as a list."""
     solved = solved_of(view)
     if solved is None:
         return not_solved(view)
@@ -276,9 +261,7 @@ def _expression(mention: Mention) -> ast.Expression | None:
 
 
 def _body_path(mention: Mention, path: Sequence[ast.Node]) -> Sequence[ast.Node]:
-    """Returns the nodes around a name as its readers see them: the members of an array belong outside the
-    loop, and its variable to the turns of it.
-    """
+    """Returns the nodes around a name for its readers: an array is outside the loop, a variable in a turn."""
     symbol = mention.symbol
     if symbol.is_array and mention.is_declaration:
         loops = [n for n, node in enumerate(path) if isinstance(node, ast.For)]
@@ -297,11 +280,7 @@ def _range(symbol: Symbol) -> str:
     return f"May be set to {node.domain.span.one_line}{step}."
 
 
-# --- Calls -----------------------------------------------------------------------------------------
-
-
 def _of_call(view: View, call: ast.Call, path: Sequence[ast.Node], symbol: Symbol) -> str:
-    """Describes a call: its form first, then the name."""
     candidates = view.resolution.candidates.get(call, ())
     if not candidates:
         return ""
@@ -327,7 +306,6 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
 
 
 def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
-    """Describes a parameter's value; for the geometry made of it, the solved one."""
     solved = solved_of(view)
     made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
     if solved is None or made is None or argument.name is None:
@@ -341,11 +319,7 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     return joined([listed(told), failed(solved)])
 
 
-# --- Selections -----------------------------------------------------------------------------------
-
-
 def _of_selection(view: View, start: int, end: int) -> Hover | None:
-    """Returns the hover for the selected expression, ignoring blanks around it."""
     text = view.source.text[start:end]
     start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
     path = around(view.module, start)

@@ -25,19 +25,23 @@ from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.riding import Memory
 from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
+    FREEDOM,
+    LAYERS,
+    Arrow,
     DrawnElement,
     Elements,
+    Preview,
+    Turn,
+    Way,
+    Writer,
     box_of,
     curves_of,
     elements,
     elements_at,
     point_of,
 )
-from aidl_lang.tools.ide.preview.protocol import FREEDOM, LAYERS, Arrow, Preview, Turn, Way, Writer
 from aidl_lang.tools.ide.preview.sliders import conflicts, problems, set_knob, sliders, worked_out
 from aidl_lang.tools.ide.workspace import SETTINGS, View, hasty, run
-
-# --- Makes the preview of a view: a picture whose shapes say which element they are, and its data.
 
 # --- The remaining motions as arrows and arcs on the drawing.
 #
@@ -61,7 +65,7 @@ _SLOW = 1e-3
 
 
 def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
-    """Yields the motions of a solved model."""
+    """Yields the remaining motions of a solved model."""
     model = outcome.model
     if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
         return
@@ -127,7 +131,6 @@ class _Flow:
         return moving
 
     def _at(self, k: int) -> tuple[Expression, Expression]:
-        """Returns a point in the frame of the root."""
         if k not in self._in_root:
             _, structure, x, y = self._points[k]
             self._in_root[k] = convert(x, y, structure, self._model.root)
@@ -151,9 +154,7 @@ def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]
 
 @record()
 class _Thing:
-    """Moving points of one thing with a box. `velocity` is their mean; `spin` radians, about the `middle`, in
-    the same time.
-    """
+    """Moving points of a thing. `velocity` is their mean; `spin` radians about the `middle` in that time."""
 
     box: Bounds
     places: Sequence[Vec]
@@ -189,9 +190,7 @@ class _Thing:
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 
     def arrows(self, kind: str, slow: float) -> Iterator[Arrow]:
-        """Yields one arrow for a slide; for growth, arrows from its ends outwards. Points slower than `slow`
-        stand still.
-        """
+        """Yields an arrow for a slide; for growth, some outwards. Points slower than `slow` stand still."""
         if kind == "turn" or (kind == "together" and self.is_turning):
             return
         if kind in ("slide", "together") and math.hypot(*self.velocity) > slow:
@@ -233,7 +232,6 @@ class _Thing:
 
 
 def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]:
-    """Yields the things that move in a motion, if they have points and a place."""
     nudged = flow.nudged(motion)
     if nudged is None:
         return
@@ -256,8 +254,6 @@ def _mean(vectors: Sequence[Vec]) -> Vec:
 def _dot(a: Vec, b: Vec) -> float:
     return a[0] * b[0] + a[1] * b[1]
 
-
-# --- Makes the preview of a view: a picture whose shapes say which element they are, and its data.
 
 # --- The picture as SVG whose shapes say which element they are: `data-element`, a number of `elements`.
 #
@@ -286,7 +282,6 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
 
 
 def _numbered(group: Group, elements: Elements) -> Group:
-    """Returns the group of a structure with its number."""
     number = elements.number.get(group.attributes.get("data-path", ""))
     if number is None:
         return group
@@ -340,7 +335,6 @@ def _large_first(
 
 
 def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | None:
-    """Returns the area that a structure covers."""
     is_structure = isinstance(drawn.model, SolvedStructure)
     region = drawing.regions.get(drawn.element.path) if is_structure else None
     if not region:
@@ -361,7 +355,6 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
 
 
 def _drawn_dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
-    """Returns the dot of a point."""
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
 
@@ -390,8 +383,10 @@ def preview(
     drawn = view.drawn
     has_picture = drawn is not None and _is_anything_drawn(drawn)
     svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
+    # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
+    is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
     return Preview(
-        status=_status(view.outcome),
+        status=("wrong" if is_wrong else view.outcome.status),
         stale=has_picture and view.is_stale,
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
@@ -402,21 +397,14 @@ def preview(
         handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found, unpainted, tried=tried)),
         conflicts=tuple(conflicts(view, found)),
-        ways=tuple(_ways(view, found)) if FREEDOM in show else (),
+        motions=tuple(ways(view.outcome, found)) if FREEDOM in show and not view.is_stale else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
-
-
-def _status(outcome: Compiled) -> str:
-    """Returns how a program stands: one that solved may still be `wrong`, as when an `assert` fails."""
-    is_wrong = outcome.status == "solved" and bool(outcome.errors)
-    return "wrong" if is_wrong else outcome.status
 
 
 def _painted(
     drawn: Compiled, found: Elements, show: Collection[str]
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    """Returns the SVG; or, if painting takes too long, the diagnostics about that."""
     try:
         with within(drawn.limit, "painting"):
             return svg_of(drawn, found, set(show) & set(LAYERS)), ()
@@ -430,7 +418,6 @@ def with_handles(made: Preview, view: View) -> Preview:
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
-    """Yields those handles that still exist, at their present places."""
     outcome, wanted = view.outcome, {handle.id: handle for handle in known}
     if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
         return
@@ -445,12 +432,6 @@ def _is_anything_drawn(outcome: Compiled) -> bool:
     return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
 
 
-def _ways(view: View, found: Elements) -> Iterator[Way]:
-    """Yields the remaining motions; none for the picture of an earlier text."""
-    if view.outcome is not None and not view.is_stale:
-        yield from ways(view.outcome, found)
-
-
 def tried(
     view: View,
     knobs: Mapping[str, float | str | bool],
@@ -459,9 +440,7 @@ def tried(
     *,
     rests: bool = False,
 ) -> View:
-    """Returns the view with other values of some params; why they do not hold is explained if what changes
-    them `rests`. Raises Cancelled as `run` does.
-    """
+    """Returns the view with other params; failures are explained if what changes them `rests`."""
     how = settings if rests else hasty(settings)
     return run(view, view, memory, {**(view.params or {}), **knobs}, how)
 

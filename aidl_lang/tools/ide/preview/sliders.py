@@ -14,11 +14,8 @@ from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents import workspace
 from aidl_lang.tools.agents.workspace import refusal
-from aidl_lang.tools.ide.preview.elements import Elements, Places
-from aidl_lang.tools.ide.preview.protocol import Conflict, Party, Problem, Slider
+from aidl_lang.tools.ide.preview.elements import Conflict, Elements, Party, Places, Problem, Slider
 from aidl_lang.tools.ide.workspace import View, edited, hasty
-
-# --- The `param`s of a program as sliders, and edits that set their values in the text.
 
 Value: TypeAlias = float | str | bool
 
@@ -28,9 +25,7 @@ _SLACK = 1e-9
 
 
 def sliders(view: View) -> Iterator[Slider]:
-    """Yields the params of the text, in order of writing; of one too broken to have any, those of the
-    picture, which cannot be written.
-    """
+    """Yields the params in order of writing; of a broken text those of the picture, which are read only."""
     outcome, places = view.outcome, Places(view)
     known = outcome.knobs if outcome is not None else ()
     if not known and view.is_stale and view.drawn is not None:
@@ -55,9 +50,7 @@ def sliders(view: View) -> Iterator[Slider]:
 
 
 def set_knob(view: View, path: str, value: Value) -> list[Edit]:
-    """Returns the edits that make a value the default of a param; a text for a number is worked out. Raises
-    RefusalError for an invalid one.
-    """
+    """Returns the edits that make a value, or a text's worth, a param's default. Raises RefusalError."""
     knob = _knob(view, path)
     declared = _declaration(view, knob)
     if declared is None or knob.span is None:
@@ -88,7 +81,6 @@ def _knob(view: View, path: str) -> Knob:
 
 
 def _is_typed(knob: Knob, value: Value) -> bool:
-    """Tells whether a value is a text that means a number."""
     return isinstance(value, str) and _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
 
 
@@ -119,7 +111,6 @@ def _require_sense(view: View, edits: list[Edit]) -> None:
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    """Returns the declaration of a param in the texts of the view; None for one of the library."""
     return None if knob.span is None else view.params_written.get(knob.span)
 
 
@@ -159,9 +150,7 @@ _QUOTED = re.compile("`([^`]+)`")
 def problems(
     view: View, elements: Elements, painting: Sequence[Diagnostic] = (), *, tried: bool = False
 ) -> Iterator[Problem]:
-    """Yields the diagnostics of the text, and those of painting it, each with its elements and points. Of
-    values that are only tried none has a fix: fixes are of the text.
-    """
+    """Yields the diagnostics with elements and points; of values that are only tried none has a fix."""
     finder = _Finder(view, elements)
     for found in (*view.diagnostics, *painting):
         yield Problem(
@@ -211,13 +200,10 @@ class _Finder:
         it names what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
-        here = [k for span in spans for k in self._at(span)]
+        here = [k for span in spans for k in self.elements.written_at(span) or self.related(span)]
         quoted = set(_QUOTED.findall(found.message.partition(";")[0]))
         named = [k for k in here if self.elements.values[k].path in quoted]
         return list(dict.fromkeys(named or here))
-
-    def _at(self, span: Span) -> list[int]:
-        return self.elements.written_at(span) or self.related(span)
 
     def related(self, span: Span, holder: str | None = None) -> list[int]:
         """Returns the elements that the constraints in a place relate; only those of `holder`, if given."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
@@ -15,8 +15,6 @@ from aidl_lang.tools.llm.intent.changes import Changes, Fate, compare, strength
 from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, names_in, unnumbered
 from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, dotted, new_errors, stands
 from aidl_lang.tools.llm.intent.taking import inventory
-
-# --- The intents of the programs of a conversation, one after another, and losses in words.
 
 # --- A loss of a conversation.
 
@@ -65,8 +63,6 @@ class Loss:
         """The loss in words."""
         return phrase(self)
 
-
-# --- The intents of the programs of a conversation, one after another, and losses in words.
 
 # --- Losses in words, for a language model and for reports.
 
@@ -185,24 +181,6 @@ _ORDER = tuple(Kind)
 """The order in which losses are put back: things before their mentions."""
 
 
-@record()
-class Restored:
-    """A program with everything put back that fits, and the phrases of that."""
-
-    text: str
-    items: tuple[str, ...]
-
-
-@record(eq=False)
-class _Noted:
-    """A program of the conversation, and the items that no later one has; for each, its replacement in the
-    next program, if any.
-    """
-
-    inventory: Inventory
-    last: dict[Item, Item | None] = field(default_factory=dict)
-
-
 class Ledger:
     """Remembers what the programs of one conversation meant. `note` each in turn; `missing` is then what any
     earlier one had and the last one lacks.
@@ -212,7 +190,8 @@ class Ledger:
 
     def __init__(self, world: World | None = None, settings: Settings | None = None) -> None:
         self._world, self._settings = world, settings or Settings()
-        self._noted: list[_Noted] = []
+        self._noted: list[tuple[Inventory, dict[Item, Item | None]]] = []
+        """Programs with the items that no later one has, each with its replacement in the next, if any."""
         self._clashed: set[Item] = set()
         self._text = ""
         self._known: tuple[Loss, ...] = ()
@@ -229,18 +208,18 @@ class Ledger:
         self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
         self._text = source.text
         accepted = {k.item for k in self._known if not _counts(k) and k.finding.state is not State.UNTRIED}
-        for noted in self._noted:
-            fates = compare(noted.inventory, here).fates
+        for before, last in self._noted:
+            fates = compare(before, here).fates
             self._clashed.update(now for i, (_, now) in fates.items() if now and i in self._clashed)
-            heirs = {item: heir or fates[item][1] for item, heir in noted.last.items()}
-            noted.last.clear()
-            noted.last.update((i, h) for i, h in heirs.items() if not _is_there(i, fates[i][0], accepted))
+            heirs = {item: heir or fates[item][1] for item, heir in last.items()}
+            last.clear()
+            last.update((i, h) for i, h in heirs.items() if not _is_there(i, fates[i][0], accepted))
         self._clashed.update(item for item in here.items if item.clashes)
-        self._noted.append(_Noted(here, dict.fromkeys(here.items)))
+        self._noted.append((here, dict.fromkeys(here.items)))
 
-    def restore(self, source: SourceFile) -> Restored:
-        """Puts back what an earlier program had and this one lacks: one after another, each kept only if the
-        program still solves, without new errors or failed asserts.
+    def restore(self, source: SourceFile) -> tuple[str, tuple[str, ...]]:
+        """Puts back what an earlier program had, one by one, as long as no error or failed assert comes.
+        Returns the text, and the phrases of what was put back.
         """
         settled = (State.IMPLIED, State.CONFLICTS, State.MENDED)
         known = self._known if source.text == self._text else ()
@@ -260,11 +239,11 @@ class Ledger:
     def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[tuple[Loss, Changes]]:
         """Yields items of noted programs that another lacks, with the changes since."""
         reports: list[tuple[Loss, Changes]] = []
-        for noted in self._noted:
-            changes = compare(noted.inventory, here)
-            reports += ((loss, changes) for loss in _losses(noted, changes))
+        for before, last in self._noted:
+            changes = compare(before, here)
+            reports += ((loss, changes) for loss in _losses(last, changes))
         items = {loss.item for loss, _ in reports}
-        heirs = {item: heir for noted in self._noted for item, heir in noted.last.items()}
+        heirs = {item: heir for _, last in self._noted for item, heir in last.items()}
         unread = compiled is None or any(d.code.startswith(_UNREAD) for d in compiled.diagnostics)
         text = _squeezed(here.source.text) if unread else ""
         twice = {_lesser(item, heir) for item in items if (heir := heirs[item]) in items and heir is not None}
@@ -273,11 +252,11 @@ class Ledger:
                 yield loss, changes
 
 
-def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
+def _losses(last: Collection[Item], changes: Changes) -> Iterator[Loss]:
     """Yields the items that a program was the last to have. Losses that follow from that of a structure, or
     of a thing they mention, are reported with it.
     """
-    lost = [i for i in noted.last if _is_missing(i, *changes.fates[i])]
+    lost = [i for i in last if _is_missing(i, *changes.fates[i])]
     gone = {i.thing: i for i in lost if i.kind in _THINGS and changes.fates[i][0] is Fate.GONE}
     params = {i.thing[-1]: i for i in lost if i.kind is Kind.PARAM}
     dependents: dict[Item, list[Item]] = {}
@@ -302,7 +281,7 @@ def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
         fate, now = changes.fates[item]
         yield Loss(
             item,
-            noted.inventory,
+            changes.before,
             fate,
             now,
             dependents=tuple(dependents.get(item, ())),
@@ -315,16 +294,12 @@ def _count(inventory: Inventory, item: Item | None) -> int:
 
 
 def _lesser(item: Item, heir: Item) -> Item:
-    """Returns which of a statement and its replacement is left out when both are lost: the older, except for
-    a wish.
-    """
+    """Returns which of a lost statement and its lost replacement to leave out: the older, or a wish."""
     return heir if strength(heir) < strength(item) else item
 
 
 def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
-    """True for a loss to report, or to try: a right statement may have been rewritten to one that says less.
-    Offers of diagnostics are no losses.
-    """
+    """True for a loss to report or try, as a rewritten statement may be; what diagnostics offer is none."""
     match fate:
         case Fate.GONE:
             return not item.may_go
@@ -363,7 +338,6 @@ def _squeezed(text: str) -> str:
 
 
 def _mark(item: Item) -> str:
-    """Returns the trace of an item in a text that could not be read."""
     node = item.node
     if item.kind is Kind.STRUCTURE:
         return "".join(item.span.text.split("{")[0].split())
@@ -379,7 +353,7 @@ class _Restoring:
         self.here = ledger.inventory(source, self.base)
         self.done: list[str] = []
 
-    def run(self, settled: set[Item]) -> Restored:
+    def run(self, settled: set[Item]) -> tuple[str, tuple[str, ...]]:
         found = self.ledger.losses(self.here, self.base) if stands(self.base) else ()
         lost = [(loss, changes) for loss, changes in found if loss.item not in settled]
         for loss, changes in sorted(lost, key=lambda pair: _ORDER.index(pair[0].kind)):
@@ -388,7 +362,7 @@ class _Restoring:
                     self._put_thing(loss)
             elif self._put(loss.item, loss.inventory):
                 self.done.append(named(loss.item, loss.inventory))
-        return Restored(self.source.text, tuple(self.done))
+        return self.source.text, tuple(self.done)
 
     def _put(self, item: Item, inventory: Inventory, is_first: bool = False) -> bool:
         """Puts back an item; returns False if that fails."""
@@ -416,9 +390,7 @@ class _Restoring:
 
 
 def _has_room(loss: Loss, changes: Changes) -> bool:
-    """True if something can be put back as it was: it is gone, and at the place of a structure or geometry
-    stands nothing new, perhaps its replacement.
-    """
+    """True if something can be put back as it was: nothing new stands in the place of the thing itself."""
     if loss.fate is Fate.FEWER or loss.kind not in _THINGS:
         return loss.fate is not Fate.FEWER
     home = changes.paths.get(loss.item.home, loss.item.home)
@@ -426,4 +398,4 @@ def _has_room(loss: Loss, changes: Changes) -> bool:
     return not any(o.home == home and path not in known for path, o in changes.after.things.items())
 
 
-__all__ = ["Kind", "Ledger", "Loss", "Restored", "request"]
+__all__ = ["Kind", "Ledger", "Loss", "request"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from enum import StrEnum
 
 from aidl_lang.common.records import record
@@ -27,11 +28,6 @@ _MOST = 50
 """Most new structures compared with one that may have been renamed."""
 _ALIKE = 0.5
 """Share of content that a renamed structure has to keep."""
-
-
-def match_things(before: Inventory, after: Inventory) -> dict[Path, Path]:
-    """Returns the new path of each thing that is found again."""
-    return _Matching(before, after).run()
 
 
 class _Matching:
@@ -65,13 +61,10 @@ class _Matching:
         self.taken.add(other.thing)
 
     def _home(self, item: Item) -> Path | None:
-        """Returns the present path of the structure that holds a thing."""
         return self.found.get(item.home) if item.home in self.before.things else item.home
 
     def _in_place(self, item: Item) -> Item | None:
-        """Returns the thing of the same name in the same structure; an index may have come or gone with a
-        loop.
-        """
+        """Returns the thing of the same name in the same structure, with or without the index of a loop."""
         home = self._home(item)
         if home is None:
             return None
@@ -81,9 +74,7 @@ class _Matching:
         return things.get(path) or things.get(name) or self.turns.get(name)
 
     def _elsewhere(self, item: Item) -> Item | None:
-        """Returns the thing of the same name in another structure, if that is new there; geometry also has to
-        be alike.
-        """
+        """Returns the thing of the same name in another structure, if new there; geometry must be alike."""
         name = item.thing[len(item.home) :]
         candidates = self._free(item, self.by_name.get(name, ()))
         if item.kind is Kind.GEOMETRY:
@@ -96,7 +87,9 @@ class _Matching:
         siblings = self._free(item, self.by_home.get(home, ()) if home is not None else ())
         new = [o for o in siblings if o.word == item.word and not self._has_counterpart(o, item.home)]
         if item.kind is Kind.STRUCTURE:
-            return _best(new, lambda other: self._likeness(item, other))
+            likely = ((self._likeness(item, other), other) for other in new[:_MOST])
+            share, best = max(likely, key=lambda each: each[0], default=(0.0, None))
+            return best if share >= _ALIKE else None
         key = translated(item.key, self.found)
         gone = [o for o in self._unfound(item.home) if o.word == item.word]
         equal = next((o for o in new if o.key == key), None)
@@ -122,11 +115,6 @@ class _Matching:
         return (a & b).total() / max(1, (a | b).total())
 
 
-def _best(items: list[Item], likeness: Callable[[Item], float]) -> Item | None:
-    best = max(items[:_MOST], key=likeness, default=None)
-    return best if best is not None and likeness(best) >= _ALIKE else None
-
-
 def _root(inventory: Inventory) -> Item | None:
     """Returns the structure that is drawn: the last outermost one that is no template."""
     return next(
@@ -140,9 +128,7 @@ def _root(inventory: Inventory) -> Item | None:
 
 
 def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:
-    """Returns the content of each structure, in words that do not depend on the names in it, and these
-    names.
-    """
+    """Returns the content of each structure in words that do not depend on its names, and these names."""
     contents = {item.thing: Counter[object]() for item in inventory.things.values()}
     for item in inventory.items:
         for path in (item.home[:k] for k in range(1, len(item.home) + 1)):
@@ -183,7 +169,7 @@ class Changes:
 
 def compare(before: Inventory, after: Inventory) -> Changes:
     """Pairs the items of one program with those of the next."""
-    paths = match_things(before, after)
+    paths = _Matching(before, after).run()
     statements = _Statements(before, after, paths)
     statements.pair()
     fates: dict[Item, tuple[Fate, Item | None]] = {}
@@ -236,9 +222,7 @@ def _decides(item: Item) -> frozenset[str]:
 
 
 def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
-    """Returns the fate of a param: it keeps its name; a new one is recognised by its words, wherever it
-    stands.
-    """
+    """Returns the fate of a param: it keeps its name, or is recognised by its words wherever it stands."""
     params = [i for i in after.items if i.kind is Kind.PARAM]
     path = (*paths.get(item.home, item.home), item.thing[-1])
     for other in params:
@@ -253,75 +237,58 @@ def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple
     return Fate.GONE, None
 
 
-@record()
-class _Read:
-    """An item as it would read in the later program."""
-
-    item: Item
-    key: Key
-    home: Path
-    things: frozenset[Path]
-
-    @property
-    def text(self) -> str:
-        return self.item.text
-
-    @property
-    def context(self) -> Key:
-        return self.item.context
-
-    @property
-    def shape(self) -> Key:
-        return shape(self.key)
-
-
-_Test = Callable[[_Read, Item], bool]
-_Marks = Callable[[Item | _Read], Iterable[object]]
+_Marks = Callable[[Item], Iterable[object]]
+_STRENGTHS = (((0,), None), ((-1,), Fate.WEAKENED), ((1,), None))
+"""Pairs that are as strong, become weaker, and become stronger."""
 
 
 class _Statements:
-    """Pairs statements, the surest pairs first. Each is taken once, except that a relation may stand for
-    several equations on the same things.
-    """
+    """Pairs statements once, the surest first; a relation may stand for several equations on its things."""
 
     def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
         self.fates: dict[Item, tuple[Fate, Item | None]] = {}
-        self.open = [self._read(i, paths) for i in before.items if i.kind in STATED]
+        self.open = [(i, _as_read(i, paths)) for i in before.items if i.kind in STATED]
         self.free = [i for i in after.items if i.kind in STATED]
 
-    def _read(self, item: Item, paths: Mapping[Path, Path]) -> _Read:
-        things = frozenset(paths.get(thing, thing) for thing in item.things)
-        return _Read(item, translated(item.key, paths), paths.get(item.home, item.home), things)
-
     def pair(self) -> None:
-        for strength, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.key, one.context)])
-            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.home, one.text)])
-        for strength, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.key])
-            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.shape])
-        self._phase(Fate.REWRITTEN, _not_weaker, _about, _says_instead)
-        self._phase(Fate.WEAKENED, _weaker, _about, _says_instead)
+        for signs, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.key, one.context)])
+            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.home, one.text)])
+        for signs, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.key])
+            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.shape])
+        self._phase(Fate.REWRITTEN, (0, 1), lambda one: one.things, _about)
+        self._phase(Fate.WEAKENED, (-1,), lambda one: one.things, _about)
 
-    def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
-        """Pairs items that share a mark, and fit."""
+    def _phase(self, fate: Fate, signs: tuple[int, ...], marks: _Marks, about: _Marks | None = None) -> None:
+        """Pairs items that share a mark, and differ so in strength; with `about` if one says the other."""
         marked: dict[object, list[Item]] = {}
         for other in self.free:
-            for mark in marks(other):
+            for mark in (about or marks)(other):
                 marked.setdefault(mark, []).append(other)
-        left: list[_Read] = []
+        left: list[tuple[Item, Item]] = []
         spent: set[Item] = set()
-        for read in self.open:
+
+        def fits(read: Item, other: Item) -> bool:
+            a, b = strength(other), strength(read)
+            return (a > b) - (a < b) in signs and (about is None or _says_instead(read, other))
+
+        for item, read in self.open:
             near = (other for mark in marks(read) for other in marked.get(mark, ()))
-            found = next((o for o in near if o not in spent and strength(read, o) and fits(read, o)), None)
+            found = next((other for other in near if other not in spent and fits(read, other)), None)
             if found is None:
-                left.append(read)
+                left.append((item, read))
                 continue
-            self.fates[read.item] = fate, found
+            self.fates[item] = fate, found
             if not (fate is Fate.REWRITTEN and found.key[:1] == ("call",)):
                 spent.add(found)
         self.open = left
         self.free = [o for o in self.free if o not in spent]
+
+
+def _as_read(item: Item, paths: Mapping[Path, Path]) -> Item:
+    """Returns an item as it would read in the later program."""
+    return replace(item, key=translated(item.key, paths), home=paths.get(item.home, item.home))
 
 
 def strength(item: Item) -> int:
@@ -329,44 +296,25 @@ def strength(item: Item) -> int:
     return 0 if item.kind is Kind.ASSERT else 1 if item.wish else 2
 
 
-def _as_strong(read: _Read, other: Item) -> bool:
-    return strength(other) == strength(read.item)
-
-
-def _weaker(read: _Read, other: Item) -> bool:
-    return strength(other) < strength(read.item)
-
-
-def _stronger(read: _Read, other: Item) -> bool:
-    return strength(other) > strength(read.item)
-
-
-def _not_weaker(read: _Read, other: Item) -> bool:
-    return not _weaker(read, other)
-
-
-_STRENGTHS = ((_as_strong, None), (_weaker, Fate.WEAKENED), (_stronger, None))
-
-
-def _about(one: Item | _Read) -> Iterable[Path]:
+def _about(one: Item) -> Iterable[Path]:
     """Yields the things that an item speaks of; a turn may be meant for all that holds the thing turned."""
     yield from one.things
-    if isinstance(one, Item) and one.kind is Kind.ROTATION:
+    if one.kind is Kind.ROTATION:
         yield from {thing[:n] for thing in one.things for n in range(1, len(thing))}
 
 
-def _says_instead(read: _Read, other: Item) -> bool:
+def _says_instead(read: Item, other: Item) -> bool:
     """True if a new statement refers to the same things, from the same structure or one around it. A
     statement that was wrong may be replaced by one about any of them; a turn is replaced by a turn.
     """
-    if read.item.kind is Kind.ASSERT:
+    if read.kind is Kind.ASSERT:
         return other.kind is Kind.ASSERT and read.things == other.things and bool(read.things)
     if read.home[: len(other.home)] != other.home and not other.thing:
         return False
-    if read.item.wrong:
+    if read.wrong:
         if other.kind is Kind.ROTATION and any(o[: len(t)] == t for t in read.things for o in other.things):
             return True  # what is in a structure was turned in its place
         return bool(read.things & other.things) and other.kind is not Kind.ASSERT
-    if read.item.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.item.kind:
+    if read.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.kind:
         return False
     return bool(read.things) and read.things <= other.things

@@ -20,8 +20,6 @@ from aidl_lang.tools.discretion import Reader
 from aidl_lang.tools.llm.intent.changes import Changes, Fate
 from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Key, Kind, Path, Step
 
-# --- Puts something lost back into the text of a program, at its old place or as near as possible.
-
 _INDENT = "    "
 
 
@@ -45,22 +43,14 @@ def put_back(item: Item, changes: Changes) -> PutBack | None:
     words = _words(item, changes, home)
     fate, now = changes.fates[item]
     if fate is Fate.WEAKENED and now is not None and now.wish:
-        return _instead(now, words)
+        is_bare = any(step.key == CONSTRAIN for step in now.steps)
+        words = words if is_bare else f"constrain {words}"
+        text = now.span.source.text
+        return _inserted(text[: now.span.start], words, text[now.span.end :], words)
     body, rest = _found(body, item.steps, changes)
     if item.kind in (Kind.STRUCTURE, Kind.GEOMETRY, Kind.PARAM):
         return _after_sibling(item, changes, body, _wrapped(words, rest))
     return _at_end(body, _wrapped(words, rest))
-
-
-def _instead(wish: Item, words: str) -> PutBack:
-    """Replaces a wish."""
-    is_bare = any(step.key == CONSTRAIN for step in wish.steps)
-    words = words if is_bare else f"constrain {words}"
-    text = wish.span.source.text
-    return _inserted(text[: wish.span.start], words, text[wish.span.end :], words)
-
-
-# --- Words -------------------------------------------------------------------------------------------
 
 
 def _words(item: Item, changes: Changes, home: Path) -> str:
@@ -80,7 +70,6 @@ def _words(item: Item, changes: Changes, home: Path) -> str:
 
 
 def _exchanged(span: Span, names: Mapping[ast.Node, str]) -> str:
-    """Returns the text of a statement with names in it replaced."""
     text = span.text
     for node in sorted(names, key=lambda node: -node.span.start):
         start, end = node.span.start - span.start, node.span.end - span.start
@@ -118,9 +107,6 @@ def _seen_from(path: Path, home: Path) -> str:
 def dotted(path: Path) -> str:
     """Returns a path as it is written: `dial.finger[3].rim`."""
     return "".join(p if p.startswith("[") or not i else f".{p}" for i, p in enumerate(path))
-
-
-# --- Places ------------------------------------------------------------------------------------------
 
 
 def _found(body: ast.Block, steps: Sequence[Step], changes: Changes) -> tuple[ast.Block, Sequence[Step]]:
@@ -172,9 +158,7 @@ def _inserted(before: str, added: str, after: str, words: str) -> PutBack:
 
 
 def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) -> PutBack:
-    """Inserts after the nearest thing that stood above it and still exists; else at the beginning of the
-    block.
-    """
+    """Inserts after the nearest thing that stood above it and still exists, else at a block's beginning."""
     above = 0
     for other in changes.before.items:
         if other is item:
@@ -195,7 +179,6 @@ def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) ->
 
 
 def _turned(item: Item, changes: Changes) -> PutBack | None:
-    """Returns the later program with the rotation of a thing in its head, or among its arguments."""
     path = changes.paths.get(item.thing)
     owner = changes.after.things[path].node if path is not None else None
     if not isinstance(owner, ast.Structure | ast.Assign):
@@ -278,9 +261,7 @@ class Trial:
 
 
 class Prober:
-    """Tries losses in one program: at most so many times, and no more after some time. `clashed` are items
-    that were in a conflict.
-    """
+    """Tries losses in one program, a limited number and time; items of `clashed` were in a conflict."""
 
     def __init__(
         self, name: str, world: World | None, settings: Settings, most: int, clashed: Collection[Item]
@@ -296,9 +277,7 @@ class Prober:
         return Reader.of(source).compiled(compile(source, self.world, settings=self.settings))
 
     def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
-        """Puts an item back into the later program, whose outcome is `base`. If more is to follow, as
-        constraints of a structure, it may touch nothing yet.
-        """
+        """Puts an item back into the program of outcome `base`. The first of several may touch nothing."""
         here = changes.after.source
         is_over = self.left <= 0 or time.thread_time() > self.end
         if is_over or base is None or not stands(base):
@@ -340,9 +319,7 @@ def stands(compiled: Compiled | None) -> bool:
 
 
 def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[Diagnostic]:
-    """Yields errors of a result that its base did not have, and parts that touch nothing, except those that
-    touched nothing `before` either.
-    """
+    """Yields errors that the base lacks, and parts that touch nothing except those that did so `before`."""
     contacts = (d for d in before.diagnostics if d.code in CONTACTS)
     known = Counter(_mark(d) for d in (*base.diagnostics, *contacts))
     for d in result.diagnostics:
@@ -368,18 +345,14 @@ def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[
 def _is_implied(
     stated: Sequence[ConstraintReport], item: Item, fate: Fate, own: Span, result: Compiled
 ) -> bool:
-    """True if the program says as much without an item. An inequality that is simply gone counts as lost even
-    if sizes and parameters happen to keep it now; its replacement may say more.
-    """
+    """True if the program says as much without an item; of an inequality, only what replaced it can."""
     if item.kind is not Kind.CONSTRAINT and not (item.kind is Kind.ROTATION and stated):
         return False
     return (fate is Fate.REWRITTEN or _is_exact(stated)) and result.follows(own)
 
 
 def _is_mended(stated: Sequence[ConstraintReport], now: Item, parties: Sequence[str], base: Compiled) -> bool:
-    """True if the replacement of a conflicting statement asks for as much: an equation for an equation, or
-    anything but the opposite of an inequality.
-    """
+    """True if a replacement asks for as much: an equation, or anything but the opposite of an inequality."""
     heirs = _stated_in(base, now.span)
     if _is_exact(stated):
         return bool(heirs) and _is_exact(heirs)

@@ -210,6 +210,5 @@ def _ending(code: int) -> str:
 
 
 def _last(said: bytes) -> list[str]:
-    """Returns the last lines of standard error."""
     lines = [line for text in said.decode(errors="replace").splitlines() if (line := one_line(text))]
     return [f"it said: {line}" for line in lines[-_LINES:]]

@@ -91,7 +91,6 @@ def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
 
 
 def _by_environment(said: Connection, environment: Mapping[str, str]) -> str:
-    """Returns the provider that a base URL or a key implies."""
     if said.base_url:
         return OPENAI
     found = [

@@ -1,24 +1,27 @@
-"""Common to providers behind a server: the client, streams, replies that arrive, retries and failures."""
+"""Providers behind a server: what they have in common, and the protocols of OpenAI and Anthropic."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from difflib import get_close_matches
 from types import ModuleType
 from typing import Any, ClassVar
+from urllib.parse import urlsplit
 
 import httpx2
 
-from aidl_lang.tools.llm.messages import Message, ProviderError, Reply, Sampling, Usage
+from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
 from aidl_lang.tools.llm.providers.connection import (
     DEFAULT_URL,
     UNKNOWN,
     Connection,
     Draft,
+    count,
     dig,
+    dollars,
     one_line,
     without_credentials,
     words,
@@ -33,9 +36,7 @@ _SILENT = {_AGAIN: "false", "x-aidl-silent": "true"}
 
 
 class Client(httpx2.Client):
-    """A client that does not repeat requests after a timeout, as the SDKs would at a cost and without
-    effect.
-    """
+    """A client that does not repeat requests after a timeout, which the SDKs do at a cost without effect."""
 
     def send(self, request: httpx2.Request, **options: Any) -> httpx2.Response:
         try:
@@ -57,11 +58,6 @@ def options(connection: Connection) -> dict[str, Any]:
     timeout = httpx2.Timeout(connection.timeout, connect=min(_CONNECT, connection.timeout))
     client = Client(timeout=timeout, follow_redirects=True)
     return {"timeout": timeout, "max_retries": connection.retries, "http_client": client}
-
-
-def is_silence(response: httpx2.Response) -> bool:
-    """True for a response that stands for none."""
-    return "x-aidl-silent" in response.headers
 
 
 def _is_soon(retry_after: str) -> bool:
@@ -109,9 +105,7 @@ class Server(ABC):
         self._client.close()
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
-        """Returns a reply, retrying when the stream breaks off; the cost of a broken one, and so the sum, is
-        unknown.
-        """
+        """Returns a reply, retrying broken streams; the cost of a broken one, and so the sum, is unknown."""
         spent = Usage()
         for _ in range(self._connection.retries + 1):
             draft = Draft(hear, self._model)
@@ -167,12 +161,12 @@ class Server(ABC):
 
     @contextmanager
     def _failures(self) -> Iterator[None]:
-        """Raises the SDK's errors as errors of the provider."""
         sdk = self._sdk
         try:
             yield
         except sdk.APIStatusError as error:
-            raise (self._silence() if is_silence(error.response) else self._refusal(error)) from None
+            is_silent = "x-aidl-silent" in error.response.headers
+            raise (self._silence() if is_silent else self._refusal(error)) from None
         except sdk.APITimeoutError:
             raise self._silence() from None
         except sdk.APIConnectionError as error:
@@ -188,7 +182,6 @@ class Server(ABC):
             raise ProviderError("E0935", "the messages hold characters that are not Unicode text") from None
 
     def _refusal(self, error: Any) -> ProviderError:
-        """Returns the error for an HTTP status."""
         status: int = error.status_code
         said = self._words(error.body)
         because = f" ({status}): {said}" if said else f" ({status})"
@@ -210,7 +203,6 @@ class Server(ABC):
         return ProviderError("E0935", f"the request was refused{because}", *_remedies(said.lower()))
 
     def _models_hint(self) -> Iterator[str]:
-        """Yields the available models; a server without a list probably has a wrong address."""
         try:
             known = self._models()
         except self._sdk.APIError:
@@ -222,7 +214,6 @@ class Server(ABC):
         yield f"the server has {_few(near, known)}"
 
     def _models(self) -> list[str]:
-        """Returns the server's list of models; raises the SDK's errors."""
         try:
             listed = dig(self._client.models.list().model_dump(warnings=False), "data")
         except (ValueError, AttributeError):  # something else than a list came
@@ -282,13 +273,11 @@ def _events(stream: Any) -> Iterator[object]:
 
 
 def _few(names: list[str], known: list[str]) -> str:
-    """Returns some of the known names."""
     shown = names[:_SHOWN]
     return ", ".join([*shown, "…"] if len(shown) < len(known) else shown)
 
 
 def _remedies(said: str) -> Iterator[str]:
-    """Yields remedies for a refused request, if its words tell the reason."""
     if any(sign in said for sign in _TOO_LONG):
         yield "guide and conversation are longer than the model reads: take one that reads more"
         yield "servers of your own: OLLAMA_CONTEXT_LENGTH=16384, llama-server -c, vllm --max-model-len"
@@ -297,3 +286,205 @@ def _remedies(said: str) -> Iterator[str]:
     if any(sign in said for sign in _GRAMMAR):
         yield "does --constrain name the kind of server that answers? Without it no grammar is sent"
     yield from (f"leave --{name} out" for name in ("temperature", "seed") if name in said)
+
+
+# --- Servers that speak OpenAI's chat protocol: OpenAI, OpenRouter, Ollama, vLLM, llama.cpp and others.
+
+_FINISH = {"length": Finish.CUT, "content_filter": Finish.REFUSED}
+_LIMITS = ("max_tokens", "max_completion_tokens")
+_NEWER = ("api.openai.com", ".openai.azure.com")
+
+
+class OpenAI(Server):
+    """The limit on tokens has two names.
+
+    Newer models of OpenAI refuse the old one, and many servers do not know the new one: the host decides, and
+    the new one is used when a server asks for it.
+    """
+
+    kind = "openai"
+
+    def __init__(self, connection: Connection) -> None:
+        import openai
+
+        from aidl_lang.tools.llm.providers import server
+
+        client = openai.OpenAI(
+            api_key=connection.key or "none", base_url=connection.base_url, **server.options(connection)
+        )
+        host = urlsplit(connection.base_url).hostname or ""
+        self._limit = _LIMITS[host.endswith(_NEWER)]
+        self._tells_usage = True
+        super().__init__(openai, client, connection)
+
+    def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
+        said = [{"role": message.role, "content": _content(message)} for message in messages]
+        for _ in range(3):
+            options = self._options(sampling)
+            try:
+                return self._client.chat.completions.create(
+                    model=self._model, messages=said, stream=True, extra_body=dict(sampling.extra), **options
+                )
+            except (self._sdk.BadRequestError, self._sdk.UnprocessableEntityError) as error:
+                if not self._adapt(self._words(error.body), options):
+                    raise
+        raise AssertionError("it adapts twice at most")
+
+    def _options(self, sampling: Sampling) -> dict[str, object]:
+        options: dict[str, object] = {
+            "seed": sampling.seed,
+            "temperature": sampling.temperature,
+            self._limit: sampling.max_tokens,
+            "stream_options": {"include_usage": True} if self._tells_usage else None,
+        }
+        return {name: value for name, value in options.items() if value is not None}
+
+    def _adapt(self, said: str, sent: Mapping[str, object]) -> bool:
+        """Drops what a server refused from further requests, if it is a matter of the protocol."""
+        if "stream_options" in said and "stream_options" in sent:
+            self._tells_usage = False
+            return True
+        if "max_tokens" in sent and "max_completion_tokens" in said:
+            self._limit = "max_completion_tokens"
+            return True
+        return False
+
+    def _read(self, document: object, draft: Draft) -> None:
+        choice = dig(document, "choices", 0)
+        said = dig(choice, "delta") or dig(choice, "message")
+        draft.started |= isinstance(dig(document, "choices"), list)
+        draft.model = one_line(dig(document, "model")) or draft.model
+        draft.say(_text(dig(said, "content")))
+        if refusal := words(dig(said, "refusal")):
+            draft.say(refusal)
+            draft.finish = Finish.REFUSED
+        self._read_end(document, choice, draft)
+
+    def _read_end(self, document: object, choice: object, draft: Draft) -> None:
+        self._refuse_error(choice)
+        reason = words(dig(choice, "finish_reason"))
+        is_whole = dig(choice, "message") is not None
+        if reason or is_whole:
+            draft.finish = draft.finish or _FINISH.get(reason, Finish.COMPLETE)
+        if usage := dig(document, "usage"):
+            draft.usage = Usage(
+                count(dig(usage, "prompt_tokens")),
+                count(dig(usage, "completion_tokens")),
+                dollars(dig(usage, "cost")),
+            )
+
+
+def _content(message: Message) -> str | list[dict[str, object]]:
+    """Returns text alone as a string, which is all that some servers take."""
+    if not message.images:
+        return message.text
+    pictures: list[dict[str, object]] = [
+        {"type": "image_url", "image_url": {"url": image.uri}} for image in message.images
+    ]
+    return [*pictures, {"type": "text", "text": message.text}]
+
+
+def _text(content: object) -> str:
+    """Returns the text of a content that is a string, or a list of parts, of which some may be reasoning."""
+    if isinstance(content, list):
+        return "".join(words(dig(part, "text")) for part in content if dig(part, "type") == "text")
+    return words(content)
+
+
+# --- Anthropic's messages API.
+
+MAX_TOKENS = 8192
+"""The default limit: the API wants one, and every model allows at least this."""
+
+_FINISH_ANTHROPIC = {
+    "max_tokens": Finish.CUT,
+    "model_context_window_exceeded": Finish.CUT,
+    "refusal": Finish.REFUSED,
+}
+_INPUT = ("input_tokens", "cache_read_input_tokens", "cache_creation_input_tokens")
+
+
+class Anthropic(Server):
+    """The system prompt, which is long and the same every time, is kept in Anthropic's cache.
+
+    The input counted is all that was read, from the cache or not.
+    """
+
+    kind = "anthropic"
+    takes_seeds = False
+    takes_grammars = False
+
+    def __init__(self, connection: Connection) -> None:
+        import anthropic
+
+        from aidl_lang.tools.llm.providers import server
+
+        client = anthropic.Anthropic(
+            api_key=connection.key or "none",
+            base_url=connection.base_url.removesuffix("/v1"),
+            **server.options(connection),
+        )
+        super().__init__(anthropic, client, connection)
+
+    def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
+        if sampling.seed is not None:
+            raise ProviderError("E0935", "Anthropic's API takes no seed", "leave --seed out")
+        system = "\n\n".join(message.text for message in messages if message.role == "system")
+        cached = {"type": "text", "text": system, "cache_control": {"type": "ephemeral"}}
+        # Older models take a temperature; the SDK no longer knows of it, and newer ones refuse it.
+        heat = {} if sampling.temperature is None else {"temperature": sampling.temperature}
+        return self._client.messages.create(
+            model=self._model,
+            max_tokens=sampling.max_tokens or MAX_TOKENS,
+            messages=[_turn(message) for message in messages if message.role != "system"],
+            stream=True,
+            extra_body={**heat, **sampling.extra},
+            **({"system": [cached]} if system else {}),
+        )
+
+    def _read(self, document: object, draft: Draft) -> None:
+        match dig(document, "type"):
+            case "message":  # of a server that does not stream
+                self._start(document, draft)
+                parts = dig(document, "content")
+                for part in parts if isinstance(parts, list) else ():
+                    draft.say(words(dig(part, "text")))
+                self._end(dig(document, "stop_reason") or "end_turn", draft)
+            case "message_start":
+                self._start(dig(document, "message"), draft)
+            case "content_block_start":
+                draft.say(words(dig(document, "content_block", "text")))
+            case "content_block_delta":
+                draft.say(words(dig(document, "delta", "text")))
+            case "message_delta":
+                self._count(dig(document, "usage"), draft)
+                self._end(dig(document, "delta", "stop_reason"), draft)
+
+    def _start(self, message: object, draft: Draft) -> None:
+        draft.started = True
+        draft.model = one_line(dig(message, "model")) or draft.model
+        self._count(dig(message, "usage"), draft)
+
+    @staticmethod
+    def _end(reason: object, draft: Draft) -> None:
+        if reason:
+            draft.finish = _FINISH_ANTHROPIC.get(words(reason), Finish.COMPLETE)
+
+    @staticmethod
+    def _count(usage: object, draft: Draft) -> None:
+        """Adds the counts of an event, which are running totals of those that have changed."""
+        read = [n for name in _INPUT if (n := count(dig(usage, name))) is not None]
+        written = count(dig(usage, "output_tokens"))
+        known = draft.usage
+        draft.usage = Usage(
+            sum(read) if read else known.input, known.output if written is None else written, None
+        )
+
+
+def _turn(message: Message) -> dict[str, object]:
+    pictures: list[dict[str, object]] = [
+        {"type": "image", "source": {"type": "base64", "media_type": image.media_type, "data": image.base64}}
+        for image in message.images
+    ]
+    text = message.text if message.text.strip() else "(nothing)"  # the API refuses an empty text
+    return {"role": message.role, "content": [*pictures, {"type": "text", "text": text}]}

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 from itertools import count
-from typing import NoReturn
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException
 
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.tools.ide.outline import (
@@ -25,7 +23,6 @@ from aidl_lang.tools.ide.outline import (
     spellings,
 )
 from aidl_lang.tools.ide.references import (
-    CannotError,
     definitions,
     highlights,
     links,
@@ -35,7 +32,7 @@ from aidl_lang.tools.ide.references import (
 )
 from aidl_lang.tools.ide.workspace import format_document, format_range
 from aidl_lang.tools.lsp.documents import Converter, Document
-from aidl_lang.tools.lsp.server import FAILED, Asked, Server
+from aidl_lang.tools.lsp.server import Asked, Server
 
 # --- Navigation: definitions, references, outlines, links; and renaming.
 
@@ -99,10 +96,7 @@ def _highlight(asked: Asked, params: types.DocumentHighlightParams) -> list[type
 
 
 def _prepare_rename(asked: Asked, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder:
-    try:
-        span = renameable(asked.view, asked.convert.offset(params.position))
-    except CannotError as reason:
-        _fail(reason)
+    span = renameable(asked.view, asked.convert.offset(params.position))
     return types.PrepareRenamePlaceholder(asked.convert.range(span), span.text)
 
 
@@ -110,15 +104,8 @@ def _rename(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | N
     view = asked.project.view(asked.view.path)
     if view is None:
         return None
-    try:
-        made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
-    except CannotError as reason:
-        _fail(reason)
-    return asked.convert.changes(made.edits, asked.can("workspace.workspace_edit.document_changes"))
-
-
-def _fail(reason: Exception) -> NoReturn:
-    raise JsonRpcException(str(reason), FAILED) from None
+    made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
+    return asked.convert.changes(made, asked.can("workspace.workspace_edit.document_changes"))
 
 
 def _outline(

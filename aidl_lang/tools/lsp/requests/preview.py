@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import io
+import zipfile
 from collections import Counter
-from collections.abc import Awaitable, Callable, Hashable, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import partial
 from itertools import count
@@ -19,11 +21,13 @@ from pygls.exceptions import (
     JsonRpcRequestCancelled,
 )
 
-from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.checking import units
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled
-from aidl_lang.export import FORMATS, ExportError, Options
-from aidl_lang.tools.agents.workspace import RefusalError
+from aidl_lang.export import FORMATS, OFFERED, Exported, ExportError, Format, Options, file_names
+from aidl_lang.export.profiles import PROFILES
+from aidl_lang.export.themes import THEMES
 from aidl_lang.tools.ide.dragging import Handle, drag
 from aidl_lang.tools.ide.preview import (
     LAYERS,
@@ -35,12 +39,110 @@ from aidl_lang.tools.ide.preview import (
     with_handles,
     worked_out,
 )
-from aidl_lang.tools.ide.references import Refusal
+from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View
-from aidl_lang.tools.lsp import exports
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
-from aidl_lang.tools.lsp.server import FAILED, Asked, Server
+from aidl_lang.tools.lsp.running import FAILED
+from aidl_lang.tools.lsp.server import Asked, Server
+
+# --- What a dialog for exports offers: the formats, and one table of options, each with what it does.
+#
+# An option of the command becomes one of the dialog by a line of `OPTIONS`.
+
+Change = Callable[[Options, str], Options]
+"""Returns the options with what was given for one of them. Raises ValueError."""
+
+
+@record()
+class Option:
+    """An option of the dialog.
+
+    label    what stands before its field
+    hint     an example, shown in the empty field
+    change   puts what was given, which is not empty, into the options
+    choices  what may be given; empty for what is typed
+    fits     tells whether a format has it
+    """
+
+    name: str
+    label: str
+    hint: str
+    change: Change
+    choices: tuple[str, ...] = ()
+    fits: Callable[[Format], bool] = lambda made: made.cuts
+
+
+_NESTING = 5.0
+"""Seconds for packing parts by their outlines."""
+
+
+def _nested(options: Options, given: str) -> Options:
+    return replace(options, nest=_NESTING if given == "outlines" else None)
+
+
+def _profiled(options: Options, given: str) -> Options:
+    return replace(options, profile=PROFILES[given])
+
+
+def _is_picture(made: Format) -> bool:
+    return made.tiles
+
+
+OPTIONS = (
+    Option("sheet", "Sheet", "600x400, a3", lambda o, given: replace(o, sheet=units.size(given))),
+    Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=units.length(given))),
+    Option("nest", "Packed by", "boxes", _nested, ("boxes", "outlines")),
+    Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=units.length(given))),
+    Option("profile", "Profile", "plain", _profiled, tuple(PROFILES)),
+    Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, _is_picture),
+    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), fits=_is_picture),
+)
+
+
+def offered() -> dict[str, Any]:
+    """Returns the formats, and the options with the formats that have each, as JSON."""
+    return {
+        "formats": [{"name": name, "label": label} for name, label in OFFERED.items()],
+        "options": [
+            {
+                "name": option.name,
+                "label": option.label,
+                "hint": option.hint,
+                "choices": option.choices,
+                "formats": [name for name in OFFERED if option.fits(FORMATS[f".{name}"])],
+            }
+            for option in OPTIONS
+        ],
+    }
+
+
+def changed(options: Options, given: Mapping[str, str]) -> Options:
+    """Returns options with what was given in the dialog. Raises ValueError."""
+    known = {option.name: option for option in OPTIONS}
+    for name, text in given.items():
+        if name not in known:
+            raise ValueError(f"there is no option `{name}`")
+        option, text = known[name], text.strip()
+        if not text:
+            continue
+        if option.choices and text not in option.choices:
+            raise ValueError(f"{option.label.lower()} is one of {', '.join(option.choices)}, not `{text}`")
+        options = option.change(options, text)
+    return options
+
+
+def packed(stem: str, suffix: str, made: Exported) -> tuple[str, bytes]:
+    """Returns the name and the content of what is saved: the file, or an archive of several."""
+    if not made.further:
+        return stem + suffix, made.data
+    archive = io.BytesIO()
+    contents = (made.data, *made.further)
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as writing:
+        for name, data in zip(file_names(stem + suffix, len(contents)), contents, strict=True):
+            writing.writestr(zipfile.ZipInfo(name), data)
+    return f"{stem}-{suffix[1:]}.zip", archive.getvalue()
+
 
 # --- Pictures of the shown documents: made after each run, and sent.
 
@@ -162,9 +264,7 @@ class Pictures:
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
     ) -> T | None:
-        """Returns the result of a function run in the solving thread; None if the document is closed, a newer
-        request came, or, unless it goes first, the text changed.
-        """
+        """Returns a result from the solving thread; None if the document changed, or a newer asked."""
         serial = document.serial
 
         def is_unwanted() -> bool:
@@ -252,40 +352,29 @@ class _Requests:
         asked, document = await self._solved(given, given.version)
 
         def view() -> View:
-            if given.drag is None:
-                try:
-                    values = worked_out(asked.view, given.knobs)
-                except RefusalError as refusal:
-                    raise JsonRpcException(_worded(refusal.diagnostics[0]), FAILED) from None
-                limits = self.server.limits
-                return tried(asked.view, values, document.memory, limits, rests=given.rests)
-            made = drag(asked.view, given.drag.id, given.drag.to)
-            if isinstance(made, Refusal):
-                raise JsonRpcException(made.reason, FAILED)
-            return made.view
+            if given.drag is not None:
+                return drag(asked.view, given.drag.id, given.drag.to).view
+            values, limits = worked_out(asked.view, given.knobs), self.server.limits
+            return tried(asked.view, values, document.memory, limits, rests=given.rests)
 
         def picture() -> Json:
             return self.pictures.tried(asked, document, view(), given.viewer)
 
-        return await self._work(
-            ("try", *viewer), document, asked, picture, lambda: self._asked[viewer] != asked_before
-        )
+        def is_outdated() -> bool:
+            return self._asked[viewer] != asked_before
+
+        try:
+            return await self._work(("try", *viewer), document, asked, picture, is_outdated)
+        except (AidlError, CannotError) as reason:
+            raise JsonRpcException(_why(reason), FAILED) from None
 
     async def set_knob(self, given: SetKnob) -> Json:
-        def edits(view: View) -> Sequence[Edit] | Refusal:
-            try:
-                return set_knob(view, given.path, given.value)
-            except RefusalError as refusal:
-                return Refusal(_worded(refusal.diagnostics[0]))
-
-        return await self._edit(given, edits, f"Set {given.path}")
+        return await self._edit(
+            given, lambda view: set_knob(view, given.path, given.value), f"Set {given.path}"
+        )
 
     async def drag(self, given: Drag) -> Json:
-        def edits(view: View) -> Sequence[Edit] | Refusal:
-            dragged = drag(view, given.id, given.to)
-            return dragged if isinstance(dragged, Refusal) else dragged.edits
-
-        return await self._edit(given, edits, "Drag")
+        return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
 
     async def fix(self, given: ApplyFix) -> Json:
         asked, _ = await self._solved(given, given.version)
@@ -306,18 +395,18 @@ class _Requests:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
         plain = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
         try:
-            options = exports.changed(plain, given.options)
+            options = changed(plain, given.options)
             made = await self.server.searches.ask(lambda: outcome.exported(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
         except ValueError as reason:
             raise JsonRpcException(str(reason), FAILED) from None
-        name, data = exports.packed(document.path.stem, suffix, made)
+        name, data = packed(document.path.stem, suffix, made)
         notes = [_worded(note) for note in made.notes]
         return {"name": name, "data": base64.b64encode(data).decode("ascii"), "notes": notes}
 
     async def exports(self, given: OfDocument) -> Json:
-        return exports.offered()
+        return offered()
 
     def _document(self, given: OfDocument) -> Document:
         document = self.server.documents.get(given.uri)
@@ -326,7 +415,6 @@ class _Requests:
         return document
 
     def _outdate_tries(self, given: OfDocument) -> None:
-        """Cancels the viewer's earlier tries."""
         self._asked[given.uri, given.viewer] += 1
 
     async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
@@ -346,9 +434,7 @@ class _Requests:
         function: Callable[[], T],
         is_outdated: Callable[[], bool] = lambda: False,
     ) -> T:
-        """Runs a function in the solving thread, unless the text changes meanwhile, or a newer request comes
-        under the key.
-        """
+        """Runs a function in the solving thread, unless the text changes or a newer request has the key."""
 
         def is_unwanted() -> bool:
             return document.version != asked.known.version or not document.is_open or is_outdated()
@@ -358,17 +444,16 @@ class _Requests:
         except Cancelled:
             raise JsonRpcRequestCancelled("there is something newer") from None
 
-    async def _edit(
-        self, given: OfVersion, edits: Callable[[View], Sequence[Edit] | Refusal], label: str
-    ) -> Json:
+    async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
         self._outdate_tries(given)
         async with self._document(given).editing:
             asked, document = await self._solved(given, given.version)
             key = ("edit", given.uri)
-            made = await self._work(key, document, asked, lambda: edits(asked.view))
-            if isinstance(made, Refusal):
-                return _not_applied(made.reason)
+            try:
+                made = await self._work(key, document, asked, lambda: edits(asked.view))
+            except (AidlError, CannotError) as reason:
+                return _not_applied(_why(reason))
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
@@ -384,6 +469,10 @@ class _Requests:
 
 def _worded(diagnostic: Diagnostic) -> str:
     return "; ".join([diagnostic.message, *diagnostic.hints[:1]])
+
+
+def _why(reason: AidlError | CannotError) -> str:
+    return _worded(reason.diagnostic) if isinstance(reason, AidlError) else str(reason)
 
 
 def _not_applied(reason: str) -> Json:

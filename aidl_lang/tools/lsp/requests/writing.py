@@ -34,8 +34,8 @@ from aidl_lang.tools.ide.workspace import Positions
 from aidl_lang.tools.lsp import params as asking
 from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import EntryRequest, read
-from aidl_lang.tools.lsp.running import LIMITS
-from aidl_lang.tools.lsp.server import FAILED, Asked, Server
+from aidl_lang.tools.lsp.running import FAILED, LIMITS
+from aidl_lang.tools.lsp.server import Asked, Server
 from aidl_lang.tools.ranges import described as walked
 
 CHECK_ENDS = "aidl.checkEnds"
@@ -246,20 +246,11 @@ def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
     whole = len(asked.view.source.text)
     for action in actions(asked.view, 0, whole):
         if action.kind == types.CodeActionKind.SourceFixAll.value:
-            return _made(asked, action)
+            return _edit(asked, action.make())
     raise JsonRpcException("there is nothing to fix", FAILED)
 
 
-def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
-    """Returns the edits of an action. Raises JsonRpcException if it cannot be carried out."""
-    try:
-        return _edit(asked, action.make())
-    except CannotError as reason:
-        raise JsonRpcException(str(reason), FAILED) from None
-
-
 def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeAction]:
-    """Returns the actions at a range, without edits for a client that can ask for these later."""
     span = asked.convert.span(params.range)
     resolves = asked.can("text_document.code_action.resolve_support")
     made = []
@@ -306,7 +297,7 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
 def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.WorkspaceEdit:
     for action in actions(asked.view, given.start, given.end):
         if (action.title, action.kind) == (title, given.kind):
-            return _made(asked, action)
+            return _edit(asked, action.make())
     raise JsonRpcContentModified("the text has changed")
 
 
