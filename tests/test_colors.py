@@ -57,11 +57,3 @@ def test_mix_lies_on_the_way_from_one_to_the_other(one: str, other: str, share: 
     made = drawn(f'mix("{one}", "{other}", {share})')
     wanted = tuple((1 - share) * a + share * b for a, b in zip(rgb(one), rgb(other), strict=True))
     assert near(made, wanted)
-
-
-@given(st.sampled_from(NAMES), SHARES)
-@tries(20)
-def test_darker_and_lighter_leave_the_rest_of_the_way_to_black_and_white(name: str, by: float) -> None:
-    assert near(drawn(f'darker("{name}", {by})'), tuple((1 - by) * c for c in rgb(name)))
-    rest = tuple(255 - c for c in drawn(f'lighter("{name}", {by})'))
-    assert near(rest, tuple((1 - by) * (255 - c) for c in rgb(name)))

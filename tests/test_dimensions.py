@@ -11,7 +11,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.export import Options
 from aidl_lang.geometry.dimensions import dimensions
-from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
+from aidl_lang.geometry.solved import Dimension, Length
 
 
 def found(text: str) -> list[tuple[Dimension, ...]]:
@@ -41,25 +41,6 @@ def test_exact_sizes_have_the_name_of_their_param():
         ("s.a.height", 40, None),
         ("s.b.radius", 18, None),
     ]
-
-
-def test_written_sizes_come_after_exact_ones_and_guesses_not_at_all():
-    text = """drawing d {
-        param r = 4
-        a = circle(radius: 7)
-        b = circle(center: (30, 0), radius: r)
-        c = circle(center: (60, 0), radius: guess(5))
-    }"""
-    assert [(k, v) for k, v, o in told(text) if "diameter" in k] == [("1x diameter", 8), ("1x diameter", 14)]
-
-
-def test_what_is_derived_or_construction_is_not_dimensioned():
-    text = """drawing d {
-        a = circle(radius: 7)
-        b = circle(center: (30, 0), radius: a.radius)
-        construction c = circle(radius: 2)
-    }"""
-    assert of(text, "size") == [("diameter", 14)]
 
 
 def test_what_is_clipped_away_has_no_dimensions():
@@ -141,55 +122,6 @@ def test_constraints_that_measure(statement: str, expected: list[tuple[str, floa
     assert of(f"drawing d {{ {A_B} constrain {statement} }}", "constraint") == expected
 
 
-def test_angles_lie_between_what_is_drawn():
-    text = """drawing d {
-        a = line(fixed((0, 0)), fixed((40, 0)))
-        b = line(a.start, length: 30, angle: guess(50deg))
-        constrain angle(b, a) == 40deg
-    }"""
-    (angle,) = [g[0] for g in found(text) if isinstance(g[0], Opening)]
-    assert angle.corner == pytest.approx((0, 0), abs=1e-9)
-    assert (angle.value, angle.first) == pytest.approx((40, 0), abs=1e-6)
-    assert angle.arms == (pytest.approx((0, 40), abs=1e-6), pytest.approx((0, 30), abs=1e-6))
-
-
-def test_preferences_and_what_does_not_hold_are_no_dimensions():
-    assert not of(f"drawing d {{ {A_B} prefer a.width == 25 }}", "constraint")
-    text = f"drawing d {{ {A_B} constrain a.width == 25\n constrain a.width == 30 }}"
-    assert all(value in (25, 30) for _, value in of(text, "constraint"))
-
-
-def test_equal_holes_of_a_loop_or_a_pattern_are_one():
-    loop = "for i in 0..9 { hole h[i] { rim = circle(center: fixed(polar(30, 36deg * i)), diameter: 8) } }"
-    pattern = "hole dot(d = 4) { rim = circle(center: origin, diameter: d) }\n"
-    pattern += "h = polar_array(dot(d: 8), n: 10, radius: 30)"
-    for holes in (loop, pattern):
-        assert told(f"solid s {{ body = circle(center: origin, radius: 50)\n {holes} }}") == [
-            ("1x diameter", 100, "size"),
-            ("10x diameter", 8, "size"),
-            ("1x diameter", 60, "pattern"),
-        ]
-
-
-def test_steps_of_a_grid():
-    text = """solid s {
-        body = rectangle(center: fixed((15, 5)), width: 60, height: 30)
-        for i in 0..2 {
-            for j in 0..1 { hole h[i][j] { rim = circle(center: fixed((15 * i, 9 * j)), diameter: 5) } }
-        }
-    }"""
-    assert [t for t in told(text) if t[2] == "pattern"] == [
-        ("2x horizontal", 15, "pattern"),
-        ("1x vertical", 9, "pattern"),
-    ]
-
-
-def test_fillets_are_counted():
-    text = "solid s { param r = 5\n body = rectangle(width: 60, height: 30)\n fillet(body, r) }"
-    ((exact, *others),) = [g for g in found(text) if isinstance(g[0], Roundness)]
-    assert (exact.value, exact.name, len(others)) == (5, "r", 3)
-
-
 def test_the_same_place_is_told_once_and_the_whole_always():
     text = """solid s {
         a = rectangle(center: origin, width: 60, height: 30)
@@ -227,17 +159,3 @@ def test_values_are_those_of_the_solved_model():
         assert math.degrees(math.atan2(d.along[1], d.along[0])) == pytest.approx(
             25 if d.value > 7 else -65, abs=1e-6
         )
-
-
-def test_nothing_is_measured_unless_it_is_asked_for():
-    """Sizes are worked out on demand, and once."""
-    compiled = pipeline.compile(
-        SourceFile("test.aidl", "solid s { body = rectangle(width: 60, height: 30) }")
-    )
-    assert compiled.model is not None
-    assert "sizes" not in vars(compiled.model)
-    assert compiled.model.sizes is compiled.model.sizes
-
-
-def test_an_empty_program():
-    assert not found("solid s { }")

@@ -9,14 +9,13 @@ from typing import Any
 
 import pytest
 
-from aidl_lang import compile as compiled_model
-from aidl_lang import diff, pipeline
+from aidl_lang import pipeline
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import ExportError
-from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
@@ -69,14 +68,6 @@ def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.export(".svg")
 
 
-def test_drawing_itself() -> None:
-    found = pipeline.compile(SourceFile("plates.aidl", PLATES), settings=replace(Settings(), drawing=0.0))
-    assert (found.status, found.drawing) == ("wrong", None)
-    (told,) = found.diagnostics
-    message = "drawing what this program says takes more than 0 seconds"
-    assert (told.code, told.message, told.hints) == ("E0805", message, (HINT,))
-
-
 def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
@@ -120,15 +111,6 @@ def test_measuring_and_comparing(doing: str, work: Callable[[Compiled], object])
         TooLongError, match=f"^{doing} what this program says takes more than 0 seconds\\nhint: "
     ):
         work(made)
-
-
-@pytest.mark.usefixtures("hurried")
-def test_python_raises_value_errors() -> None:
-    model = compiled_model(PLATES)
-    with pytest.raises(ValueError, match="measuring what this program says takes more than 0 seconds"):
-        model.measure()
-    with pytest.raises(ValueError, match="comparing what this program says takes more than 0 seconds"):
-        diff(model, model)
 
 
 @pytest.mark.usefixtures("hurried")

@@ -91,12 +91,6 @@ def test_it_is_said_often_what_would_fit() -> None:
     assert sum(1 for text in asked for _ in replacements(text)) > 10
 
 
-def test_the_same_program_gives_the_same_message() -> None:
-    for block in UNSOLVABLE[::12]:
-        once, again = ([render(d) for d in found] for found in (failures_of(block.text), errors(block.text)))
-        assert once == again
-
-
 TRIANGLE = """drawing d {
     a = line((0, 0), (30, 0))
     b = line(a.end, (15, 20))

@@ -141,20 +141,6 @@ def test_outlines_and_widths(make: Callable[[Mapping[str, Draw]], bytes]) -> Non
     assert "B" not in file
 
 
-def test_cubic_curves_stay_as_they_are() -> None:
-    curves, _ = FontFile(open_type({"A": round_bowl})).outline("A")
-    assert ((0, 0), (0, 900), (500, 900), (500, 0)) in curves
-    wide = FontFile(open_type({"A": round_bowl}))
-    assert len(wide.outline("A")[0]) == 2
-
-
-@pytest.mark.parametrize("make", [true_type, open_type])
-def test_the_capital_height_is_that_of_an_h_if_the_font_states_none(make: Callable[..., bytes]) -> None:
-    assert FontFile(make({"H": bar(top=640), "A": bar()}, capital=0)).capital_height == 640
-    with pytest.raises(FontError, match="how high its capitals are"):
-        FontFile(make({"A": bar()}, capital=0))
-
-
 def test_overlapping_contours_are_one() -> None:
     cross = both(bar(0, 300, 700, 400), bar(300, 0, 400, 700))
     for data in (true_type({"x": cross}), open_type({"x": cross})):
@@ -166,21 +152,6 @@ def test_overlapping_contours_are_one() -> None:
     (text,) = found.model.root.geometry
     lengths = sum(math.dist(c.start, c.end) for c in text.curves())  # type: ignore[union-attr]
     assert lengths == pytest.approx(28)
-
-
-def test_counters_stay_open() -> None:
-    def ring(pen: Any) -> None:
-        bar(0, 0, 700, 700)(pen)
-        pen.moveTo((100, 100))
-        for p in ((600, 100), (600, 600), (100, 600)):
-            pen.lineTo(p)
-        pen.closePath()
-
-    assert drawn_area(open_type({"O": ring}), "O") == pytest.approx(49 - 25)
-
-
-def test_letters_that_reach_into_each_other_are_one() -> None:
-    assert drawn_area(true_type({"-": bar(0, 0, 700, 100)}), "--") == pytest.approx(13)
 
 
 @pytest.mark.parametrize("bold", [False, True])

@@ -25,7 +25,6 @@ from aidl_lang.geometry.region import loop_area
 from tests.amount import tries
 
 FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
-BOLD = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL-Bold.ttf"))
 FONTS = {False: lettering.plain_font(), True: lettering.bold_font()}
 FACES = pytest.mark.parametrize(
     "font", [lettering.plain_font(), lettering.bold_font()], ids=["plain", "bold"]
@@ -76,19 +75,6 @@ def ink(glyph: lettering.Glyph) -> BaseGeometry:
     return found
 
 
-@FACES
-def test_contours_of_the_font_are_nested(font: lettering.Font) -> None:
-    """None crosses itself or another, so that filling them in turns gives the letter."""
-    crossing = []
-    for character in CHARACTERS:
-        for glyph in lettering.typeset(character, "left", 1.6, font):
-            found = list(contours(glyph))
-            apart = all(not a.boundary.intersects(b.boundary) for i, a in enumerate(found) for b in found[:i])
-            if not apart or not all(polygon.is_valid for polygon in found):
-                crossing.append(character)
-    assert crossing == []
-
-
 @pytest.mark.parametrize("character", "HILTAVWXEFKMNZ147")
 def test_ink_is_that_of_the_font(character: str) -> None:
     """The box of straight letters is the one that the font's own table tells."""
@@ -98,28 +84,6 @@ def test_ink_is_that_of_the_font(character: str) -> None:
     )
     assert (left, right) == pytest.approx((0, told.xMax - told.xMin))
     assert (bottom, top) == pytest.approx((told.yMin, told.yMax))
-
-
-def test_characters_stand_an_advance_apart() -> None:
-    """`AVA` has no kerning: the third letter is as far behind the second as the widths say."""
-    names, widths = FONT.getBestCmap(), FONT["hmtx"].metrics
-    a, v = names[ord("A")], names[ord("V")]
-    first, second, third = (g.box[0] * CAPITAL for g in lettering.typeset("AVA", "left", 1.6))
-    bearing = widths[v][1] - widths[a][1]
-    assert second - first == pytest.approx(widths[a][0] + bearing, abs=1)
-    assert third - first == pytest.approx(widths[a][0] + widths[v][0])
-
-
-def test_what_the_font_should_have() -> None:
-    text = (
-        "ABCxyz0123456789 äöüßÄÖÜ éèêç łŁąęż øØåÅ ñ ¿¡ αβγΩμ Ж.,:;!?()[]{}<>/\\|'\"`~@#$%^&*-+=_ "
-        "±°×÷µ²³½¼¾ ≤≥≈≠√∞ ←↑→↓ ⌀ € £ § © ™ – — … „“” ✓"
-    )
-    assert lettering.unknown_characters(text) == []
-
-
-def test_the_faces_have_the_same_characters() -> None:
-    assert BOLD.getBestCmap().keys() == FONT.getBestCmap().keys()
 
 
 @FACES
@@ -193,14 +157,6 @@ def test_letters_of_single_lines_are_drawn_once() -> None:
         assert (glyph.box[1], glyph.box[3]) == pytest.approx((0, 1), abs=1e-9), capital
 
 
-def test_what_single_lines_should_have() -> None:
-    assert lettering.unknown_characters(LATIN + " ", lettering.single_line_font()) == []
-
-
-def test_accents_written_apart_are_joined() -> None:
-    assert lettering.typeset("e\u0301", "left", 1.6) == lettering.typeset("é", "left", 1.6)
-
-
 def test_no_font_is_loaded_without_text() -> None:
     program = (
         "import sys; from aidl_lang import pipeline; from aidl_lang.common.source import SourceFile;"
@@ -257,13 +213,3 @@ def test_letters_stand_on_their_curve(
             assert math.hypot(*out) == pytest.approx(radius)
             up = (-math.sin(angle) * out[0] + math.cos(angle) * out[1]) / radius
             assert up == pytest.approx(-1 if inside else 1)
-
-
-def test_letters_along_a_curve_stand_as_far_apart_as_in_a_line() -> None:
-    """Measured on the curve, by the middles of their ink."""
-    text = 'drawing d { w = circle(center: fixed((0, 0)), radius: 40) t = text("AVI", along: w, height: 9) }'
-    model = pipeline.compile(SourceFile("p", text)).model
-    assert model is not None
-    turned = [part.values["angle"] for part in model.root.geometry[1].parts]
-    middles = [(g.box[0] + g.box[2]) / 2 * 9 for g in lettering.typeset("AVI", "center", 1.6)]
-    assert turned == pytest.approx([-math.degrees(m / 40) for m in middles])

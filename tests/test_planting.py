@@ -7,7 +7,7 @@ import pytest
 from tests.planting import judged, planted
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, pytest.param(5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [1, 2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 5))])
 def test_all_that_is_wrong_is_told_at_once_and_mended(count: int) -> None:
     verdict = judged(planted(1000 * count, count))
     assert (verdict.found, verdict.fits, verdict.solved) == (True, True, True)

@@ -76,7 +76,7 @@ def _untried() -> Iterator[str]:
     for name in sorted(corpus.unused()):
         yield f"`{name}` is in no program of `tests/checker/corpus`: use it in one"
     for call in shapes.unmeasured():
-        yield f"`{call}` has no area and perimeter in `FORMS` of `tests/property/test_shapes.py`"
+        yield f"`{call}` has no area and perimeter in `tests/property/shapes.md`"
 
     for name in coverage.unshown(_read(site.COVERAGE)):
         yield f"`{name}(a, b)` takes nothing: say how it is called in `FORMS` of `{coverage.__name__}`"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import copy
 import html
 import io
 import os
@@ -245,14 +244,6 @@ def test_models_pickle(path: Path) -> None:
     assert again.export(".svg", dimension=True) == model.export(".svg", dimension=True)
     assert aidl_lang.diff(model, again).is_equal
     assert again.params == model.params
-
-
-def test_a_wrong_model_pickles() -> None:
-    for text in (WRONG, FALSE):
-        model = aidl_lang.compile(text)
-        for again in (pickle.loads(pickle.dumps(model)), copy.copy(model), copy.deepcopy(model)):
-            assert again.status == model.status
-            assert [d.message for d in again.diagnostics] == [d.message for d in model.diagnostics]
 
 
 def test_a_copy_has_its_imports_with_it(tmp_path: Path) -> None:

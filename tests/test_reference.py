@@ -6,14 +6,12 @@ What a new name needs besides, and what is generated, is told by `test_public_na
 from __future__ import annotations
 
 import re
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from aidl_dev.reference.guide import template
 from aidl_dev.reference.pages import image
-from aidl_dev.reference.short import short, short_forms
 from aidl_dev.reference.site import texts
 from aidl_lang import pipeline
 from aidl_lang.checking import builtins, library
@@ -23,9 +21,9 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import KINDS, load_tables
-from aidl_lang.tools.reference.collect import Entry, doc, reference
+from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.reference.pages import full_guide, guide
-from aidl_lang.tools.reference.signatures import exactness, held, parts, split_items
+from aidl_lang.tools.reference.signatures import split_items
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())
@@ -112,93 +110,6 @@ def _private_names(text: str) -> set[str]:
 # --- What is read off definitions -----------------------------------------------------------------
 
 
-@cache
-def _definitions() -> library.Library:
-    text = """
-    /// Two bars.
-    /// Second sentence.
-    shape bars(center: point = (0, 0), width: length, n: integer) {
-        let half = width / 2
-        middle = line(center - (half, 0), center + (half, 0))
-        for i in 0..<n { bar[i] = rectangle(center: center, width: width, height: 2) }
-        construction guide = line(center, center + (1, 1))
-        let bars = bar
-        let size = width
-    }
-    constraint near(a: box, b: box) { a.bottom >= b.top }
-    constraint near(a: box, b: box, gap: length) { a.bottom == b.top + gap }
-    constraint close(b: box, a: box, gap: length) { near(a, b, gap: gap) }
-    constraint lined(things: list, inset: length = 0) {
-        for i in 0..<len(things) - 1 { box(things[i]).left == box(things[-1]).left + inset }
-    }
-    constraint within_reach(a: point, b: point, margin: length) {
-        let room = margin * 2
-        norm(b - a) <= room
-    }
-    fn plate(left: length, width: length) = left + width
-    fn plate(right: length, width: length) = right - width
-    fn plate(left: length, right: length) = right - left
-    fn plate(left: point, width: length) = width
-    constraint far(a, b, value: length) { distance(a, b) == value }
-    """
-    return library.from_modules([parse(SourceFile("definitions", text)).module])
-
-
-def _node(name: str, overload: int = 0) -> ast.Callable:
-    node = _definitions().callables[name][overload].node
-    assert node is not None
-    return node
-
-
-def test_parts_are_what_the_body_declares_for_its_users() -> None:
-    assert [str(p) for p in parts(_node("bars"))] == ["middle: line", "bar[i]: rectangle", "bars", "size"]
-
-
-@pytest.mark.parametrize(
-    ("name", "overload", "expected"),
-    [
-        ("near", 0, "`b`"),
-        ("close", 0, "`b`"),
-        ("lined", 0, "the last of `things`"),
-        ("far", 0, "the value"),
-        ("bars", 0, ""),
-    ],
-)
-def test_what_is_held(name: str, overload: int, expected: str) -> None:
-    assert held(_node(name, overload), _definitions().callables) == expected
-
-
-@pytest.mark.parametrize(
-    ("name", "overload", "expected"),
-    [
-        ("near", 0, {}),
-        ("near", 1, {"gap": "exactly"}),
-        ("close", 0, {"gap": "exactly"}),
-        ("lined", 0, {"inset": "exactly"}),
-        ("within_reach", 0, {"margin": "at least"}),
-    ],
-)
-def test_whether_a_measure_is_exact(name: str, overload: int, expected: dict[str, str]) -> None:
-    assert exactness(_node(name, overload), _definitions().callables) == expected
-
-
-def test_short_forms() -> None:
-    assert short("ring(center: point = (0, 0), radius: length)") == "ring(center?, radius)"
-    assert short("for NAME in LIST { … }") == "for NAME in LIST { … }"
-    nodes = [_node("near"), _node("near", 1)]
-    assert short_forms([], nodes) == ["near(a, b, gap?)"]
-    assert short_forms([], [_node("lined")]) == ["lined(a, b, …, inset?)"]
-    plates = [_node("plate", i) for i in range(4)]
-    assert short_forms([], plates) == ["plate(left/right, width)", "plate(left, right)"]
-
-
-def test_comments_are_taken_apart() -> None:
-    found = doc("A ring, 1.5 mm\nwide. `r` is its radius.\n\nAnd more.\n\n```aidl\nsolid s { }\n```\n")
-    assert (found.line, found.text) == ("A ring, 1.5 mm wide.", "`r` is its radius.\n\nAnd more.")
-    assert found.example == "solid s { }\n"
-    assert doc("").line == ""
-
-
 def test_other_spellings_and_synonyms_are_found() -> None:
     known = reference()
     for name in ("rounded_rectangle", "RoundedRectangle", "rounded_rect", "`rounded_rectangle`"):
@@ -251,10 +162,6 @@ def test_programs_of_the_guide_use_public_names_only() -> None:
         assert _private_names(program) == set()
 
 
-def test_placeholders_are_known() -> None:
-    assert "{{" not in guide()
-
-
 def test_full_guide_holds_every_entry() -> None:
     headings = set(re.findall(r"^### (.+)$", full_guide(), flags=re.MULTILINE))
     assert headings >= {e.name for e in ENTRIES}
@@ -267,17 +174,3 @@ def test_codes_in_the_guide_exist() -> None:
     codes = set(re.findall(r"\b[EWN]\d{4}\b", guide()))
     assert codes
     assert codes <= set(resources.codes())
-
-
-def test_forms_are_written_as_few() -> None:
-    lines = guide().splitlines()
-    for line in (
-        "dome(…/bottom_center, width, height) →",
-        "parallelogram(…, width, {height, shift | side, side_angle}) → edges corners",
-        "arch(…/bottom_center, width, height, rise?) →",
-        "trapezoid(…/bottom_center/top_center, bottom_width, top_width, height) | (…, bottom_width, height,",
-        "path(steps, from/start?, heading?, closed?)",
-        "shingles(of, width, height, round?, gap?, angle?, margin?)",
-        "smooth_to(to) | (to, heading/leaving) | (to, heading, leaving)",
-    ):
-        assert any(found.startswith(line) for found in lines), line

@@ -44,19 +44,6 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Checkout:
     return Checkout(tmp_path)
 
 
-def test_resources_are_found() -> None:
-    assert resources.resource("grammar/aidl.lark").is_file()
-    assert resources.resource("docs/diagnostics").is_dir()
-    with pytest.raises(FileNotFoundError):
-        resources.resource("nothing/of/the/kind")
-
-
-def test_it_is_made_once(checkout: Checkout) -> None:
-    assert [checkout.derive(), checkout.derive(), checkout.made] == [b"FIRST", b"FIRST", 1]
-    (kept,) = checkout.kept
-    assert (kept.name.startswith("squares-"), kept.suffix, kept.read_text()) == (True, ".json", "FIRST")
-
-
 def test_it_is_made_again_when_a_source_changes(checkout: Checkout) -> None:
     checkout.derive()
     (old,) = checkout.kept
@@ -64,20 +51,6 @@ def test_it_is_made_again_when_a_source_changes(checkout: Checkout) -> None:
     assert [checkout.derive(), checkout.made] == [b"SECOND", 2]
     (new,) = checkout.kept
     assert new != old
-
-
-def test_what_belongs_to_others_stays(checkout: Checkout) -> None:
-    folder = checkout.root / "build" / "derived"
-    folder.mkdir(parents=True)
-    other = folder / "circles-0123.json"
-    other.write_text("")
-    checkout.derive()
-    assert other.exists()
-
-
-def test_a_folder_that_cannot_be_used_costs_time_only(checkout: Checkout) -> None:
-    (checkout.root / "build").write_text("")
-    assert [checkout.derive(), checkout.derive(), checkout.made] == [b"FIRST", b"FIRST", 2]
 
 
 def test_nothing_is_kept_of_what_cannot_be_made(checkout: Checkout) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -19,9 +18,7 @@ from aidl_lang.tools.terminal import (
     cells,
     fit,
     has_true_colour,
-    iterm,
     kitty,
-    nearest,
     plausible,
     protocol,
     sixel,
@@ -103,15 +100,6 @@ def test_kitty_is_given_the_file_in_chunks():
     assert base64.b64decode("".join(body for _, body in chunks)) == data
 
 
-def test_iterm_is_given_the_file():
-    data = png(halves())
-    head, body = re.fullmatch(r"\x1b\]1337;File=([^:]*):([^\x07]*)\x07", iterm(data, 30, 10)).groups()
-    assert dict(pair.split("=") for pair in head.split(";")) == {
-        "inline": "1", "size": str(len(data)), "width": "30", "height": "10", "preserveAspectRatio": "1",
-    }  # fmt: skip
-    assert base64.b64decode(body) == data
-
-
 def decoded_sixel(sent: str) -> np.ndarray:
     """The pixels of a sixel picture, by the rules of the VT340."""
     width, height, body = re.fullmatch(r'\x1bP0;1;0q"1;1;(\d+);(\d+)(.*)\x1b\\', sent, re.DOTALL).groups()
@@ -149,49 +137,6 @@ def test_blocks_have_two_pixels_each():
     (upper, _), (lower, _) = cells("blocks", png(pixels), 2, 2)
     assert upper == Cell("▀", RED, BLUE)
     assert lower == Cell(" ", None, BLUE)
-
-
-def test_braille_dots_lie_where_the_picture_is_dark():
-    pixels = np.full((8, 4, 3), 255)
-    pixels[0, 0] = pixels[3, 1] = pixels[7, 2] = 0
-    grid = cells("braille", png(pixels), 2, 2)
-    # Dots 1 and 8 of the first cell, dot 7 of the last (Unicode, Braille Patterns)
-    assert [[ord(cell.character) - 0x2800 for cell in row] for row in grid] == [[1 | 128, 0], [0, 64]]
-
-
-@pytest.mark.parametrize(
-    ("stroke", "expected"),
-    [
-        (lambda x, y: y == 12, "-"),
-        (lambda x, y: x == 6, "|"),
-        (lambda x, y: x == 11 - y // 2, "/"),
-        (lambda x, y: x == y // 2, "\\"),
-        (lambda x, y: y == 15, "_"),
-        (lambda x, y: x < 0, " "),
-    ],
-)
-def test_ascii_looks_like_the_picture(stroke: Callable[[int, int], bool], expected: str):
-    """A line one pixel wide through three by three cells; the one in the middle."""
-    dark = np.array([[stroke(x, y) for x in range(12)] for y in range(24)])
-    grid = cells("ascii", png(np.repeat(np.where(dark, 0, 255)[..., None], 3, axis=2)), 3, 3)
-    assert grid[1][1].character == expected
-
-
-def test_lines_without_colour_have_no_escapes():
-    assert text([[Cell("a"), Cell(" "), Cell("b"), Cell(" ")], [Cell(" ")]]) == "a b\n\n"
-
-
-def test_lines_with_colour_end_without_it():
-    row = [Cell("▀", RED, BLUE), Cell("▀", RED, BLUE), Cell(" ", None, WHITE)]
-    assert text([row]) == "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[48;2;255;255;255m \x1b[0m\n"
-    assert text([row], true_colour=False) == "\x1b[38;5;196;48;5;21m▀▀\x1b[48;5;231m \x1b[0m\n"
-
-
-def test_the_nearest_of_256_colours():
-    """As xterm has them: 16 + 36 r + 6 g + b, and 24 greys from 232."""
-    assert [nearest(c) for c in [(0, 0, 0), (255, 255, 255), (95, 135, 175), (8, 8, 8), (128, 128, 129)]] == [
-        16, 231, 16 + 36 + 12 + 3, 232, 244,
-    ]  # fmt: skip
 
 
 def test_labels_do_not_touch_nor_leave_the_grid():

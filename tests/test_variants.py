@@ -15,18 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.building.lower import lower
 from aidl_lang.checking import builtins
 from aidl_lang.checking.subset import FORBIDDEN, Variant
-from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, MemoryWorld
-from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solver import solve
-from aidl_lang.solver.problem import Status
-from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.solver.settings import Stages
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
@@ -234,33 +229,6 @@ def test_what_a_variant_lacks_is_reported(variant: Variant, text: str, expected:
     assert not CODES[variant] & {d.code for d in checked(text, other)}
 
 
-def test_every_construct_is_tried() -> None:
-    messages = {message for _, _, expected in FOUND.values() for _, _, message, _ in expected}
-    for rules in FORBIDDEN.values():
-        for rule in rules.values():
-            pattern = ".+".join(map(re.escape, rule.message.split("{name}")))
-            assert any(re.fullmatch(pattern, message) for message in messages), rule.message
-
-
-def test_imports_are_held_to_the_variant_and_the_library_is_not() -> None:
-    files = {"lib.aidl": "hole slit(w = 2) { r = circle(radius: w) }\nvar gap = 2\nfn two(x) = 2 * x"}
-    text = 'import "lib.aidl"\nsolid a { body = rounded_rectangle(width: two(20), height: 20, radius: 4) }'
-    for variant, code, name in ((FLAT, "E0404", "slit"), (WRITTEN, "E0407", "gap")):
-        (found,) = (d for d in checked(text, variant, files) if d.is_error)
-        assert (found.code, found.span and found.span.text) == (code, name)
-        assert found.span is not None
-        assert found.span.source.name == "lib.aidl"
-
-
-def test_a_var_is_mended() -> None:
-    source = SourceFile("part.aidl", "solid a {\n var gap = 5\n c = circle(center: (gap, 0), radius: 9)\n}")
-    chosen = pipeline.Settings(variant=WRITTEN)
-    text, applied = apply_fixes(source, pipeline.check(source, settings=chosen))
-    assert applied == 1
-    assert text == source.text.replace("var", "let")
-    assert compiled(text, WRITTEN).ok
-
-
 # --- What is advised ------------------------------------------------------------------------------
 
 
@@ -274,26 +242,6 @@ def test_no_advice_to_constrain_where_nothing_is_constrained() -> None:
     assert found.hints == (
         "name the value in the structure around both, as in `let middle = (10, 0)`, and use the name in both",
     )
-
-
-def test_no_advice_to_make_a_hole_where_there_is_one_structure() -> None:
-    text = "solid a {\n plate = circle(radius: 9)\n bore = circle(radius: 2)\n}"
-    (full,) = (d for d in compiled(text, Variant.FULL).diagnostics if d.code == "W0701")
-    (found,) = (d for d in compiled(text, FLAT).diagnostics if d.code == "W0701")
-    assert full.fix is not None
-    assert found.fix is None
-    assert found.hints == (f"to make it a hole, {CUT}",)
-
-
-def test_no_constraint_is_put_in_to_close_a_gap() -> None:
-    text = (
-        "solid a {\n r = line((0, 0), (20, 0))\n s = line((20, 0.00001), (10, 20))\n"
-        " t = line((10, 20), (0, 0))\n}"
-    )
-    (full,) = (d for d in compiled(text, Variant.FULL).diagnostics if d.code == "N0708")
-    (found,) = (d for d in compiled(text, WRITTEN).diagnostics if d.code == "N0708")
-    assert full.fix is not None
-    assert (found.fix, found.hints) == (None, ())
 
 
 # --- What is taken means the same -----------------------------------------------------------------
@@ -415,41 +363,7 @@ def test_other_stages_meet_the_same_constraints(stages: Stages, changed: int) ->
     assert found.drawing.box == pytest.approx((-25, -10, 25, 10))
 
 
-def stages_of(stages: Stages) -> list[str]:
-    text = """
-        assembly a {
-            solid b { c = circle(center: (0, 0), radius: 5) }
-            solid d { e = circle(center: (30, 3), radius: 5) }
-            constrain { d.left == b.right d.bottom == b.bottom }
-        }
-    """
-    program, _ = pipeline.front(SourceFile("part.aidl", text))
-    solution = solve(lower(interpret(program).model).problem, SolverSettings(stages=stages))
-    assert solution.status is Status.SOLVED
-    return [stage.stage for stage in solution.stages]
-
-
-def test_the_stages_are_those_asked_for() -> None:
-    assert stages_of(Stages.FLAT) == ["own"]
-    assert stages_of(Stages.PAPER)[-1] == "translations 1"
-    assert stages_of(Stages.FULL)[-1] in ("placed", "own")
-
-
-def test_the_paper_s_solver_goes_with_its_language() -> None:
-    assert pipeline.Settings.of(Variant.PAPER).solving.stages is Stages.PAPER
-    assert pipeline.Settings.of(Variant.NO_HIERARCHY).solving.stages is Stages.FULL
-
-
 # --- The guides -----------------------------------------------------------------------------------
-
-UNSAID = {
-    FLAT: r"\bhole \S+ \{|`hole`|\btemplates?\b|\bchild|\bassembly\b"
-    r"|\bshape \w+\(|\bat \(|@detached|\bnests?\b|_mount\(",
-    WRITTEN: r"\bconstrain|\bprefer\b|\bvar\b|\bweight\b|\bguess|\bsolve|\bfixed\b"
-    r"|\babove\(|\binside\(|\bsmooth\b"
-    r"|\brotatable\b|\btangent\(|\bmeshes\b",
-}
-"""What a guide to a variant does not speak of, apart from the list of reserved words."""
 
 
 def programs(variant: Variant) -> list[str]:
@@ -466,13 +380,6 @@ def test_programs_of_a_guide_are_of_its_variant(variant: Variant) -> None:
 
 
 @pytest.mark.parametrize("variant", SUBSETS)
-def test_guide_does_not_speak_of_what_the_variant_lacks(variant: Variant) -> None:
-    text = re.sub(r"Reserved: [^.]*\.", "", guide(variant))
-    assert [m[0] for m in re.finditer(UNSAID[variant], text)] == []
-    assert re.search(UNSAID[variant], guide()), "the pattern finds nothing anywhere"
-
-
-@pytest.mark.parametrize("variant", SUBSETS)
 def test_guide_names_nothing_that_the_variant_refuses(variant: Variant) -> None:
     """Names of the library whose every form is refused are left out, and all others are there."""
     words = set(re.findall(r"@?\w+", guide(variant)))
@@ -482,21 +389,6 @@ def test_guide_names_nothing_that_the_variant_refuses(variant: Variant) -> None:
     assert sorts == expected[variant]
     marks = {name for name in left_out if name in builtins.SIGNATURES}
     assert marks == (set() if variant is FLAT else {"fixed", "guess", "nearest"})
-
-
-def test_guides_are_shorter_than_the_whole() -> None:
-    import mistral_common
-    from mistral_common.tokens.tokenizers.tekken import Tekkenizer
-
-    vocabulary = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"
-    count = Tekkenizer.from_file(str(vocabulary))
-    full, *others = (len(count.encode(guide(v), bos=False, eos=False)) for v in Variant)
-    assert max(others) < full
-
-
-@pytest.mark.parametrize("variant", SUBSETS)
-def test_no_marks_are_left_in_a_guide(variant: Variant) -> None:
-    assert not re.search(r"\{\{|\}\}|\n\n\n", guide(variant))
 
 
 # --- The command line -----------------------------------------------------------------------------
@@ -515,11 +407,6 @@ def test_verbs_take_a_variant(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert main(["compile", str(file), "--variant", "no-hierarchy"]) == 0
     assert file.with_suffix(".svg").exists()
     assert pipeline.check(SourceFile("a.aidl", PROGRAM), DiskWorld(tmp_path)) == []
-
-
-def test_guide_of_a_variant_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["guide", "--variant", "no-hierarchy"]) == 0
-    assert capsys.readouterr().out == guide(FLAT)
 
 
 @pytest.mark.parametrize(

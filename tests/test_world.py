@@ -13,8 +13,6 @@ from aidl_lang.common.world import (
     MemoryWorld,
     ReadFailure,
     World,
-    normalize,
-    relative_to,
 )
 
 
@@ -28,12 +26,6 @@ def world(request: pytest.FixtureRequest, tmp_path: Path) -> World:
         (tmp_path / "root" / path).write_text(text)
     (tmp_path / "secret").write_text("secret")
     return DiskWorld(tmp_path / "root")
-
-
-def test_files_are_read(world: World) -> None:
-    assert world.read("main.aidl") == "main"
-    assert world.read("parts/bolt.aidl") == "bolt"
-    assert world.read("./parts/../parts/bolt.aidl") == "bolt"
 
 
 @pytest.mark.parametrize(
@@ -105,11 +97,3 @@ def test_only_text_is_read(tmp_path: Path) -> None:
     with pytest.raises(FileError) as caught:
         DiskWorld(tmp_path).read("bytes")
     assert caught.value.reason is ReadFailure.NOT_TEXT
-
-
-def test_paths_are_relative_to_the_importing_file() -> None:
-    assert relative_to("bolt.aidl", "parts/nut.aidl") == "parts/bolt.aidl"
-    assert relative_to("../main.aidl", "parts/nut.aidl") == "main.aidl"
-    assert normalize("a/./b/../c") == "a/c"
-    with pytest.raises(FileError):
-        relative_to("../../x", "parts/nut.aidl")

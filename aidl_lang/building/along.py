@@ -185,26 +185,15 @@ def of_ellipse(
     cos, sin = ex.cos(angle), ex.sin(angle)
 
     def place(u: float, v: float) -> Place:
-        along, across = ex.mul(ex.constant(u), rx), ex.mul(ex.constant(v), ry)
-        return (
-            ex.add(center[0], ex.sub(ex.mul(cos, along), ex.mul(sin, across))),
-            ex.add(center[1], ex.add(ex.mul(sin, along), ex.mul(cos, across))),
-        )
+        x, y = ex.turned(cos, sin, ex.mul(ex.constant(u), rx), ex.mul(ex.constant(v), ry))
+        return ex.add(center[0], x), ex.add(center[1], y)
 
     found = []
     for k in range(count):
         (c0, s0), (c1, s1) = ((math.cos(a), math.sin(a)) for a in (turn * k, turn * (k + 1)))
-        ends = place(c0, s0), place(c1, s1)
-        found.append(
-            Cubic(
-                (
-                    ends[0],
-                    place(c0 - handle * s0, s0 + handle * c0),
-                    place(c1 + handle * s1, s1 - handle * c1),
-                    ends[1],
-                )
-            )
-        )
+        start, end = place(c0, s0), place(c1, s1)
+        inner = place(c0 - handle * s0, s0 + handle * c0), place(c1 + handle * s1, s1 - handle * c1)
+        found.append(Cubic((start, *inner, end)))
     return found
 
 
@@ -244,12 +233,9 @@ class Stretch:
             cos, sin = ex.cos(self.heading), ex.sin(self.heading)
             return ex.add(x, ex.mul(way, cos)), ex.add(y, ex.mul(way, sin))
         turn = ex.mul(self.bow, way)
-        cos, sin = ex.cos(turn), ex.sin(turn)
-        u, v = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
-        return (
-            ex.add(self.center[0], ex.sub(ex.mul(cos, u), ex.mul(sin, v))),
-            ex.add(self.center[1], ex.add(ex.mul(sin, u), ex.mul(cos, v))),
-        )
+        out = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
+        u, v = ex.turned(ex.cos(turn), ex.sin(turn), *out)
+        return ex.add(self.center[0], u), ex.add(self.center[1], v)
 
     def direction(self, way: Expression) -> Expression:
         return ex.add(self.heading, ex.mul(self.bow, way))
@@ -319,11 +305,8 @@ class Way:
         """
         stretch = self.stretches[index]
         whole = stretch.length
-        unmet = [
-            ex.apply("maximum", ex.ZERO, over)
-            for over, is_kept in ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
-            if not is_kept
-        ]
+        overs = ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
+        unmet = [ex.apply("maximum", ex.ZERO, over) for over, is_kept in overs if not is_kept]
         own = ex.apply("maximum", own, ex.ZERO) if at_least else own
         own = ex.apply("minimum", own, whole) if at_most else own
         if isinstance(stretch, Stretch):
@@ -406,9 +389,7 @@ def _turn(before: Expression, after: Expression) -> Expression:
 
 
 def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
-    """Returns the way along curves that are joined at their ends, in the sense in which the first is written;
-    None for such as are not one line.
-    """
+    """Returns the way along curves joined at their ends, in the sense of the first; None if not one line."""
     if len(curves) == 1 and curves[0].type == "circle":
         return Way((_circle(curves[0], here),), is_closed=True)
     if any(curve.type == "circle" or (curve.type == "ellipse" and len(curves) > 1) for curve in curves):
@@ -454,9 +435,7 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
     return walked
 
 
-def _next(
-    rest: Sequence[_Pair], at: tuple[float, float], near: float
-) -> tuple[_Pair, Stretch | Cubic] | None:
+def _next(rest: list[_Pair], at: tuple[float, float], near: float) -> tuple[_Pair, Stretch | Cubic] | None:
     for pair in rest:
         for stretch in pair:
             if math.dist(_value(stretch.start), at) <= near:
@@ -469,13 +448,8 @@ def _circle(curve: Geometry, here: Structure) -> Stretch:
     x, y = xy(core["center"])
     radius = number(core["radius"])
     turn = ex.constant(-1.0 if clockwise(curve, here) else 1.0)
-    return Stretch(
-        (ex.add(x, radius), y),
-        ex.mul(turn, ex.constant(90.0)),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(turn, _DEGREES), radius),
-    )
+    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    return Stretch((ex.add(x, radius), y), ex.mul(turn, ex.constant(90.0)), length, (x, y), bend)
 
 
 def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
@@ -486,13 +460,9 @@ def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stre
     is_clockwise = clockwise(curve, here)
     radius = distance(core["center"], core["start"])
     turn = ex.constant(-1.0 if is_clockwise != reverse else 1.0)
-    return Stretch(
-        xy(start),
-        ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0))),
-        ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius),
-        xy(core["center"]),
-        ex.div(ex.mul(turn, _DEGREES), radius),
-    )
+    ahead = ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0)))
+    length, bend = ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius), ex.mul(turn, _DEGREES)
+    return Stretch(xy(start), ahead, length, xy(core["center"]), ex.div(bend, radius))
 
 
 def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | None) -> Way | None:
@@ -515,15 +485,10 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
 
 
 def _written_round(circle: Geometry, here: Structure, *, inside: bool) -> Stretch:
-    core, turn = view(circle, here), 1.0 if inside else -1.0
+    core, turn = view(circle, here), ex.constant(1.0 if inside else -1.0)
     (x, y), radius = xy(core["center"]), number(core["radius"])
-    return Stretch(
-        (x, ex.add(y, ex.mul(ex.constant(turn), radius))),
-        ex.constant(180.0),
-        ex.mul(ex.constant(2 * math.pi), radius),
-        (x, y),
-        ex.div(ex.mul(ex.constant(turn), _DEGREES), radius),
-    )
+    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    return Stretch((x, ex.add(y, ex.mul(turn, radius))), ex.constant(180.0), length, (x, y), bend)
 
 
 def _value(place: Place) -> tuple[float, float]:

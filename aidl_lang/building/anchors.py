@@ -165,12 +165,8 @@ def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
                 together[p.every] = together.get(p.every, frozenset()) | p.near
         order = [every for comparison, _ in members for every in comparison.parties]
         known = [every for every in dict.fromkeys(order) if every in together]
-        yield _Tie(
-            constraint,
-            [comparison for comparison, _ in members],
-            [_Party(every, together[every]) for every in known],
-            any(len(parties) == 1 for _, parties in members),
-        )
+        comparisons, is_tied = [each for each, _ in members], any(len(found) == 1 for _, found in members)
+        yield _Tie(constraint, comparisons, [_Party(every, together[every]) for every in known], is_tied)
 
 
 def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:

@@ -216,13 +216,10 @@ class Assignment:
         outward = (g for g in self.it.following if not g.bound_to.is_within(source))
         follower = next((g for g in outward if g.owner.is_within(source)), None)
         if follower is not None:
-            self.it.report(
-                "E0331",
-                f"`{source.name}` cannot be copied alone: `{follower.path}` is made of geometry of "
-                f"`{follower.bound_to.path}`",
-                self.node.value,
-                hints=[f"copy `{follower.bound_to.name}` with all that it holds"],
-            )
+            why = f"`{follower.path}` is made of geometry of `{follower.bound_to.path}`"
+            message = f"`{source.name}` cannot be copied alone: {why}"
+            hint = f"copy `{follower.bound_to.name}` with all that it holds"
+            self.it.report("E0331", message, self.node.value, hints=[hint])
             return NOTHING
         scale = motion.scale
         inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)

@@ -67,11 +67,9 @@ def _settle(it: Interpreter, s: Structure, stated: StatedClip) -> None:
             s.clip = tuple(_outline(it, s, stated, values))
 
 
-def _outline(
-    it: Interpreter, s: Structure, stated: StatedClip, values: Sequence[Value]
-) -> Iterator[Geometry]:
+def _outline(it: Interpreter, s: Structure, clip: StatedClip, values: Sequence[Value]) -> Iterator[Geometry]:
     """Yields the geometry that `@clip` names; reports what is no outline."""
-    attribute = stated.attribute
+    attribute = clip.attribute
     found = list(each_of(values[0], Geometry)) if len(values) == 1 else []
     if found and all(g.type != "point" and not g.is_nameless for g in found):
         yield from found
@@ -234,23 +232,18 @@ def _report_cycle(
     rest = [*cycle[1:], cycle[0]]
     attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]
     chain = ", which is behind ".join(f"`{s.name}`" for s in rest)
-    it.report(
-        "E0521",
-        f"`{cycle[0].name}` would be behind itself: it is behind {chain}",
-        attributes[0],
-        hints=[f"leave one of {listed(f'`{a.span.one_line}`' for a in attributes)} out"],
-        secondary=[Label(a.span, "and this") for a in attributes[1:]],
-    )
+    message = f"`{cycle[0].name}` would be behind itself: it is behind {chain}"
+    hint = f"leave one of {listed(f'`{a.span.one_line}`' for a in attributes)} out"
+    others = [Label(a.span, "and this") for a in attributes[1:]]
+    it.report("E0521", message, attributes[0], hints=[hint], secondary=others)
 
 
 _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
 
 
-OWN_LOOKS = {
-    "drawing": ("color", "stroke", "dash", "opacity", "shade"),
-    "solid": ("color", "opacity", "shade"),
-    "assembly": ("color", "opacity", "shade"),
-}
+_MATERIAL_LOOKS = ("color", "opacity", "shade")
+_LINE_LOOKS = ("color", "stroke", "dash", "opacity", "shade")
+OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATERIAL_LOOKS}
 """Attributes that a geometry may have for itself, by the kind of its structure."""
 
 

@@ -241,11 +241,8 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
     scope = env.scope
-    scope.values |= {
-        s.name.text: LetBinding(s.value, scope)
-        for s in block.statements
-        if isinstance(s, ast.Let | ast.Assign)
-    }
+    named = (s for s in block.statements if isinstance(s, ast.Let | ast.Assign))
+    scope.values |= {s.name.text: LetBinding(s.value, scope) for s in named}
     found: list[Value] = []
     for statement in block.statements:
         inner = Env(scope, env.here, env.reach)
@@ -379,9 +376,7 @@ def _points_in(name: str, value: Value) -> Iterator[tuple[str, PointVal]]:
 def _bind_inside(
     it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
 ) -> Value:
-    """Returns an argument that is no number: its points where they were placed, and the numbers in records as
-    sizes. Lists of numbers stay constants.
-    """
+    """Returns an argument that is no number: points as placed, numbers in records (not in lists) as sizes."""
     match value:
         case PointVal():
             return moved[name]
@@ -389,14 +384,13 @@ def _bind_inside(
             inner = (_bind_inside(it, v, f"{name}[{i}]", moved, geometry) for i, v in enumerate(items))
             return ListVal(tuple(inner))
         case RecordVal(fields):
-            return RecordVal(
-                {
-                    k: _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
-                    if isinstance(v, Num)
-                    else _bind_inside(it, v, f"{name}.{k}", moved, geometry)
-                    for k, v in fields.items()
-                }
-            )
+            bound: dict[str, Value] = {}
+            for k, v in fields.items():
+                if isinstance(v, Num):
+                    bound[k] = _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                else:
+                    bound[k] = _bind_inside(it, v, f"{name}.{k}", moved, geometry)
+            return RecordVal(bound)
         case _:
             return value
 

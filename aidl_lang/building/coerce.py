@@ -70,13 +70,10 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
     if not it.watched:
         kind = "geometry" if env.reach is Reach.OWN else "a constraint"
         allowed = "its own structure" if env.reach is Reach.OWN else "the structure that holds it"
-        it.report(
-            "E0401" if env.reach is Reach.OWN else "E0402",
-            f"{kind} of `{env.here.path}` cannot use `{node.span.text}`, which belongs to `{owner.path}`",
-            node,
-            label=f"outside {allowed}",
-            hints=[f"write a first guess here and a constraint in `{common_ancestor(owner, env.here).path}`"],
-        )
+        code, name = "E0401" if env.reach is Reach.OWN else "E0402", node.span.text
+        message = f"{kind} of `{env.here.path}` cannot use `{name}`, which belongs to `{owner.path}`"
+        hint = f"write a first guess here and a constraint in `{common_ancestor(owner, env.here).path}`"
+        it.report(code, message, node, label=f"outside {allowed}", hints=[hint])
     return False
 
 
@@ -229,12 +226,10 @@ def _numbered(it: Interpreter, node: ast.Node) -> Fix | None:
         for index in (*getattr(found, "indices", ()), getattr(found, "index", None))
         if isinstance(index, ast.Name) and it.program.resolution.uses.get(index) is symbol
     ]
-    edits = [
-        Edit(Span(through.source, variable.span.start, variable.span.start), f"{count}, "),
-        Edit(Span(through.source, through.start, through.start), "enumerate("),
-        Edit(Span(through.source, through.end, through.end), ")"),
-        *(Edit(index.span, count) for index in indices),
-    ]
+    start, end = through.start, through.end
+    texts = {variable.span.start: f"{count}, ", start: "enumerate(", end: ")"}
+    edits = [Edit(Span(through.source, at, at), text) for at, text in texts.items()]
+    edits += [Edit(index.span, count) for index in indices]
     told = f"for {count}, {variable.text} in enumerate({shown(loop.iterable)})"
     return Fix(f"count the turns: `{told}`, and `[{count}]`", tuple(edits), is_sure=True)
 

@@ -239,17 +239,12 @@ def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parti
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
     """Returns the same condition, with other unknowns moving first."""
-    return Condition(
-        condition.operator,
-        tuple(
-            placed_by(p, placed, parties)
-            if isinstance(p, Comparison)
-            else replace_placed(p, placed, parties)
-            if isinstance(p, Condition)
-            else p
-            for p in condition.parts
-        ),
-    )
+    parts: list[Condition | Comparison | bool] = []
+    for part in condition.parts:
+        if isinstance(part, Comparison):
+            part = placed_by(part, placed, parties)
+        parts.append(replace_placed(part, placed, parties) if isinstance(part, Condition) else part)
+    return Condition(condition.operator, tuple(parts))
 
 
 def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:

@@ -53,14 +53,10 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     is_through = differ(start, across) <= differ(start, end)
     is_plain = _is_plain(node)
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
-    it.report(
-        _CODE,
-        f"the points of `{node.callee.text}` are centre, start and end, and here the start is {start:g} "
-        f"from the centre and the end {end:g}",
-        node,
-        hints=[f"or write `{_named(node, other)}` if that is meant" if is_plain else _HINT],
-        fix=_fix(node, meant) if is_plain else None,
-    )
+    far = f"the start is {start:g} from the centre and the end {end:g}"
+    message = f"the points of `{node.callee.text}` are centre, start and end, and here {far}"
+    hint = f"or write `{_named(node, other)}` if that is meant" if is_plain else _HINT
+    it.report(_CODE, message, node, hints=[hint], fix=_fix(node, meant) if is_plain else None)
 
 
 def _apart(a: PointVal, b: PointVal) -> float:
@@ -130,13 +126,10 @@ def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
     if (measured := next(found, None)) is None:
         return False
     is_box = measured.kind in SIDES
-    it.report(
-        "E0519" if is_box else "E0512",
-        f"geometry cannot follow from {'this box' if is_box else f'`{measured.kind}`'}, which is known after "
-        "solving only",
-        span,
-        hints=["take the sizes and points of what is measured, or check it in an `assert`"],
-    )
+    code, what = ("E0519", "this box") if is_box else ("E0512", f"`{measured.kind}`")
+    message = f"geometry cannot follow from {what}, which is known after solving only"
+    hint = "take the sizes and points of what is measured, or check it in an `assert`"
+    it.report(code, message, span, hints=[hint])
     return True
 
 
@@ -148,14 +141,8 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
         hint = f"write {-value.value:g}; directions belong to angles and positions"
         it.report("E0515", message, holder.span, hints=[hint])
     if expression.is_constant and value.status in (Exactness.NUMBER, Exactness.GUESS):
-        expression = it.unknown(
-            value.value,
-            holder,
-            name,
-            owner=holder.owner,
-            dimension=dimension,
-            kept=value.status is Exactness.NUMBER,
-        )
+        kept, owner = value.status is Exactness.NUMBER, holder.owner
+        expression = it.unknown(value.value, holder, name, owner=owner, dimension=dimension, kept=kept)
         it.became(value, expression, holder, name, dimension)
     return Num(expression, dimension, Exactness.REFERENCE)
 
@@ -280,13 +267,20 @@ def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     """Returns a named point: its unknowns are called `p.x` and `p.y`."""
-    x, y = (
-        solvable(it, n, g.span)
-        if n.status >= Exactness.FIXED
-        else it.became(n, it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH), g, axis)
-        for n, axis in ((at.x, "x"), (at.y, "y"))
-    )
-    return point(x, y)
+    return point(*loose_place(it, at, g))
+
+
+def loose_place(it: Interpreter, at: PointVal, of: Geometry | Structure) -> tuple[Expression, Expression]:
+    """Returns the coordinates of a point or a frame: exact ones as they are, else unknowns `x` and `y`."""
+    owner, moved = (of.owner, None) if isinstance(of, Geometry) else (of.parent or of, of)
+
+    def coordinate(n: Num, axis: str) -> Expression:
+        if n.status >= Exactness.FIXED:
+            return solvable(it, n, of.span)
+        made = it.unknown(n.value, of, axis, owner=owner, dimension=LENGTH, frame_of=moved)
+        return it.became(n, made, of, axis)
+
+    return coordinate(at.x, "x"), coordinate(at.y, "y")
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
@@ -359,9 +353,7 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
-    """Returns three literal points of one circle, rounded as by hand, as the radius of the start and two
-    angles: nothing is left to be held equal.
-    """
+    """Returns three literal points of one circle, rounded as by hand, as a radius and two angles."""
     if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
         return a
     center = _written(a, "center")

@@ -266,9 +266,7 @@ class Copier:
     # --- Structures ----------------------------------------------------------------------------
 
     def structure(self, source: Structure, parent: Structure, name: str, frame: Frame) -> Structure:
-        """Returns the copy of a structure with all it holds except its constraints: they are about the
-        unknowns, which are the source's.
-        """
+        """Returns the copy of a structure without its constraints, which are about the source's unknowns."""
         self.it.count_entity(self.span)
         copy = Structure(source.kind, name, parent, self.span or source.span, frame)
         copy.source, copy.doc = source, source.doc
@@ -308,9 +306,7 @@ class Copier:
         copy.geometry = {name: self.value(name, v, source) for name, v in source.geometry.items()}
 
     def _binding(self, name: str, binding: NameBinding, source: Structure, scope: Scope) -> NameBinding:
-        """Returns a name's binding in the copy: a `let` reads the members of the copy; values that are no
-        geometry are the source's own.
-        """
+        """Returns a name's binding in the copy, whose members a `let` reads; the rest is the source's."""
         if isinstance(binding, LetBinding):
             return LetBinding(binding.node, scope)
         if isinstance(binding, Geometry | Structure | Array | ListVal | RecordVal | PointVal):
@@ -486,15 +482,9 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     # In a loop a copy that is given a motion may lie still in one turn only.
     never_moves = not env.scope.labels or a.keys() == {"x"}
     if motion.is_still and is_seen and not is_loose and never_moves:
-        it.report(
-            "W0510",
-            "this copy lies exactly on what it is a copy of",
-            node,
-            hints=[
-                "say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`",
-                "it stays so: a constraint on it is one on what it is a copy of",
-            ],
-        )
+        where = "say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`"
+        stays = "it stays so: a constraint on it is one on what it is a copy of"
+        it.report("W0510", "this copy lies exactly on what it is a copy of", node, hints=[where, stays])
     return copied(it, a["x"], motion, node, env)
 
 

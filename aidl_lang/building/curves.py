@@ -120,11 +120,8 @@ def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expres
     up = -1.0 if clockwise(geometry, here) else 1.0
 
     def at(p: Vec) -> tuple[Expression, Expression]:
-        u, v = ex.constant(p[0]), ex.constant(up * p[1])
-        return (
-            ex.add(x, ex.sub(ex.mul(along[0], u), ex.mul(along[1], v))),
-            ex.add(y, ex.add(ex.mul(along[1], u), ex.mul(along[0], v))),
-        )
+        u, v = ex.turned(*along, ex.constant(p[0]), ex.constant(up * p[1]))
+        return ex.add(x, u), ex.add(y, v)
 
     return at
 
@@ -347,9 +344,7 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
 
 def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """Yields how far a drawing reaches: a number times its unit if its turn is known, else that of each
-    point and curve of its silhouette.
-    """
+    """Yields how far a drawing reaches: a multiple of its unit if its turn is known, else its silhouette."""
     angle, axis = number(view(g, here)["angle"]), side in ("top", "bottom")
     if not angle.is_constant:
         at = on_text(g, here)

@@ -392,12 +392,8 @@ def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
     except units.UnequalError as pair:
         it.misfit(rules.unequal("a range does not join", *pair.args), node)
         return NOTHING
-    return RangeVal(
-        Num(start.expression, dimension, start.status),
-        Num(end.expression, dimension, end.status),
-        node.exclusive,
-        step,
-    )
+    low, high = (Num(n.expression, dimension, n.status) for n in (start, end))
+    return RangeVal(low, high, node.exclusive, step)
 
 
 def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:

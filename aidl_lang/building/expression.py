@@ -307,6 +307,11 @@ def atan2(y: Expression, x: Expression) -> Expression:
     return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
 
 
+def turned(c: Expression, s: Expression, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+    """Returns coordinates turned by the angle with this cosine and sine."""
+    return sub(mul(c, x), mul(s, y)), add(mul(s, x), mul(c, y))
+
+
 def exact_turn(degrees: float) -> tuple[float, float]:
     """Returns cosine and sine, exact at multiples of a right angle."""
     quarter = degrees / 90.0
@@ -318,9 +323,7 @@ def exact_turn(degrees: float) -> tuple[float, float]:
 
 
 def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[Expression]:
-    """Yields every node below the roots once, arguments before those that use them; or only the open ones,
-    which form the top of each graph.
-    """
+    """Yields every node below the roots once, arguments first; or the open ones, the top of each graph."""
     seen: set[Expression] = set()
     for root in roots:
         stack = [(root, False)]

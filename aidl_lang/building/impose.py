@@ -234,16 +234,10 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     """Reports a condition on what is known once all is solved. Returns whether it did."""
     if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
         return False
-    it.report(
-        "E0512",
-        "areas, perimeters and clearances of outlines are known after solving only",
-        node,
-        hints=[
-            f"{FORMULAS}: name that",
-            "put it in an `assert`, or constrain boxes and distances instead",
-            "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
-        ],
-    )
+    message = "areas, perimeters and clearances of outlines are known after solving only"
+    instead = "put it in an `assert`, or constrain boxes and distances instead"
+    apart = "`clearance` constrains between points, lines, circles, slots and convex shapes; name these"
+    it.report("E0512", message, node, hints=[f"{FORMULAS}: name that", instead, apart])
     return True
 
 
@@ -369,13 +363,10 @@ def _boxes_of(g: Geometry) -> set[Structure]:
 def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
     """Reports a constraint on a box with geometry in it that follows something outside of its holder."""
     span = it.place(node) or node.span
-    it.report(
-        "E0402",
-        f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, which is derived "
-        f"of geometry outside of `{env.here.path}`",
-        span,
-        hints=[f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"],
-    )
+    why = f"which is derived of geometry outside of `{env.here.path}`"
+    message = f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, {why}"
+    hint = f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"
+    it.report("E0402", message, span, hints=[hint])
 
 
 def _impose_within(

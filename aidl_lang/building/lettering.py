@@ -41,11 +41,8 @@ def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
         return lettering.bold_font() if bold else lettering.plain_font()
     if name == SINGLE_LINE:
         if bold:
-            raise NoFontError(
-                "E0359",
-                "letters of single lines cannot be bold: they are as wide as the tool",
-                "leave out `bold`, or the font",
-            )
+            message = "letters of single lines cannot be bold: they are as wide as the tool"
+            raise NoFontError("E0359", message, "leave out `bold`, or the font")
         return lettering.single_line_font()
     if PurePosixPath(name).suffix.lower() not in SUFFIXES:
         raise NoFontError(
@@ -56,11 +53,8 @@ def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
             f'`font: "{PLAIN_FONT}"` is what texts have unasked, `font: "{SINGLE_LINE}"` is for engraving',
         )
     if bold:
-        raise NoFontError(
-            "E0359",
-            f"`{name}` is one face, and cannot be made bold",
-            "name the file of its bold face, and leave out `bold`",
-        )
+        hint = "name the file of its bold face, and leave out `bold`"
+        raise NoFontError("E0359", f"`{name}` is one face, and cannot be made bold", hint)
     return _of_file(it, name)
 
 

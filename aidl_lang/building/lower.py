@@ -226,14 +226,9 @@ class _Lowering:
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self) -> None:
-        """Numbers the unknowns that can move: those of the drawing, and both coordinates of frames that a
-        constraint names, or mentions.
-        """
-        mentioned = self.mentioned = set(
-            ex.unknowns(
-                e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
-            )
-        )
+        """Numbers the unknowns that can move: the drawing's, and both coordinates of mentioned frames."""
+        parts = (part for c in self.model.constraints for part in c.comparisons)
+        mentioned = self.mentioned = set(ex.unknowns(e for part in parts for e in (part.left, part.right)))
         drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
         self.named = {c: self._named(c) for c in self.model.constraints}
         for constraint in self.model.constraints:
@@ -256,9 +251,7 @@ class _Lowering:
                     self.variables.setdefault(unknown.owner, []).append(unknown)
 
     def _placer(self, unknown: Unknown) -> Structure:
-        """Returns the structure at whose turn an unknown is placed; for the box of an empty structure the
-        parent, as if the box were its frame.
-        """
+        """Returns the structure at whose turn an unknown is placed; for an empty one's box its parent."""
         parent = unknown.owner.parent
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
 

@@ -115,12 +115,8 @@ def _chained(sides: Sequence[_Side]) -> Iterator[list[tuple[_Side, bool]]]:
             continue
         start, at = _values(chain[0][0])
         while math.dist(start, at) > _MEET * extent:
-            near = [
-                (math.dist(e, at), k, j)
-                for k, s in enumerate(left)
-                if s.ends
-                for j, e in enumerate(_values(s))
-            ]
+            ends = ((k, j, e) for k, s in enumerate(left) if s.ends for j, e in enumerate(_values(s)))
+            near = [(math.dist(e, at), k, j) for k, j, e in ends]
             if not near or min(near)[0] > _MEET * extent:
                 yield []
                 return
@@ -230,22 +226,15 @@ def _bezier(g: Geometry, here: Structure) -> _Side:
     core = view(g, here)
     a, b, c, d = (xy(core[name]) for name in ("p0", "p1", "p2", "p3"))
     cubic = Cubic((a, b, c, d))
-    area = _sum(
-        *(
-            (w / 20, _cross(p, q))
-            for w, p, q in ((6, a, b), (3, a, c), (1, a, d), (3, b, c), (3, b, d), (6, c, d))
-        )
-    )
+    shares = ((6, a, b), (3, a, c), (1, a, d), (3, b, c), (3, b, d), (6, c, d))
+    area = _sum(*((w / 20, _cross(p, q)) for w, p, q in shares))
     moments = [ex.ZERO, ex.ZERO]
     for t, w in gauss(_MOMENTS):
         s = 1 - t
-        place, way = (
-            [_sum(*zip(weights, axis, strict=True)) for axis in zip(a, b, c, d, strict=True)]
-            for weights in (
-                (s**3, 3 * s * s * t, 3 * s * t * t, t**3),
-                (-3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t),
-            )
-        )
+        of_place = s**3, 3 * s * s * t, 3 * s * t * t, t**3
+        of_way = -3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t
+        axes = list(zip(a, b, c, d, strict=True))
+        place, way = ([_sum(*zip(w, axis, strict=True)) for axis in axes] for w in (of_place, of_way))
         for axis, sign in ((0, 0.5), (1, -0.5)):
             moments[axis] = ex.add(
                 moments[axis], _sum((sign * w, ex.mul(ex.apply("square", place[axis]), way[1 - axis])))

@@ -385,16 +385,10 @@ def _at_once(value: Num | PointVal | None) -> Num | PointVal | None:
 
 def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
     text, here = node.span.text, env.here.path
-    it.report(
-        "E0401",
-        f"geometry of `{here}` cannot use `{text}`, which follows from the geometry of `{here}`",
-        node,
-        label="the box that this geometry is in",
-        hints=[
-            "take the box of a geometry, as `outline.bb`, or write a first guess here and say the relation "
-            "as a constraint"
-        ],
-    )
+    message = f"geometry of `{here}` cannot use `{text}`, which follows from the geometry of `{here}`"
+    guess = "write a first guess here and say the relation as a constraint"
+    hint = f"take the box of a geometry, as `outline.bb`, or {guess}"
+    it.report("E0401", message, node, label="the box that this geometry is in", hints=[hint])
     return NOTHING
 
 
@@ -405,13 +399,8 @@ def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) ->
     has = f"its indices are {listed}" if known else "it is empty"
     by_place = isinstance(node.index, ast.Number) and 0 <= wanted < len(known)
     meant = f"{known[wanted]}" if by_place else ""
-    it.report(
-        "E0503",
-        f"`{name}` has no member {wanted}: {has}",
-        node.index,
-        hints=[f"members have the indices they were given: in order, number {wanted} is `{name}[{meant}]`"]
-        if by_place
-        else (),
-        fix=Fix(f"write `{name}[{meant}]`", (Edit(node.index.span, meant),)) if by_place else None,
-    )
+    hint = f"members have the indices they were given: in order, number {wanted} is `{name}[{meant}]`"
+    fix = Fix(f"write `{name}[{meant}]`", (Edit(node.index.span, meant),)) if by_place else None
+    message, hints = f"`{name}` has no member {wanted}: {has}", [hint] if by_place else ()
+    it.report("E0503", message, node.index, hints=hints, fix=fix)
     return NOTHING

@@ -72,8 +72,7 @@ class Frame:
             x = ex.apply("neg", x)
         if self.is_level:
             return x, y
-        c, s = self.cos_sin()
-        return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
+        return ex.turned(*self.cos_sin(), x, y)
 
     def cos_sin(self) -> tuple[Expression, Expression]:
         if self.rotation.is_constant:
@@ -353,9 +352,7 @@ def common_ancestor(a: Structure, b: Structure) -> Structure:
 
 
 def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
-    """Returns the nearest structure around `here` and all the owners of the sources of something in it; None
-    if that is `here` itself.
-    """
+    """Returns the nearest structure around `here` and the owners of something's sources; None for `here`."""
     reach = reduce(common_ancestor, owners, here)
     return reach if reach is not here else None
 

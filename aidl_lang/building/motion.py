@@ -40,8 +40,7 @@ class Motion:
         u, v = self._from(x, self.about[0]), self._from(y, self.about[1])
         if self.mirrored:
             u = ex.apply("neg", u)
-        s = ex.sub(ex.mul(self.cos, u), ex.mul(self.sin, v))
-        t = ex.add(ex.mul(self.sin, u), ex.mul(self.cos, v))
+        s, t = ex.turned(self.cos, self.sin, u, v)
         return ex.add(self.to[0], ex.mul(self.scale, s)), ex.add(self.to[1], ex.mul(self.scale, t))
 
     @staticmethod
@@ -79,13 +78,10 @@ class Motion:
     @property
     def is_still(self) -> bool:
         """True if it moves nothing."""
-        return (
-            not self.mirrored
-            and all(p.is_constant for p in self.parts)
-            and [a.value for a in self.about] == [a.value for a in self.to]
-            and self.turn.value % 360.0 == 0.0
-            and self.scale.value == 1.0
-        )
+        if self.mirrored or not all(p.is_constant for p in self.parts):
+            return False
+        stays = [a.value for a in self.about] == [a.value for a in self.to]
+        return stays and self.turn.value % 360.0 == 0.0 and self.scale.value == 1.0
 
 
 STILL = Motion()
@@ -137,15 +133,9 @@ def after(first: Motion, second: Motion) -> Motion:
     """Returns one motion followed by another."""
     way = ex.sub if second.mirrored else ex.add
     turn = _in_turn(way(second.turn, first.turn))
-    return Motion(
-        first.about,
-        second.place(*first.to),
-        turn,
-        ex.cos(turn),
-        ex.sin(turn),
-        ex.mul(second.scale, first.scale),
-        first.mirrored != second.mirrored,
-    )
+    to, scale = second.place(*first.to), ex.mul(second.scale, first.scale)
+    is_mirrored = first.mirrored != second.mirrored
+    return Motion(first.about, to, turn, ex.cos(turn), ex.sin(turn), scale, is_mirrored)
 
 
 def of_frame(frame: Frame) -> Motion:

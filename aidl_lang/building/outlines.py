@@ -49,14 +49,8 @@ CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "distance": ("max",),
 }
 """The words that choose how an outline is made; the first is the default."""
-_SYNONYMS = {
-    "miter": "sharp",
-    "mitre": "sharp",
-    "mitred": "sharp",
-    "rounded": "round",
-    "flat": "butt",
-    "maximum": "max",
-}
+_SYNONYMS = dict.fromkeys(("miter", "mitre", "mitred"), "sharp")
+_SYNONYMS |= {"rounded": "round", "flat": "butt", "maximum": "max"}
 
 
 def _outline(kind: str, *words: str) -> Function:
@@ -152,11 +146,9 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
         if isinstance(item, PointVal) and kind == "hull":
             item = _as_point(it, item, node, env)
         if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
-            hint = (
-                "name the outline in it, as in `plate.outline`"
-                if isinstance(item, Structure)
-                else ("give it a circle, a shape such as `rectangle(…)`, or a list of curves that close")
-            )
+            hint = "give it a circle, a shape such as `rectangle(…)`, or a list of curves that close"
+            if isinstance(item, Structure):
+                hint = "name the outline in it, as in `plate.outline`"
             message = f"`{node.callee.text}` takes outlines, and this is {kind_of(item)}"
             it.report("E0337", message, node, hints=[hint])
             return None
@@ -263,9 +255,7 @@ def _named(key: str, kind: str) -> str:
 
 
 def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
-    """Returns the sizes by the table of exactness; a literal one is a parameter of the first corner. The
-    largest that fits, `max`, is none of them.
-    """
+    """Returns the sizes (but not `max`) by the table of exactness; a literal one is the first corner's."""
     given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
     numbers = [replace(v, expression=spelled_out(v.expression)[0]) for v in given if isinstance(v, Num)]
     if target.of:
@@ -273,16 +263,14 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
         return tuple(size(it, v, target.of[0], n) for v, n in zip(numbers, names, strict=False))
     # A bare point belongs to no geometry, so its structure keeps the size.
     index = len(target.owner.finishes)
-    return tuple(
-        length(
-            it.unknown(
-                v.value, target.owner, f"{kind}[{index}]", owner=target.owner, dimension=LENGTH, kept=True
-            )
-        )
-        if v.expression.is_constant and v.status is Exactness.NUMBER
-        else v
-        for v in numbers
-    )
+    owner, name = target.owner, f"{kind}[{index}]"
+
+    def held(v: Num) -> Num:
+        if v.expression.is_constant and v.status is Exactness.NUMBER:
+            return length(it.unknown(v.value, owner, name, owner=owner, dimension=LENGTH, kept=True))
+        return v
+
+    return tuple(map(held, numbers))
 
 
 def _targets(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Iterator[_Target | None]:

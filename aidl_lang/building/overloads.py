@@ -118,12 +118,8 @@ def placing(
 def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
     """Returns the things of one rank in a call, in the order of its arguments; none if it holds one."""
     given = binding.arguments
-    declared = [
-        values[i]
-        for parameter in definition.parameters
-        if parameter.type is not None and fold(parameter.type.text) in PEERS
-        for i in given.get(parameter.name.text, ())
-    ]
+    peers = (p for p in definition.parameters if p.type is not None and fold(p.type.text) in PEERS)
+    declared = [values[i] for parameter in peers for i in given.get(parameter.name.text, ())]
     if not declared and binding.signature.gathers and len(binding.positional) == 1:
         (only,) = given.get(binding.signature.parameters[0][0], (None,))
         declared = [values[only]] if only is not None and members(values[only]) is not None else []
@@ -210,9 +206,7 @@ class CallSite:
         return known
 
     def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:
-        """Returns the overload that is meant, and the arguments: a name in reach is read as a word for an
-        option only if it does not fit otherwise.
-        """
+        """Returns the overload that is meant, and the arguments; a name in reach is an option at worst."""
         chosen = self.meaning(values)
         if isinstance(chosen, list) and self.doubtful:
             before = len(values) - len(self.nodes)
@@ -232,11 +226,10 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
     signatures = [c.signature for c in candidates]
     if known is None or known.signatures != signatures:
         is_standard = node.span.source in it.library_sources and all(s.standard for s in signatures)
-        known = (
-            _standard_site(node, tuple(signatures))
-            if is_standard
-            else CallSite(node, signatures, it.program.resolution.uses)
-        )
+        if is_standard:
+            known = _standard_site(node, tuple(signatures))
+        else:
+            known = CallSite(node, signatures, it.program.resolution.uses)
     it.sites[node] = candidates, known
     return known
 

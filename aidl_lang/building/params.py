@@ -82,14 +82,10 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
         words = " or ".join(map(literal, choices))
         allowed = words if low is None or high is None else f"{low:g}..{high:g}"
         code = "E0505" if value is written else "E0909"
-        it.report(
-            code,
-            f"`{path}` is {literal(_plain(value))} as {where}, outside its range {allowed}",
-            node.value if value is written else node.name,
-            label=f"allowed: {allowed}",
-            hints=[f"give a value in {allowed}, or widen the range of the `param`"],
-            fix=_unit_of_range(node) if value is written else None,
-        )
+        message = f"`{path}` is {literal(_plain(value))} as {where}, outside its range {allowed}"
+        place, fix = (node.value, _unit_of_range(node)) if value is written else (node.name, None)
+        hint = f"give a value in {allowed}, or widen the range of the `param`"
+        it.report(code, message, place, label=f"allowed: {allowed}", hints=[hint], fix=fix)
     unit = _UNITS.get(value.dimension, "") if isinstance(value, Num) else ""
     pace = step.value if isinstance(step, Num) else 1.0 if counts and not choices else None
     it.knobs.append(Knob(path, _plain(value), low, high, choices, pace, unit, node.doc, node.span))

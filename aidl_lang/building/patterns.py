@@ -187,10 +187,8 @@ def _grid(call: _Call) -> Value:
 def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
     """Lays out members at whole numbers of steps from the first, in one direction or in two."""
     if "center" in call.a and "start" in call.a:
-        return call.wrong(
-            "a pattern is placed by its `center` or by the `start` of its first member, not by both",
-            "leave one of them out",
-        )
+        what = "a pattern is placed by its `center` or by the `start` of its first member, not by both"
+        return call.wrong(what, "leave one of them out")
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
     back = _total([(ex.constant(-1.0), span)])
     goes_on = call.has_place and "center" not in call.a and "start" not in call.a
@@ -269,10 +267,8 @@ def _along(call: _Call) -> Value:
     if way.is_closed and "margin" in call.a:
         margin = call.size("margin")
         if (inner := within(way, margin)) is None:
-            return call.wrong(
-                "a `margin` is kept within lines, and arcs that go on from them without a corner",
-                "draw a `construction` path where the members are, and go along that",
-            )
+            what = "a `margin` is kept within lines, and arcs that go on from them without a corner"
+            return call.wrong(what, "draw a `construction` path where the members are, and go along that")
         way, corners, off = inner
         if any(s.length.value < 1e-9 for s in way.stretches):
             return call.wrong(f"nothing is left of this outline within {margin.value:g} mm", "make it less")
@@ -280,12 +276,8 @@ def _along(call: _Call) -> Value:
     if places is None:
         return NOTHING
     if len(places) * len(way.stretches) > _MOST_ALONG:
-        call.it.report(
-            "E0805",
-            f"{len(places)} members along {len(way.stretches)} curves are too many: their product is at most "
-            f"{_MOST_ALONG}",
-            call.node,
-        )
+        what = f"{len(places)} members along {len(way.stretches)} curves are too many"
+        call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
         return NOTHING
     turns = call.a.get("turn") is not False
     about = call.centre()
@@ -311,11 +303,9 @@ def _evenly(call: _Call, way: Way) -> list[Expression] | None:
     length = way.length
     room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
     if room.value <= 0:
-        call.wrong(
-            f"nothing is left of a curve of {length.value:g} mm with an `inset` of {inset.value:g} at both "
-            "ends",
-            "make the `inset` less",
-        )
+        what = f"an `inset` of {inset.value:g} at both ends"
+        message = f"nothing is left of a curve of {length.value:g} mm with {what}"
+        call.wrong(message, "make the `inset` less")
         return None
     found = _steps(call, room, is_closed=way.is_closed)
     if found is None:
@@ -343,11 +333,9 @@ def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Ex
     while "n" in call.a and sum(parts) < found[0]:
         sparse = max(range(len(runs)), key=lambda k: (round(runs[k].value / parts[k], 6), runs[k].value))
         parts[sparse] += 1
-    places = [
-        ex.add(corner, ex.mul(ex.constant(k / part), run))
-        for corner, run, part in zip(corners, runs, parts, strict=True)
-        for k in range(part)
-    ]
+    spans = zip(corners, runs, parts, strict=True)
+    shares = ((corner, run, k / part) for corner, run, part in spans for k in range(part))
+    places = [ex.add(corner, ex.mul(ex.constant(share), run)) for corner, run, share in shares]
     return [p if p.value < way.length.value else ex.sub(p, way.length) for p in places]
 
 
@@ -361,10 +349,8 @@ def _way(call: _Call) -> Way | None:
     curves = [p for p in drawn if p.type != "point"]
     other = next((c.type for c in curves if c.type not in KINDS | FREE_KINDS), None)
     if other is not None or any(g.recipe is not None for g in given):
-        call.wrong(
-            f"`along` follows curves, and this is {with_article(given[0].type)}",
-            "follow a `path` or `polyline` near it, or what the outline is made of",
-        )
+        hint = "follow a `path` or `polyline` near it, or what the outline is made of"
+        call.wrong(f"`along` follows curves, and this is {with_article(given[0].type)}", hint)
         return None
     found = way_along(curves, call.env.here) if curves else None
     if found is None:
@@ -425,16 +411,9 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
     if way is None:
         what = with_article(given[0].type) if len(given) == 1 else "no one curve"
-        report_once(
-            it,
-            "E0358",
-            f"a text follows a circle, or an open way of lines and arcs, and this is {what}",
-            it.call_sites[-1],
-            [
-                "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
-                "`construction way = arc(…)`"
-            ],
-        )
+        message = f"a text follows a circle, or an open way of lines and arcs, and this is {what}"
+        hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
+        report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
         return NOTHING
     glyphs, align = typeset(it, a), a["align"]
     if not glyphs:

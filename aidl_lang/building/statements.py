@@ -107,11 +107,9 @@ def _named(
 
 
 def _is_literal_point(node: ast.Expression) -> bool:
-    return (
-        isinstance(node, ast.List)
-        and len(node.items) == 2
-        and all(isinstance(i, ast.Number | ast.Unary) for i in node.items)
-    )
+    if not isinstance(node, ast.List) or len(node.items) != 2:
+        return False
+    return all(isinstance(i, ast.Number | ast.Unary) for i in node.items)
 
 
 def _structure(it: Interpreter, node: ast.Structure, scope: Scope, here: Structure) -> None:

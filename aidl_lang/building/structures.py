@@ -11,7 +11,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, settle_clips_in, settle_order
 from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
 from aidl_lang.building.coerce import as_point, numeric
-from aidl_lang.building.construct import hidden_constraints, solvable
+from aidl_lang.building.construct import hidden_constraints, loose_place, solvable
 from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.impose import read_constraint
@@ -237,12 +237,7 @@ def _place(
     at, turn = place_of(it, placement, Env(scope, s.parent, Reach.OWN))
     if edits:
         at, turn = frame_edited(it, edits, s, at, turn)
-    x, y = (
-        solvable(it, n, s.span)
-        if n.status >= Exactness.FIXED
-        else it.became(n, it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s), s, axis)
-        for n, axis in ((at.x, "x"), (at.y, "y"))
-    )
+    x, y = loose_place(it, at, s)
     rotation = solvable(it, turn, s.span) if turn is not None else ex.ZERO
     if turn is not None and turn.status is Exactness.GUESS:
         rotation = it.unknown(turn.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)

@@ -39,14 +39,9 @@ class Allowance:
 
     def covers(self, found: Diagnostic) -> bool:
         here = self.statement
-        return (
-            found.code == self.code
-            and not found.is_error
-            and found.span is not None
-            and found.span.source is here.source
-            and here.start <= found.span.start
-            and found.span.end <= here.end
-        )
+        if found.code != self.code or found.is_error or (span := found.span) is None:
+            return False
+        return span.source is here.source and here.start <= span.start and span.end <= here.end
 
 
 def allowances(modules: Iterable[ast.Module]) -> tuple[tuple[Allowance, ...], list[Diagnostic]]:
@@ -106,16 +101,13 @@ def audible(found: Iterable[Diagnostic], allowed: Sequence[Allowance]) -> list[D
 
 
 def idle(found: Sequence[Diagnostic], allowed: Sequence[Allowance]) -> list[Diagnostic]:
-    """Returns a note on each code that is allowed where there is nothing of it to tell. `found` is all that
-    there is to tell, allowed or not.
-    """
-    return [
-        Diagnostic(
-            IDLE, f"`@allow` silences nothing: there is no `{each.code}` here", each.place, fix=_without(each)
-        )
-        for each in allowed
-        if not each.may_come and not any(each.covers(d) for d in found)
-    ]
+    """Returns a note on each code that is allowed where `found`, all there is to tell, has none of it."""
+    told: list[Diagnostic] = []
+    for each in allowed:
+        if not each.may_come and not any(each.covers(d) for d in found):
+            message = f"`@allow` silences nothing: there is no `{each.code}` here"
+            told.append(Diagnostic(IDLE, message, each.place, fix=_without(each)))
+    return told
 
 
 def _without(allowed: Allowance) -> Fix | None:

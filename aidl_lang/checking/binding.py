@@ -303,21 +303,12 @@ def _filling(
 def _agreeing(
     fits: Sequence[Binding], given: Sequence[GivenArgument], following: Sequence[int]
 ) -> list[Binding | Mismatch]:
-    """Returns the candidates that fit; a mismatch instead if an argument without a name is one parameter here
-    and another there.
-    """
+    """Returns what fits; a mismatch if an argument without a name is one parameter here and another there."""
     for index in following:
         meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
         if len(meant) > 1 and not isinstance(given[index].type, AnyType):
-            return [
-                Mismatch(
-                    fit.signature,
-                    f"does not tell whether {' or '.join(ticked(meant))} is meant",
-                    index,
-                    tuple(meant),
-                )
-                for fit in fits
-            ]
+            why = f"does not tell whether {' or '.join(ticked(meant))} is meant"
+            return [Mismatch(fit.signature, why, index, tuple(meant)) for fit in fits]
     return list(fits)
 
 

@@ -318,8 +318,5 @@ def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
         return False
     word = fold(argument.name.text)
     wanted = {word, *map(fold, PARAMETERS.get(word, ()))}
-    return any(
-        fold(name) in wanted and isinstance(kind, TextType)
-        for candidate in candidates
-        for name, kind, _ in candidate.parameters
-    )
+    parameters = (each for candidate in candidates for each in candidate.parameters)
+    return any(fold(name) in wanted and isinstance(kind, TextType) for name, kind, _ in parameters)

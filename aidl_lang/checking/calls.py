@@ -169,13 +169,10 @@ def _not_degrees(
     else:
         is_one = isinstance(value, ast.Name | ast.Member | ast.Call)
         right = f"{text} * 1{unit}" if is_one else f"({text}) * 1{unit}"
-    check.report(
-        "E0348",
-        f"{message}; an angle is written with its unit: `{right}`",
-        place,
-        hints=["a number without a unit is in degrees where an angle is due"],
-        fix=Fix(f"write `{right}`", (Edit(place.span, right),), is_sure),
-    )
+    message = f"{message}; an angle is written with its unit: `{right}`"
+    hint = "a number without a unit is in degrees where an angle is due"
+    fix = Fix(f"write `{right}`", (Edit(place.span, right),), is_sure)
+    check.report("E0348", message, place, hints=[hint], fix=fix)
 
 
 def _called(check: Inference, node: ast.Expression) -> str | None:
@@ -226,15 +223,10 @@ def _before(node: ast.Node) -> Span:
 def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
     start = argument.span.start
     name = Span(node.span.source, start, argument.value.span.start)
-    check.report(
-        "E0345",
-        f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`",
-        argument.value,
-        label="two sizes",
-        fix=Fix(
-            "make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: ")), is_sure=True
-        ),
-    )
+    message = f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`"
+    edits = Edit(node.callee.span, "rectangle"), Edit(name, "size: ")
+    fix = Fix("make it a rectangle", edits, is_sure=True)
+    check.report("E0345", message, argument.value, label="two sizes", fix=fix)
 
 
 _SAME_AS_ARGUMENT = frozenset({"fixed", "guess", "written", "abs", "min", "max"})
@@ -285,11 +277,8 @@ def call(check: Inference, node: ast.Call) -> Fact:
 
 def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) -> dict[int, str]:
     """Returns the arguments, by index, that are names in reach and could be words for an option as well."""
-    return {
-        i: a.value.span.text
-        for i, a in enumerate(node.arguments)
-        if a.value in check.resolution.uses and is_word(a, candidates)
-    }
+    named = ((i, a) for i, a in enumerate(node.arguments) if a.value in check.resolution.uses)
+    return {i: a.value.span.text for i, a in named if is_word(a, candidates)}
 
 
 def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:

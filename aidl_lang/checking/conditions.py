@@ -43,9 +43,7 @@ def find_cycles(infer: Inference) -> None:
 
 
 def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]]:
-    """Returns for each param or let the symbols that its value names, and where. Members of an array may
-    follow from one another.
-    """
+    """Returns for each param or let, but for arrays, the symbols that its value names, and where."""
     uses = infer.resolution.uses
     return {
         symbol: [
@@ -63,10 +61,8 @@ def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]
 def _report(infer: Inference, circle: list[Symbol], name: ast.Name) -> None:
     first = circle[0]
     way = f": {' → '.join(s.name for s in [*circle, first])}" if len(circle) > 1 else ""
-    hint, fix = (meant_outside(first, name) if not way else None) or (
-        "one of them needs a value that does not depend on the others",
-        None,
-    )
+    outside = meant_outside(first, name) if not way else None
+    hint, fix = outside or ("one of them needs a value that does not depend on the others", None)
     infer.report("E0207", f"`{first.name}` is defined by way of itself{way}", name, hints=[hint], fix=fix)
 
 
@@ -257,9 +253,7 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
 
 
 def _check_logic(infer: Inference, node: ast.Expression) -> None:
-    """Reports `or`, `not` and `!=` over unknowns, which leave the solver no equation; over constants they are
-    checked while building.
-    """
+    """Reports `or`, `not` and `!=` over unknowns, which leave no equation; not those over constants."""
     match node:
         case ast.Binary(operator="and", left=left, right=right):
             _check_logic(infer, left)

@@ -247,9 +247,7 @@ def _is_plain_range(node: ast.Expression) -> bool:
 
 
 def _unlocked(kind: Type) -> Type:
-    """Returns the type of a number that the solver finds: not whole, and ANY for a bare one, whose dimension
-    its constraints decide.
-    """
+    """Returns the type of a number that the solver finds: not whole; ANY for a bare one, of any dimension."""
     if isinstance(kind, NumberType):
         return ANY if kind.dimension is None else NumberType(kind.dimension)
     return kind

@@ -19,7 +19,7 @@ from aidl_lang.checking.facts import (
     of_symbol,
     part,
 )
-from aidl_lang.checking.resolving.complaints import renamed, respell
+from aidl_lang.checking.resolving.complaints import did_you_mean, renamed, respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.rules import a, in_box, shown
 from aidl_lang.checking.types import (
@@ -226,11 +226,8 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
         case BoxType():
             return _field(check, base, node, {})
         case _:
-            return check.report(
-                "E0202",
-                f"{a(base.type)} has no members, so there is no `{shown(node.value)}.{name}`",
-                node.name,
-            )
+            message = f"{a(base.type)} has no members, so there is no `{shown(node.value)}.{name}`"
+            return check.report("E0202", message, node.name)
 
 
 def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:
@@ -371,7 +368,7 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
     members = f"its members are {first_few(ticked(dict.fromkeys(known)), 8, '')}, …"
     if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
         like, members = [], "its corners are `a`, `b` and `c`, in the order in which they were given"
-    message = f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else "")
+    message = f"`{shown(node.value)}` has no `{name}`" + did_you_mean(like)
     label = f"not a member of {what}"
     hints = () if like else (members,) if known else ()
     return check.report("E0202", message, node.name, label=label, hints=hints, fix=respell(node.name, like))

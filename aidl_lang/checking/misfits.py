@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
 from aidl_lang.checking.calls import two_sizes
 from aidl_lang.checking.facts import body_of, is_number, is_point
-from aidl_lang.checking.resolving.complaints import called_field, respell
+from aidl_lang.checking.resolving.complaints import called_field, did_you_mean, respell
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import (
     Binding,
@@ -55,14 +55,9 @@ def no_overload(
     if closest.argument is not None and closest.argument < len(nodes):
         at = nodes[closest.argument]
     others = [m.signature for m in misses if m is not closest]
-    check.report(
-        "E0311",
-        f"`{name}` {closest.reason}",
-        at,
-        label=f"in this call of `{name}`",
-        hints=[*_between_ends(check, node, nodes), *_called_as([closest.signature, *others[:2]])],
-        fix=_centre(at, given, misses, closest),
-    )
+    hints = [*_between_ends(check, node, nodes), *_called_as([closest.signature, *others[:2]])]
+    label, centre = f"in this call of `{name}`", _centre(at, given, misses, closest)
+    check.report("E0311", f"`{name}` {closest.reason}", at, label=label, hints=hints, fix=centre)
 
 
 def _centre(at: ast.Node, given: Sequence[GivenArgument], misses: Misses, closest: Mismatch) -> Fix | None:
@@ -295,11 +290,8 @@ def _unknown_parameter(
     free = [name for name in names if fold(name) not in taken]
     synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in free}
     closest = max(misses, key=lambda m: _closeness(m, given)).signature
-    wrong = [
-        a.name
-        for a in node.arguments
-        if a.name is not None and not any(_knows(m.signature, a.name.text) for m in misses)
-    ]
+    written = [a.name for a in node.arguments if a.name is not None]
+    wrong = [name for name in written if not any(_knows(m.signature, name.text) for m in misses)]
     for identifier in wrong:
         like = nearest(identifier.text, free, 2)
         fix = respell(identifier, like)
@@ -314,14 +306,8 @@ def _unknown_parameter(
         hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
         if fold(identifier.text) == "length" and {"width", "height"} <= set(names):
             hints = ["its sizes are `width`, from left to right, and `height`, from bottom to top"]
-        check.report(
-            "E0324",
-            f"`{node.callee.text}` has no parameter `{identifier.text}`"
-            + (f"; did you mean `{like[0]}`?" if like else ""),
-            identifier,
-            hints=() if like else hints,
-            fix=fix,
-        )
+        message = f"`{node.callee.text}` has no parameter `{identifier.text}`" + did_you_mean(like)
+        check.report("E0324", message, identifier, hints=() if like else hints, fix=fix)
     return bool(wrong)
 
 

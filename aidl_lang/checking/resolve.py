@@ -127,13 +127,11 @@ class Resolver:
         for identifier in statement.names:
             if identifier.text not in known:
                 like = nearest(identifier.text, known, 2)
-                self.report(
-                    "E0213",
-                    f"`{statement.path.value}` has no `{identifier.text}`" + complaints.did_you_mean(like),
-                    identifier,
-                    hints=() if like else (complaints.list_of("it defines ", known),),
-                    fix=complaints.respell(identifier, like),
-                )
+                lacking = f"`{statement.path.value}` has no `{identifier.text}`"
+                hints = () if like else (complaints.list_of("it defines ", known),)
+                fix = complaints.respell(identifier, like)
+                message = lacking + complaints.did_you_mean(like)
+                self.report("E0213", message, identifier, hints=hints, fix=fix)
                 if scope.missing is not None:
                     scope.missing.add(identifier.text)
             elif identifier.text in source.values:
@@ -284,15 +282,10 @@ class Resolver:
                 other, hint = ATTRIBUTES_MEANT.get(fold(name), ("", ""))
                 like = [other] if other else nearest(name, [a for a in ATTRIBUTES if a != "colour"], 2)
                 hint = hint or complaints.list_of("attributes are ", ATTRIBUTES, "@")
-                self.report(
-                    "E0204",
-                    f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@"),
-                    attribute.name,
-                    hints=() if like else (hint,),
-                    fix=complaints.renamed(attribute.name, other)
-                    if other
-                    else complaints.respell(attribute.name, like),
-                )
+                respell, at = complaints.respell, attribute.name
+                fix = complaints.renamed(at, other) if other else respell(at, like)
+                message = f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@")
+                self.report("E0204", message, at, hints=() if like else (hint,), fix=fix)
             for argument in attribute.arguments if word_meant(name, (ast.ALLOW,)) is None else ():
                 value = argument.value
                 # `@orientation(front)`, even if a part has that name

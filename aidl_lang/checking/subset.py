@@ -180,9 +180,7 @@ def check_subset(infer: Inference, variant: Variant) -> list[Diagnostic]:
 
 
 def adapted(diagnostics: Iterable[Diagnostic], variant: Variant) -> list[Diagnostic]:
-    """Returns the diagnostics without advice that the variant cannot follow, and without those inside a
-    statement that it lacks.
-    """
+    """Returns diagnostics, but no advice that the variant cannot follow, nor in statements it lacks."""
     found = list(diagnostics)
     own = {rule.code for rule in FORBIDDEN[variant].values()}
     if not own:
@@ -258,12 +256,8 @@ class _Walker:
                 self._report(Construct.SHAPE, name.span, name.text)
             case ast.Var(name=name):
                 word = Span(node.span.source, node.span.start, node.span.start + len("var"))
-                self._report(
-                    Construct.UNKNOWN,
-                    name.span,
-                    name.text,
-                    Fix("make it a `let`", (Edit(word, "let"),), is_sure=True),
-                )
+                fix = Fix("make it a `let`", (Edit(word, "let"),), is_sure=True)
+                self._report(Construct.UNKNOWN, name.span, name.text, fix)
             case ast.Call(callee=callee):
                 kind = self._type(node)
                 if isinstance(kind, StructureType) and self._may_call(node, ast.Structure):

@@ -425,9 +425,7 @@ class Signature:
 
 @record()
 class ArgumentSource:
-    """The origin of an argument: the one at `index` of the call, one of its two parts, or the point of it as
-    x and of `other` as y.
-    """
+    """The origin of an argument: that at `index` in the call, a part of it, or it as x and `other` as y."""
 
     index: int
     part: int | None = None

@@ -128,9 +128,7 @@ class _Walker:
             self._geometry(self._targets(call, index, node, path), node, site)
 
     def _order(self, node: ast.Expression, site: StatementSite) -> None:
-        """Reports an operand of a derivation that is made further down. Names of this structure without a
-        path are checked elsewhere.
-        """
+        """Reports an operand of a derivation that is made further down, but for names of this structure."""
         for part in ast.walk(node):
             symbol = self.infer.resolution.uses.get(part)
             if symbol is None or symbol.node is None or symbol.kind not in UNKNOWNS or symbol.is_array:
@@ -160,13 +158,14 @@ class _Walker:
             items: list[FarReference] = []
             for i, item in enumerate(node.items):
                 place = (*path, f"{name}[{i}]")
-                items += (
-                    self._coordinates(item, place)
-                    if isinstance(item, ast.Point)
-                    else [FarReference(item, place, True)]
-                )
+                items += self._point(item, place)
             return items
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
+
+    def _point(self, node: ast.Expression, path: tuple[str, ...]) -> list[FarReference]:
+        if isinstance(node, ast.Point):
+            return self._coordinates(node, path)
+        return [FarReference(node, path, is_point=True)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
         """Returns a point as target, or the one coordinate that reads too far: the other stays as it is."""
@@ -175,9 +174,7 @@ class _Walker:
         return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]
 
     def _parameter(self, call: ast.Call, index: int) -> tuple[str | None, Type]:
-        """Returns the name and type of the parameter that the argument of that number goes to; None and ANY
-        if there is doubt.
-        """
+        """Returns name and type of the parameter that an argument goes to; None and ANY if in doubt."""
         nodes = arguments(self.infer, call)
         given = given_to(call, [self.infer.fact(node).type for node in nodes])
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
@@ -203,12 +200,7 @@ class _Walker:
             return
         path = (member_path(node.name, node.indices), "origin")
         if (at := node.placement.at) is not None:
-            targets = (
-                self._coordinates(at, path)
-                if isinstance(at, ast.Point)
-                else [FarReference(at, path, is_point=True)]
-            )
-            self._geometry(targets, at, site)
+            self._geometry(self._point(at, path), at, site)
         if (rotated := node.placement.rotated) is not None:
             self._geometry([FarReference(rotated, None, is_size=True)], rotated, site)
 

@@ -271,15 +271,10 @@ class Violation:
         symbol = self.infer.resolution.uses.get(_root(culprit))
         if symbol is not None and symbol.declarations:
             secondary.append(Label(symbol.declarations[0].span, "declared here"))
-        return Diagnostic(
-            "E0401" if self.rule == 1 else "E0402",
-            f"{subject} cannot use `{shown(culprit)}`, which {_whose(shown(culprit), owner)}",
-            culprit.span,
-            label=f"outside {home}",
-            secondary=tuple(secondary),
-            hints=(self._hint(relation, ancestor, written),),
-            fix=fix,
-        )
+        code = "E0401" if self.rule == 1 else "E0402"
+        message = f"{subject} cannot use `{shown(culprit)}`, which {_whose(shown(culprit), owner)}"
+        hints = (self._hint(relation, ancestor, written),)
+        return Diagnostic(code, message, culprit.span, f"outside {home}", tuple(secondary), hints, fix)
 
     @property
     def _operation(self) -> str | None:
@@ -374,11 +369,9 @@ class Violation:
         move = Relocation(self.site, ancestor, self.infer)
         where, text = insertion_after(move.anchor, relation)
         if self.rule == 2:
-            return Fix(
-                f"move {'the constraint' if self._operation is None else 'it'} to {_name(ancestor)}",
-                (Edit(self._emptied().span.with_separator, ""), Edit(where, text)),
-                is_sure=True,
-            )
+            what = "the constraint" if self._operation is None else "it"
+            edits = Edit(self._emptied().span.with_separator, ""), Edit(where, text)
+            return Fix(f"move {what} to {_name(ancestor)}", edits, is_sure=True)
         is_known = self.target.node in written or not self.infer.fact(self.target.node).is_any
         return Fix(
             f"make it a first guess and state the relation in {_name(ancestor)}",

@@ -150,11 +150,8 @@ class Explanation:
     @cached_property
     def diagnostic(self) -> Diagnostic:
         code, headline = self._headline()
-        labels = [
-            Label(u.holder.span, f"{u.description} would have to become 0 or less")
-            for u in self.sizes
-            if self.is_proven and u.holder.span is not None
-        ]
+        known = [(u.holder.span, u.description) for u in self.sizes if self.is_proven]
+        labels = [Label(span, f"{what} would have to become 0 or less") for span, what in known if span]
         if not self.parties:
             return Diagnostic(code, headline, secondary=tuple(labels))
         chief = self._chief
@@ -165,11 +162,8 @@ class Explanation:
     @cached_property
     def conflict(self) -> Conflict:
         parties = tuple(map(self._told, self.parties))
-        givens = tuple(
-            ExactNumber(r.dial.name, r.dial.place, r.would_fit(), r.fix)
-            for r in self._remedies
-            if r.dial.is_exact
-        )
+        exact = (r for r in self._remedies if r.dial.is_exact)
+        givens = tuple(ExactNumber(r.dial.name, r.dial.place, r.would_fit(), r.fix) for r in exact)
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
     def _held(self) -> Sequence[Member]:
@@ -204,11 +198,9 @@ class Explanation:
             return list(filter(None, (search.turned() for search in searches)))
         order = {search.dial.place: n for n, search in enumerate(searches)}
         known = [found for earlier in self.earlier for found in earlier._remedies]
-        both = [
-            replace(found, shown=found.fix.edits[0].replacement)
-            for found in known
-            if found.dial.place in order and self.trials.mends(found.fix.edits, self.failure)
-        ]
+        fixed = (found for found in known if found.dial.place in order)
+        fixed = (found for found in fixed if self.trials.mends(found.fix.edits, self.failure))
+        both = [replace(found, shown=found.fix.edits[0].replacement) for found in fixed]
         done = {found.dial.place for found in both}
         fresh = remedies(search for search in searches if search.dial.place not in done)
         return sorted([*both, *fresh], key=lambda found: order[found.dial.place])

@@ -81,9 +81,7 @@ def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container
 
 
 def with_reasons(model: SolvedModel, given: Sequence[GaveWay], lowered: Lowered) -> SolvedModel:
-    """Returns the model with the reasons of its changed sizes. A way from one literal point to another gives
-    way to whatever speaks of it.
-    """
+    """Returns the model with the reasons of its changed sizes, but for ways between literal points."""
     texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
     bare = {change.path for change in model.changed} - texts.keys()
     for unknown in lowered.unknowns:
@@ -141,11 +139,8 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
     if rest:
         others = [f"{c.description} {short(c.written)} → {short(c.solved)}" for c in rest]
         message += f", and with it {listed(others, NAMED)}"
-    labels = tuple(
-        Label(c.span, f"was written {short(c.written)} and became {short(c.solved)}")
-        for c in rest
-        if c.span is not None and c.span != chief.span
-    )
+    changes = [(c.span, f"was written {short(c.written)} and became {short(c.solved)}") for c in rest]
+    labels = tuple(Label(span, text) for span, text in changes if span is not None and span != chief.span)
     if _share(chief) <= _A_TENTH:
         hints = (*_whose(given), f"write {solved} to agree, or `fixed({written})` to insist")
         return _told("N0601", message, chief.span, given, labels, hints)
@@ -276,15 +271,10 @@ def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
     names = list(dict.fromkeys(_name(other) for other in others))
     reason = listed(names, _NAMED) or "the other constraints"
     labels = dict.fromkeys(Label(other.span, "from this") for other in others if other.span != stated.span)
-    fix = left_out(stated) if can_go else None
-    return Diagnostic(
-        "N0602",
-        f"{_name(stated)} follows from {reason}",
-        stated.span,
-        "says nothing new",
-        tuple(labels),
-        fix=Fix(f"leave out {_name(stated)}", fix.edits) if fix else None,
-    )
+    name, left = _name(stated), left_out(stated) if can_go else None
+    fix = Fix(f"leave out {name}", left.edits) if left else None
+    message = f"{name} follows from {reason}"
+    return Diagnostic("N0602", message, stated.span, "says nothing new", tuple(labels), fix=fix)
 
 
 def _name(stated: Constraint) -> str:
@@ -335,11 +325,9 @@ def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
     rows = [replace(c, rows=(row,), weight=None) for i, c in hard if i in own for row in c.rows]
     equations = [c for c in rows if c.rows[0].relation is Relation.EQUAL]
     inequalities = [c for c in rows if c.rows[0].relation is Relation.AT_MOST]
-    return (
-        len(inequalities) <= _TRIED
-        and _are_redundant(problem, solution, others, equations)
-        and not any(_can_be_broken(problem, solution, [*others, *equations], c) for c in inequalities)
-    )
+    if len(inequalities) > _TRIED or not _are_redundant(problem, solution, others, equations):
+        return False
+    return not any(_can_be_broken(problem, solution, [*others, *equations], c) for c in inequalities)
 
 
 def _are_redundant(

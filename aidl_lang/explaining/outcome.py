@@ -67,15 +67,10 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
         from aidl_lang.explaining.failures import measured_in
 
         where = f" [{stated.label}]" if stated.label else ""
-        yield Diagnostic(
-            "N0605",
-            f"the wish `{stated.text}`{where} is not met",
-            stated.span,
-            f"off by {measured_in(off, stated)}" if math.isfinite(off) else "it has no value here",
-            hints=(
-                "a wish gives way to every constraint; without `prefer` it is told what stands against it",
-            ),
-        )
+        message = f"the wish `{stated.text}`{where} is not met"
+        label = f"off by {measured_in(off, stated)}" if math.isfinite(off) else "it has no value here"
+        hint = "a wish gives way to every constraint; without `prefer` it is told what stands against it"
+        yield Diagnostic("N0605", message, stated.span, label, hints=(hint,))
 
 
 def assertion_notes(
@@ -137,17 +132,10 @@ def _too_long(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
         at = Span(span.source, *(span.start + place for place in stated.span(1)))
         edit = Edit(at, fixed(height))
         fix = Fix(f"write letters of {fixed(height)} mm", (edit,))
-    return Diagnostic(
-        "W0761",
-        f"this text is {rough(length)} mm long, and the way along which it is written {rough(room)} mm",
-        span,
-        "it goes on past the end, and on a round way over itself",
-        hints=(
-            f"letters of {fixed(height)} mm fit: `height: {fixed(height)}`",
-            "or write it along a longer way",
-        ),
-        fix=fix,
-    )
+    message = f"this text is {rough(length)} mm long, and the way along which it is written {rough(room)} mm"
+    label = "it goes on past the end, and on a round way over itself"
+    fitting = f"letters of {fixed(height)} mm fit: `height: {fixed(height)}`"
+    return Diagnostic("W0761", message, span, label, (), (fitting, "or write it along a longer way"), fix)
 
 
 def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluator) -> bool:
@@ -164,16 +152,10 @@ def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluat
 def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
     """Returns the diagnostic for a constraint on the box of an outline that came out otherwise."""
     where = f" [{assertion.label}]" if assertion.label else ""
-    return Diagnostic(
-        "E0607",
-        f"`{assertion.text}`{where} does not hold for `{outline.path}` as it is drawn",
-        assertion.span,
-        "; ".join(shown),
-        hints=(
-            f"it was solved with the boxes of what goes into `{outline.type}`, and less is left of them",
-            constrain_sources(outline, assertion.holder),
-        ),
-    )
+    message = f"`{assertion.text}`{where} does not hold for `{outline.path}` as it is drawn"
+    hint = f"it was solved with the boxes of what goes into `{outline.type}`, and less is left of them"
+    hints = hint, constrain_sources(outline, assertion.holder)
+    return Diagnostic("E0607", message, assertion.span, "; ".join(shown), hints=hints)
 
 
 def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:

@@ -133,38 +133,27 @@ def elsewhere_notes(
         moved = [c for c in lowered.stated if c is not None and any(map(c.span.overlaps, spans))]
         names = listed(ticked(span.one_line for span in spans), NAMED)
         are = "are" if len(spans) > 1 else "is"
-        yield Diagnostic(
-            "N0604",
-            f"{names} {are} not taken as the first guesses have it, for which no position was found",
-            spans[0],
-            other.calls[0][1],
-            tuple(Label(span, text) for span, text in other.calls[1:]),
-            (_LOOK,),
-            _guesses(model, lowered, solution, moved, trials),
-        )
+        message = f"{names} {are} not taken as the first guesses have it, for which no position was found"
+        (first, label), *others = other.calls
+        labels = tuple(Label(span, text) for span, text in others)
+        fix = _guesses(model, lowered, solution, moved, trials)
+        yield Diagnostic("N0604", message, first, label, labels, (_LOOK,), fix)
     for stage in solution.stages:
         despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
         if despite:
             names = named((c.text for c in despite), NAMED)
             hold = "hold" if len(despite) > 1 else "holds"
             first, *rest = dict.fromkeys(c.span for c in despite)
-            yield Diagnostic(
-                "N0604",
-                f"near the first guesses no position was found in which {names} {hold}; another one was",
-                first,
-                "holds elsewhere",
-                tuple(Label(span, "takes part") for span in rest),
-                (_LOOK,),
-                _guesses(model, lowered, solution, despite, trials),
-            )
+            message = f"near the first guesses no position was found in which {names} {hold}; another one was"
+            labels = tuple(Label(span, "takes part") for span in rest)
+            fix = _guesses(model, lowered, solution, despite, trials)
+            yield Diagnostic("N0604", message, first, "holds elsewhere", labels, (_LOOK,), fix)
 
 
 def _guesses(
     model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
 ) -> Fix | None:
-    """Returns a fix that writes first guesses near to where things are now, from which the program solves as
-    it is written; None if none were found.
-    """
+    """Returns a fix that writes first guesses from which the program solves as written; or None."""
     places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
     was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
     mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))

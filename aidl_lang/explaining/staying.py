@@ -212,15 +212,11 @@ def _lost_form(
         chief = max(changed, key=lambda u: abs(after[u] - before[u]))
         if not abs(after[chief] - before[chief]) > _FAR * max(abs(before[u]) for u in lengths):
             continue
-        yield Diagnostic(
-            "W0605",
-            f"`{way.path}` {how} lost its form: {chief.description} was "
-            f"{short(before[chief])} and became {short(after[chief])}",
-            way.span,
-            "literal points keep their distances as well as they can",
-            tuple(Label(span, label) for span in labels),
-            (hint,),
-        )
+        change = f"{chief.description} was {short(before[chief])} and became {short(after[chief])}"
+        message = f"`{way.path}` {how} lost its form: {change}"
+        places = tuple(Label(span, label) for span in labels)
+        told = "literal points keep their distances as well as they can"
+        yield Diagnostic("W0605", message, way.span, told, places, (hint,))
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:
@@ -276,14 +272,11 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
         if is_place and isinstance(holder, Geometry) and unknown.owner.parent is not None:
             places.setdefault(unknown.owner, {}).setdefault(holder, []).append(unknown)
     for structure, found in places.items():
-        details = [
-            _Detail(
-                geometry,
-                max(abs(solved[u] - written[u]) for u in unknowns),
-                tuple(dict.fromkeys(c for u in unknowns for c in naming.get(u, ()))),
-            )
-            for geometry, unknowns in found.items()
-        ]
+        details = []
+        for geometry, unknowns in found.items():
+            way = max(abs(solved[u] - written[u]) for u in unknowns)
+            asking = tuple(dict.fromkeys(c for u in unknowns for c in naming.get(u, ())))
+            details.append(_Detail(geometry, way, asking))
         stayed = [detail for detail in details if detail.stayed]
         left = [detail for detail in details if detail.left_by(structure)]
         extent = _extent([u for d in (*stayed, *left) for u in found[d.geometry]], written)

@@ -22,7 +22,7 @@ from aidl_lang.solver import newton
 from aidl_lang.solver.array_program import ZERO, ArrayProgram
 from aidl_lang.solver.freezing import AffineProgram, Branch, Freezer, Frozen, Program, Root
 from aidl_lang.solver.newton import Clock, End, System
-from aidl_lang.solver.operations import Floats, Op
+from aidl_lang.solver.operations import Floats, Ints, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.valuation import Valuation
 
@@ -94,6 +94,11 @@ class Metric:
     scale: Floats
     unit: Floats
     longest: Floats | None
+
+    def of(self, columns: Sequence[int] | Ints) -> Metric:
+        """Returns the units of some unknowns."""
+        longest = None if self.longest is None else self.longest[columns]
+        return Metric(self.scale[columns], self.unit[columns], longest)
 
 
 def attempt(task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock) -> Verdict:
@@ -286,25 +291,17 @@ class _Attempt:
         asked, count = self.considered, len(self.considered)
         rows = [self.task.rows[asked[i]] if i < count else None for i in program.rows]
         softness = [self.task.softness[asked[i]] if i < count else 0.0 for i in program.rows]
-        metric, columns = self.metric, program.columns
-        scale = metric.scale[columns]
+        metric = self.metric.of(program.columns)
+        scale = metric.scale
         anchor = np.array([origin[unknown] for unknown in program.columns])
         row_scale = np.array([row.scale if row else 1.0 for row in rows])
-        system = System(
-            program,
-            anchor,
-            scale,
-            row_scale,
-            np.array([row is None or row.relation is Relation.AT_MOST for row in rows]),
-            np.array(softness) if any(softness) else None,
-            None if metric.longest is None else metric.longest[columns],
-            metric.unit[columns],
-        )
+        at_most = np.array([row is None or row.relation is Relation.AT_MOST for row in rows])
+        slacks = np.array(softness) if any(softness) else None
+        system = System(program, anchor, scale, row_scale, at_most, slacks, metric.longest, metric.unit)
         z = np.zeros(system.size)
         z[: len(scale)] = (np.array([start[unknown] for unknown in program.columns]) - anchor) / scale
-        outcome = newton.solve(
-            system, TIGHTER * self.settings.tolerance, self.settings.iterations, self.clock, z, restarts
-        )
+        tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations
+        outcome = newton.solve(system, tolerance, iterations, self.clock, z, restarts)
         if outcome.contradiction is not None:
             taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()
             if taking_part:
@@ -345,11 +342,8 @@ class _Attempt:
     def _join_violated(self) -> bool:
         """Takes up inequalities that came to be violated."""
         known = set(self.considered)
-        fresh = [
-            i
-            for i, row in enumerate(self.task.rows)
-            if i not in known and not holds(row, self.values, self.settings.tolerance)
-        ]
+        others = ((i, row) for i, row in enumerate(self.task.rows) if i not in known)
+        fresh = [i for i, row in others if not holds(row, self.values, self.settings.tolerance)]
         self.considered.extend(fresh)
         return bool(fresh)
 

@@ -184,9 +184,7 @@ class _ConflictSearch:
         )
 
     def _nearest(self, conflict: Sequence[int], best: _SearchResult, starts: int) -> _SearchResult:
-        """Returns the best of searches from many places: one where the constraints hold, if any finds it,
-        with no kept size changed if possible.
-        """
+        """Returns the best of searches from many places, those with no kept size changed first."""
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
         free = sorted(mentioned & self.scope.free)
@@ -231,9 +229,7 @@ class _ConflictSearch:
     # -- the set
 
     def _conflict(self, best: dict[int, float], refuted: list[int]) -> list[int]:
-        """Returns a set that cannot hold together, taken from those that are `refuted` if there are any;
-        minimal unless the budget was spent.
-        """
+        """Returns a set that cannot hold together, of the `refuted` if any; minimal within the budget."""
         if refuted:
             return self._needed(refuted)
         found = next((c for c in self._candidates(best) if not self._holds(c)), None)
@@ -272,9 +268,7 @@ class _ConflictSearch:
         return sorted({owner[row] for row in relaxation.smallest()})
 
     def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
-        """Returns the residual of each member of a conflict that is one row where the others hold; empty if
-        that is not known.
-        """
+        """Returns the residual of each member that is one row where the others hold; empty if not known."""
         owner = self.hierarchy.owners(conflict)
         gaps = self._relaxation(conflict).gaps()
         return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)

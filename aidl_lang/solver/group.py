@@ -298,11 +298,8 @@ class Group:
         soft = set(self.soft)
         if reached > (0, 0):
             for unknown in self.tiers.scope(min(reached, POSITIONS), self.hard).free:
-                soft.update(
-                    index
-                    for index in hierarchy.solved_mentioning(unknown, self.group)
-                    if not hierarchy.is_hard[index]
-                )
+                binding = hierarchy.solved_mentioning(unknown, self.group)
+                soft.update(index for index in binding if not hierarchy.is_hard[index])
         if not hierarchy.unmet(soft):
             return
         preferences = tuple(sorted(soft))

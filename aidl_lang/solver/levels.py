@@ -82,9 +82,7 @@ class Levels:
         self._evaluated: tuple[Floats, Floats] | None = None
 
     def _incidence(self) -> Ints:
-        """Returns the pairs of a constraint and an unknown in it, ascending, each as one number: n times the
-        former plus the latter.
-        """
+        """Returns pairs of a constraint and an unknown in it, ascending: n times the one plus the other."""
         problem = self.problem
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
@@ -335,21 +333,13 @@ class Levels:
 
     def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
         """Solves one system with all care; moves `x` there if that succeeds."""
-        metric, columns, listed = self.metric, program.columns, self.problem.rows
-        system = System(
-            program,
-            x[columns],
-            metric.scale[columns],
-            listed.scale[rows],
-            listed.at_most[rows],
-            None,
-            None if metric.longest is None else metric.longest[columns],
-            metric.unit[columns],
-        )
+        columns, metric = program.columns, self.metric.of(program.columns)
+        scales, at_most = (metric.scale, self.problem.rows.scale[rows]), self.problem.rows.at_most[rows]
+        system = System(program, x[columns], *scales, at_most, None, metric.longest, metric.unit)
         tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations
         outcome = newton.solve(system, tolerance, iterations, self.clock, restarts=0)
         if outcome.converged:
-            x[columns] += metric.scale[columns] * outcome.z
+            x[columns] += metric.scale * outcome.z
         return outcome.end
 
 

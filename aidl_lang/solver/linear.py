@@ -224,9 +224,7 @@ class Nearest:
 
 
 def nearest(jacobian: Matrix, y: Floats, inequality: Bools) -> Nearest:
-    """Returns the nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are
-    <=.
-    """
+    """Returns the nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks rows with <=."""
     if not inequality.any():
         found = least_norm(jacobian, y)
         outside = None if found.outside is None else _scaled(found.outside)
@@ -272,9 +270,7 @@ class _DualActiveSet:
         self.contradiction: Floats | None = None
 
     def solve(self, together: bool = False) -> Nearest:
-        """Returns the nearest point. With `together` all violated rows enter at once, which is quicker for
-        many, but may come to no end.
-        """
+        """Returns the nearest point. If violated rows enter `together`, it is quicker, but may never end."""
         feasible = self._settle()
         for _ in range(3 * len(self.y) + 10):
             if not feasible:
@@ -288,9 +284,7 @@ class _DualActiveSet:
         return Nearest(self.point, self.multipliers, False, contradiction=self.contradiction)
 
     def _settle(self) -> bool:
-        """Brings the multipliers of the active rows to the optimum, dropping rows on the way; returns False
-        if there is none.
-        """
+        """Brings the multipliers of the active rows to the optimum, dropping rows; False if there is none."""
         for _ in range(len(self.y) + 1):
             rows = np.flatnonzero(self.active)
             if len(rows) == 0:
@@ -315,9 +309,7 @@ class _DualActiveSet:
         return False
 
     def _first_to_vanish(self, rows: Ints, direction: Floats, length: float) -> tuple[int | None, float]:
-        """Returns the inequality whose multiplier reaches zero before `length` along `direction`, and the
-        length at which it does.
-        """
+        """Returns the inequality whose multiplier vanishes along `direction` before `length`, and where."""
         current = self.multipliers[rows]
         falling = self.inequality[rows] & (current + direction < 0.0 if length == 1.0 else direction < 0.0)
         candidates = np.flatnonzero(falling)

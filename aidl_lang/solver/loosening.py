@@ -353,9 +353,7 @@ def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
 def _needed(
     hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank
 ) -> tuple[set[int], dict[int, float]]:
-    """Returns a sufficient set of the unknowns that moved, and the moves that the slopes promise to those of
-    them in curved rows.
-    """
+    """Returns enough of the unknowns that moved, and the moves that slopes promise those in curved rows."""
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)
     hierarchy.refresh(scope.constraints)

@@ -231,9 +231,7 @@ def depths(parent: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def violations(problem: Problem, nodes: Floats) -> Floats:
-    """Returns the violation of each row (r,) if the tape's nodes have the values `nodes` (m,), in the units
-    of the row; infinite if it has no value.
-    """
+    """Returns each row's violation (r,) at values `nodes` (m,), in its units; infinite for no value."""
     value = nodes[problem.rows.expression]
     violation = np.where(problem.rows.at_most, np.maximum(value, 0.0), np.abs(value))
     return np.where(np.isnan(value), np.inf, violation)

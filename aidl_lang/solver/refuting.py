@@ -49,9 +49,7 @@ _NONE = _Refutation({}, 0.0, False)
 
 
 class Relaxation:
-    """Some rows with the unknowns `free`, and the bounds of what bends or chooses in them. The nodes of the
-    rows must be up to date.
-    """
+    """Some rows, up to date, with the unknowns `free`, and the bounds of what bends or chooses in them."""
 
     def __init__(self, values: Valuation, rows: Sequence[Row], free: Iterable[int], tolerance: float) -> None:
         self._values, self._free, self._tolerance = values, frozenset(free), tolerance
@@ -67,9 +65,7 @@ class Relaxation:
         """True if something in the rows neither is affine nor chooses."""
 
     def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
-        """Returns factors of some of the rows `among`, by number, with which they add up to an impossibility;
-        empty if none were found.
-        """
+        """Returns factors of some of the rows `among`, by number, that add up to what cannot be; or none."""
         return self._refuted(list(among)).factors
 
     @property
@@ -78,9 +74,7 @@ class Relaxation:
         return bool(self.refutation(self._all))
 
     def lack(self) -> float:
-        """Returns the amount by which the sum that refutes the rows is off, with the greatest factor in it as
-        one; 0 if they are not refuted.
-        """
+        """Returns how far off the sum is that refutes the rows, its greatest factor as 1; 0 if none does."""
         found = self._refuted(self._all)
         return found.off / max(map(abs, found.factors.values()), default=1.0)
 
@@ -170,9 +164,7 @@ class Relaxation:
         return found
 
     def _leaves(self, op: int, part: Form) -> list[Form]:
-        """Returns the operands of the `max` or `min` that `part` is but for an added form, each with that
-        form added; else `part` itself.
-        """
+        """Returns the operands of the `max` or `min` in `part`, each with what is added; else `part`."""
         knots = self._knots(part)
         if len(knots) != 1 or isinstance(part, float):
             return [part]
@@ -373,9 +365,7 @@ class Linearised:
 
 
 def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> list[int]:
-    """Returns a set of constraints whose linearised rows contradict each other at the current values, each
-    needed for that; empty if there is none.
-    """
+    """Returns constraints whose linearised rows contradict each other, each needed for that; or none."""
     rows = Linearised(hierarchy, constraints, free)
     accused = rows.accused()
     if rows.can_hold(accused):
@@ -384,9 +374,7 @@ def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[in
 
 
 def needed(failing: Sequence[int], holds: Callable[[list[int]], bool]) -> list[int]:
-    """Returns a smallest part of a failing set that still fails: tries halves of a large set first, then
-    leaves out each member in turn.
-    """
+    """Returns a smallest failing part of a failing set: tries halves, if large, then without each member."""
     found = list(failing)
     if len(found) > MOST_ACCUSED:
         found = _halved([], False, found, holds)

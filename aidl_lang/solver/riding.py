@@ -210,9 +210,7 @@ class Recollection:
         self._depths = depths(problem.parent)
 
     def recall(self, depth: int, x: Floats) -> Bools:
-        """Puts the remembered values below the groups at `depth` into `x` (n,); returns the mask (g,) of
-        groups that need not be solved.
-        """
+        """Puts remembered values below groups at `depth` into `x` (n,); returns the groups (g,) known."""
         known: Bools = self.familiar & (self._depths == depth)
         if known.any():
             above = ancestors(self._problem.parent, self._depths, depth)[self._problem.group]

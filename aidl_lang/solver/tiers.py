@@ -78,9 +78,7 @@ class Tiers:
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
         self.placed: Mapping[int, int] = {}
-        """The own positions and sizes that constraints place, with their level: 0, or 1 if only bounds that
-        hold anyway would place them.
-        """
+        """The own positions and sizes that constraints place, with 0, or 1 if only bounds that hold would."""
         self._known: dict[int, Tier] = {}
         self._everything: dict[tuple[int, ...], Scope] = {}
         """The scope with all unknowns free, by the constraints that are to hold."""

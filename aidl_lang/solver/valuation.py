@@ -67,9 +67,7 @@ class Valuation:
         return found
 
     def _value_of(self, sizes: frozenset[int]) -> Callable[[int], float | None]:
-        """Returns a function that gives the value of a node which hangs on kept sizes alone, none of `sizes`
-        among them; None for others.
-        """
+        """Returns a function for the value of a node that hangs on kept sizes but `sizes` alone, or None."""
         still = self.still(sizes)
 
         def value(node: int) -> float | None:

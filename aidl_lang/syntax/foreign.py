@@ -210,9 +210,7 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
 
 
 def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
-    """Returns the number of the token at which the operand before or behind a token ends: a separator, or the
-    bracket around it.
-    """
+    """Returns the number of the token that ends the operand before or behind: a separator or a bracket."""
     depth, n = 0, at + step
     while n != limit:
         deeper = step * tokens[n].nesting
@@ -238,16 +236,10 @@ def inches(t: Trouble) -> SyntaxProblem | None:
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
     gap = Span(t.source, number.end, before.start)
-    return wrong(
-        "E0106",
-        f"a unit touches its number: `{number.text}in`",
-        t.span(number, before),
-        "the space ends the number",
-        fix=replaced("remove the space", gap, ""),
-        repair=TokenRepair(
-            t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)
-        ),
-    )
+    right, span = number.text + "in", t.span(number, before)
+    message, label = f"a unit touches its number: `{right}`", "the space ends the number"
+    repair = TokenRepair(t.position - 2, t.position, (Token("NUMBER", right, number.start, before.end),))
+    return wrong("E0106", message, span, label, fix=replaced("remove the space", gap, ""), repair=repair)
 
 
 def _has_no_unit(token: Token) -> bool:

@@ -137,10 +137,8 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
     span = Span(source, tokens[at].start, tokens[middle + 1].end)
     right = f"in {Span(source, low[0].start, low[-1].end).text}..{tokens[middle + 1].text}"
     word, dots = tokens[at].but("in", "in"), tokens[middle].but("..", "..")
-    edits = (
-        Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
-        Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),
-    )
+    gap = Span(source, low[-1].end, tokens[middle + 1].start)
+    edits = Edit(Span(source, tokens[at].start, tokens[at].end), "in"), Edit(gap, "..")
     repair = TokenRepair(0, middle + 1 - at, (word, *low, dots))
     fix = Fix(f"write `{right}`", edits, is_sure=True)
     return wrong("E0109", f"a range is written `{right}`", span, fix=fix, repair=repair)

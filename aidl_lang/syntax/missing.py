@@ -87,17 +87,10 @@ def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "=" or not t.accepts("==", "NAME"):
         return None
     definition = t.first.kind not in STATEMENT_WORDS and not t.open
-    return wrong(
-        "E0110",
-        "`=` gives a value to a name; what must be equal is written with `==`",
-        t.span(),
-        "write `==`",
-        right="==",
-        hints=("a part of a geometry already has a value: `constrain a.x == b.x` ties it to another",)
-        if definition
-        else (),
-        repair=t.exchanged("=="),
-    )
+    message = "`=` gives a value to a name; what must be equal is written with `==`"
+    hint = "a part of a geometry already has a value: `constrain a.x == b.x` ties it to another"
+    hints, repair = (hint,) if definition else (), t.exchanged("==")
+    return wrong("E0110", message, t.span(), "write `==`", right="==", hints=hints, repair=repair)
 
 
 def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
@@ -207,15 +200,11 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
         return None
     name = _fresh_name(t, word)
     article = "an" if word[0] in "aeiou" else "a"
-    return wrong(
-        "E0116",
-        f"{article} `{word}` needs a name: `{word} {name} {{ … }}`",
-        t.span(t.first),
-        "the name is missing",
-        fix=replaced(f"name it `{name}`", t.gap(), f" {name}"),
-        hints=("constraints and other parts speak of it by its name",),
-        repair=TokenRepair(t.position, t.position, (t.token_here("NAME", name),)),
-    )
+    message = f"{article} `{word}` needs a name: `{word} {name} {{ … }}`"
+    label, hints = "the name is missing", ("constraints and other parts speak of it by its name",)
+    fix = replaced(f"name it `{name}`", t.gap(), f" {name}")
+    repair = TokenRepair(t.position, t.position, (t.token_here("NAME", name),))
+    return wrong("E0116", message, t.span(t.first), label, fix=fix, hints=hints, repair=repair)
 
 
 def _fresh_name(t: Trouble, word: str) -> str:
@@ -233,16 +222,11 @@ def missing_block(t: Trouble) -> SyntaxProblem | None:
     colon = t.token.kind == ":"
     if not (colon or t.on_new_line or t.token.kind in (END, "}", ";") or t.token.kind in STATEMENT_WORDS):
         return None
-    head = describe(t.first)
-    return wrong(
-        "E0121",
-        f"expected `{{` to begin the block of {head}",
-        t.gap(),
-        "the block begins with `{` and ends with `}`",
-        (Label(t.span(t.first), "for this"),),
-        hints=("blocks stand in braces, not behind a colon",) if colon else (),
-        repair=t.exchanged() if colon and t.following.kind == "{" else None,
-    )
+    message = f"expected `{{` to begin the block of {describe(t.first)}"
+    label, other = "the block begins with `{` and ends with `}`", Label(t.span(t.first), "for this")
+    hints = ("blocks stand in braces, not behind a colon",) if colon else ()
+    repair = t.exchanged() if colon and t.following.kind == "{" else None
+    return wrong("E0121", message, t.gap(), label, (other,), hints=hints, repair=repair)
 
 
 def repeated_placement(t: Trouble) -> SyntaxProblem | None:

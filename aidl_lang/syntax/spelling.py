@@ -131,17 +131,10 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
     if not inner or not is_whole or (is_behind_value and not t.on_new_line):
         return None
     edits = (Edit(t.span(), "abs("), Edit(Span(t.source, close.start, close.end), ")"))
-    return wrong(
-        "E0108",
-        f"an absolute value is written `abs({inner})`",
-        Span(t.source, t.token.start, close.end),
-        fix=Fix(f"write `abs({inner})`", edits, is_sure=True),
-        repair=TokenRepair(
-            t.position,
-            stop + 1,
-            (t.token.but("CALL", "abs("), *t.tokens[t.position + 1 : stop], close.but(")", ")")),
-        ),
-    )
+    message, span = f"an absolute value is written `abs({inner})`", Span(t.source, t.token.start, close.end)
+    fix = Fix(f"write `abs({inner})`", edits, is_sure=True)
+    tokens = t.token.but("CALL", "abs("), *t.tokens[t.position + 1 : stop], close.but(")", ")")
+    return wrong("E0108", message, span, fix=fix, repair=TokenRepair(t.position, stop + 1, tokens))
 
 
 def _curly_quote(t: Trouble) -> SyntaxProblem:

@@ -82,9 +82,7 @@ def _inputs() -> Iterator[Path]:
 
 
 def built() -> bytes:
-    """Returns as JSON what Lark keeps of its parser (about half a second). Raises lark's GrammarError if the
-    grammar cannot be read.
-    """
+    """Returns as JSON what Lark keeps of its parser, in half a second. Raises GrammarError if it cannot."""
     grammar = resource("grammar/aidl.lark").read_text(encoding="utf-8") + _BROKEN
     options = {"parser": "lalr", "lexer": "basic", "start": ["module"], "maybe_placeholders": False}
     made = Lark(grammar, **options, postlex=_Kept())

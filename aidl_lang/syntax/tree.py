@@ -223,18 +223,9 @@ class Builder:
     ) -> ast.Structure:
         word = self.identifier(kind)
         placement = next((p for p in rest if isinstance(p, ast.Placement)), None)
-        return ast.Structure(
-            kind_of(word.text) or self._unknown_kind(word),
-            word,
-            self.identifier(name),
-            indices,
-            parameters,
-            placement,
-            attributes,
-            rest[-1],
-            self.docs.get(at.start),
-            span=at,
-        )
+        meant = kind_of(word.text) or self._unknown_kind(word)
+        head = meant, word, self.identifier(name), indices, parameters, placement, attributes
+        return ast.Structure(*head, rest[-1], self.docs.get(at.start), span=at)
 
     def _unknown_kind(self, word: ast.Identifier) -> str:
         """Reports a word that is no kind. Returns the nearest kind, which is assumed."""
@@ -247,19 +238,14 @@ class Builder:
         guess = KIND_OF_WORD[near[0]] if near else "solid"
         canonical = near[0] if near and near[0] in KINDS else guess
         is_sure = bool(near) and is_slip(word.text, near[0])
-        self.diagnostics.append(
-            Diagnostic(
-                "E0115",
-                f"`{word.text}` is not a kind of structure"
-                + (f"; did you mean `{canonical}`?" if near else ""),
-                word.span,
-                "kinds are assembly, solid, hole and drawing",
-                hints=()
-                if near
-                else ("write what it is: `solid` for material, `hole` for what is cut away",),
-                fix=Fix(f"write `{canonical}`", (Edit(word.span, canonical),), is_sure) if near else None,
-            )
-        )
+        message = f"`{word.text}` is not a kind of structure"
+        label = "kinds are assembly, solid, hole and drawing"
+        hint = "write what it is: `solid` for material, `hole` for what is cut away"
+        found = Diagnostic("E0115", message, word.span, label, hints=(hint,))
+        if near:
+            fix = Fix(f"write `{canonical}`", (Edit(word.span, canonical),), is_sure)
+            found = replace(found, message=f"{message}; did you mean `{canonical}`?", hints=(), fix=fix)
+        self.diagnostics.append(found)
         return guess
 
     def attribute(self, at: Span, name: Token, arguments: Any = ()) -> ast.Attribute:

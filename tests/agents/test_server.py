@@ -19,7 +19,6 @@ import jsonschema
 import pytest
 from PIL import Image
 
-from aidl_lang.tools.agents.schema import for_mcp
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, CONFLICT, IMPORTS, PLATE, TELEPHONE
 from tests.documents import ROOT
@@ -60,13 +59,6 @@ def command(*arguments: str) -> Any:
 def session() -> Iterator[Session]:
     with connected(command()) as session:
         yield session
-
-
-def test_tools_are_listed_as_the_command_prints_them(session: Session) -> None:
-    listed = session("list_tools").tools
-    as_sent = [tool.model_dump(by_alias=True, exclude_none=True, mode="json") for tool in listed]
-    assert as_sent == for_mcp()
-    assert all(tool["annotations"]["readOnlyHint"] for tool in as_sent)
 
 
 def test_bad_program_is_checked(session: Session) -> None:
@@ -241,13 +233,3 @@ def test_token_that_is_none(said: Callable[..., str], monkeypatch: pytest.Monkey
         "error[E0942]: AIDL_MCP_TOKEN is no token\n"
         "  = hint: it has 16 letters, digits, `-` and `_`, or more\n"
     )
-
-
-def test_port_that_is_taken(said: Callable[..., str]) -> None:
-    import socket
-
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        text = said("--http", str(port))
-    assert text.startswith(f"error[E0942]: port {port} cannot be served: ")
-    assert text.endswith("\n  = hint: `--http 0` takes a port that is free\n")

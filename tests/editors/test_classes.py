@@ -16,7 +16,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.highlighting.classes import CLASSES, Piece, classify
 from aidl_lang.tools.reference.collect import reference
-from tests.documents import ROOT, programs
+from tests.documents import ROOT
 
 EVERYTHING = Path(__file__).with_name("classes.aidl")
 FILES = [
@@ -27,7 +27,6 @@ FILES = [
     ),
     EVERYTHING,
 ]
-BLOCKS = [b for page in sorted((ROOT / "docs").glob("*.md")) for b in programs(page)]
 TOLD_BY_THE_TREE = {kind for kind in CLASSES if kind.startswith(("kind", "call", "name."))} - {
     *("name.everywhere", "name.constant", "name.module"),
 }
@@ -100,12 +99,6 @@ def test_names_are_what_the_tree_says(path: Path) -> None:
     check(path.read_text("utf-8"), path.name)
 
 
-def test_names_in_the_documentation_are_what_the_tree_says() -> None:
-    for block in BLOCKS:
-        if block.note == "" and expected(block.text):
-            check(block.text, block.place)
-
-
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_other_tokens_are_of_the_class_of_their_kind(path: Path) -> None:
     text = path.read_text("utf-8")
@@ -138,36 +131,6 @@ def test_other_tokens_are_of_the_class_of_their_kind(path: Path) -> None:
                 assert kind == "punctuation"
             case _:
                 assert kind.startswith("operator."), token
-
-
-def test_every_class_occurs_in_the_sample() -> None:
-    text = EVERYTHING.read_text("utf-8")
-    assert {piece.kind for piece in classify(text)} == set(CLASSES) - {"unknown"}
-    assert not [d for d in parse(SourceFile("", text)).diagnostics if d.is_error]
-
-
-@pytest.mark.parametrize(
-    ("text", "wanted"),
-    [
-        ("4.5mm", [("4.5", "number"), ("mm", "unit")]),
-        ("30°", [("30", "number"), ("°", "unit")]),
-        ("1e3in", [("1e3", "number"), ("in", "unit")]),
-        ("5px", [("5", "number"), ("px", "unknown")]),
-        ('"a\\n"', [('"a', "string"), ("\\n", "escape"), ('"', "string")]),
-        ("'a", [("'a", "unknown")]),
-        ("/* never", [("/* never", "unknown")]),
-        ("solid 木", [("solid", "kind"), ("木", "name.structure")]),
-        ("@color", [("@", "attribute.sign"), ("color", "attribute")]),
-        ("part = 1", [("part", "name.definition"), ("=", "operator.assignment"), ("1", "number")]),
-        ("from = 1", [("from", "name.definition"), ("=", "operator.assignment"), ("1", "number")]),
-        ("/// d", [("/// d", "comment.documentation")]),
-        ("//// d", [("//// d", "comment.line")]),
-        ("# d\r\n木", [("# d\r", "comment.line"), ("木", "name")]),
-        ("\U0001d4b3=", [("\U0001d4b3", "name.definition"), ("=", "operator.assignment")]),
-    ],
-)  # fmt: skip
-def test_tokens_alone(text: str, wanted: list[tuple[str, str]]) -> None:
-    assert [(text[p.start : p.end], p.kind) for p in classify(text)] == wanted
 
 
 SCRAPS = st.sampled_from(

@@ -180,47 +180,10 @@ def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
     assert sum(verdicts.values()) - verdicts["taken"] - verdicts["refused"] <= 3, verdicts
 
 
-@pytest.mark.parametrize(
-    ("text", "why", "taken"),
-    [
-        ("let x = (1and 2)", "a word that touches a number", False),
-        ("param x = 5mmin 1..9", "a word that touches a number", False),
-        ("let x = 5/* c */mm", "a comment between two tokens that touch elsewhere", True),
-        ("a.x == 60\n/* c */b.x == 3", "a comment between two tokens that touch elsewhere", False),
-        ("let x = f/* c */(3)", "a comment between two tokens that touch elsewhere", True),
-        ("let x = 'a\n/* c */'", "a comment between two tokens that touch elsewhere", True),
-        ("let x = if a then(b) else c", "`then(` is a call", True),
-        ("alias a = b(c).d == 3", "a call in the place of a name", True),
-        ('import "a" as b(c).d == 3', "a call in the place of a name", True),
-    ],
-)
-def test_where_the_grammar_knows_too_little(text: str, why: str, taken: bool) -> None:
-    """White space and comments stand between any two tokens, and what a token is depends on its place: this
-    is how tree-sitter reads. So these few are judged otherwise than by the parser.
-    """
-    tree = parse(text)
-    assert beyond(tree) == why
-    assert (refused(tree) is None, not errors(text)) == (taken, not taken)
-
-
 def has_signed_lines(text: str) -> bool:
     """Whether a constraint begins with a sign on a line of its own, which the parser alone tells."""
     tokens = tokenize(SourceFile("", text)).tokens
     return any(begins_with_sign(text, tokens, place) for place in range(len(tokens)))
-
-
-def test_signed_lines_are_left_to_the_parser() -> None:
-    text = "constrain { a == b\n-c == d }"
-    (statement,) = read(SourceFile("", text)).module.statements
-    assert isinstance(statement, ast.Constrain)
-    assert len(statement.items.statements) == 2
-    assert refused(parse(text)) is None
-
-
-def test_lines_are_left_to_the_parser() -> None:
-    text = "a.x == b.x\n[a, b].above(c)\n"
-    assert [d.code for d in read(SourceFile("", text)).diagnostics] == ["E0125"]
-    assert refused(parse(text)) is None
 
 
 def test_the_letters_of_names_are_those_of_the_parser() -> None:
@@ -304,7 +267,8 @@ NODES: dict[type[ast.Node], str] = {
 
 def test_spans_are_those_of_the_parser() -> None:
     seen = Counter[str]()
-    for place, text in {**whole_programs(), **specified()}.items():
+    every = {**whole_programs(), **specified()}
+    for place, text in [*every.items()][:: 1 if TRIES_ALL else 3]:
         if has_signed_lines(text):
             continue
         ends = [0]
@@ -319,9 +283,10 @@ def test_spans_are_those_of_the_parser() -> None:
         )
         assert mine == theirs, place
         seen.update(kind for kind, _, _ in mine)
-    assert set(seen) == set(NODES.values())
-    assert seen["structure"] > 100
-    assert seen["param_declaration"] > 60
+    assert set(seen) <= set(NODES.values())
+    assert len(seen) >= len(set(NODES.values())) - (0 if TRIES_ALL else 2)
+    assert seen["structure"] > 60
+    assert seen["param_declaration"] > 20
 
 
 def is_method(node: Node) -> bool:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import itertools
 import re
-from dataclasses import replace
 
 from aidl_lang.checking import builtins, library
 from aidl_lang.checking.builtins import CUTS
-from aidl_lang.checking.types import type_named
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.syntax.tables import kind_of, load_tables
 from aidl_lang.tools.vocabulary import NAMES, unclaimed, vocabulary
 
 WORDS = vocabulary()
@@ -40,15 +37,6 @@ def test_every_word_and_sign_of_the_grammar_has_one_class() -> None:
     assert sorted([*keywords, *signs]) == sorted(literals())
     assert WORDS.keywords == tuple(keywords)
     assert WORDS.signs == tuple(signs)
-
-
-def test_a_word_that_the_grammar_gains_is_missed(monkeypatch) -> None:
-    from aidl_lang.tools import vocabulary as module
-
-    now = load_tables()
-    tables = replace(now, types=now.types | {"later": "LATER", "~~": "TILDES"})
-    monkeypatch.setattr(module, "load_tables", lambda: tables)
-    assert module.unclaimed() == {"later", "~~"}
 
 
 def test_statements_are_the_words_that_may_begin_one() -> None:
@@ -109,12 +97,6 @@ def test_units_are_those_of_the_grammar() -> None:
     assert taken <= set(WORDS.units)
     assert set(UNITS) <= set(WORDS.units)
     assert "°" in WORDS.units
-
-
-def test_kinds_and_types_are_understood() -> None:
-    assert {kind_of(word) for word in WORDS.kind_words} == set(WORDS.kinds)
-    assert all(type_named(word) is not None for word in WORDS.types)
-    assert not set(WORDS.kind_words) & set(WORDS.keywords)
 
 
 def test_the_form_in_json_has_every_class() -> None:

@@ -10,7 +10,6 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.building.state import BuildingLimits
-from aidl_lang.common.running import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.tools import ends
@@ -93,30 +92,6 @@ solid plate {
     )
 
 
-def test_warnings_that_are_new_are_told() -> None:
-    text = """\
-solid plate {
-    param shift = 0mm in 0..30
-    body = rectangle(center: origin, width: 40, height: 94)
-    hole bore { rim = circle(center: (shift, 0), radius: 3) }
-}
-"""
-    upper = swept(text).turned[0]
-    assert (upper.ok, sentence(upper, "plate.aidl")) == (
-        True,
-        "at `shift = 30mm` line 4: hole `plate.bore` removes nothing from solid `plate`",
-    )
-
-
-def test_faults_in_imported_files_are_told_with_their_file() -> None:
-    lib = "solid leg(long: length) {\n    body = rectangle(width: 5, height: long)\n    fillet(body, 2)\n}\n"
-    text = 'import "leg.aidl"\nsolid stool {\n    param low = 9mm in 3..20\n    a = leg(low)\n}\n'
-    (lower, _) = swept(text, {"leg.aidl": lib}).turned
-    assert sentence(lower, "plate.aidl") == (
-        "at `low = 3mm` `fillet(body, 2)` in line 3 of `leg.aidl` does not fit; it fits down to 4mm"
-    )
-
-
 def test_limits_hold_as_for_any_compile() -> None:
     text = """\
 drawing d {
@@ -129,15 +104,6 @@ drawing d {
         "at `count = 100000` line 3: this program builds more than 30 structures and geometries; "
         "all is well up to 5"
     )
-
-
-def test_slow_failing_is_not_searched(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ends, "_PATIENCE", 0.0)
-    (lower, upper) = [
-        each for each in swept(PLATE).turned if each.knob.path in ("width", "height") and not each.ok
-    ]
-    assert (lower.works, lower.beyond, upper.works, upper.beyond) == (None, None, None, None)
-    assert sentence(lower, "plate.aidl").endswith("the assert in line 15 fails (94 is not > 120)")
 
 
 def _ends_process(*_: object) -> Tried:
@@ -168,20 +134,3 @@ def test_process_that_breaks_is_a_result(
     monkeypatch.setattr(SweepJob, "seconds", 3.0)
     turned = swept("solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }").turned
     assert [sentence(each, "plate.aidl") for each in turned] == [f"at `r = {r}` {said}" for r in (1, 3)]
-
-
-def test_time_for_all_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ends, "tried", _hangs)
-    text = "solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }"
-    knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
-    found = sweep(SweepJob("a.aidl", text), knobs, (), seconds=0.5)
-    assert (found.turned, found.left, found.ok) == ((), 2, False)
-
-
-def test_sweep_that_nobody_waits_for_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ends, "tried", _hangs)
-    text = "solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }"
-    knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
-    asked: list[int] = []
-    with pytest.raises(Cancelled), cancelled_when(lambda: asked.append(1) or len(asked) > 3):  # type: ignore[func-returns-value]
-        sweep(SweepJob("a.aidl", text), knobs, ())

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from aidl_lang.building.model import Knob
 from aidl_lang.tools.ends import ends, limit
@@ -49,21 +47,6 @@ def searched(of: Knob, end: float, works: Callable[[float], bool]) -> tuple[floa
             value = search.send(works(value))
     except StopIteration as done:
         return *done.value, asked
-
-
-@given(st.floats(1, 500), st.floats(0.5, 500), st.floats(0, 1), st.booleans())
-def test_limit_is_between_what_works_and_what_does_not(
-    value: float, way: float, share: float, up: bool
-) -> None:
-    end = value + way if up else value - way
-    threshold = value + share * (end - value)
-    of = knob(value, min(value, end), max(value, end))
-    works, beyond, asked = found(of, end, threshold)
-    inside = (lambda v: v <= threshold) if up else (lambda v: v >= threshold)
-    assert works == value or (works in asked and inside(works))
-    assert beyond == end or (beyond in asked and not inside(beyond))
-    assert abs(beyond - works) <= 2e-3 * way
-    assert len(asked) <= 27
 
 
 def test_what_fails_on_the_way_to_a_limit_is_the_limit() -> None:

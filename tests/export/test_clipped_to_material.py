@@ -10,8 +10,6 @@ from functools import cache
 
 import ezdxf
 import pytest
-from PIL import Image
-from pypdfium2 import PdfDocument
 from shapely import LineString, MultiLineString, Point, box, unary_union
 from shapely.geometry.base import BaseGeometry
 from svgelements import SVG
@@ -105,41 +103,6 @@ def test_strokes_end_at_the_holes_of_their_solid(read: Callable[[Model], BaseGeo
     assert len(clipped.geoms) == len(expected.geoms)  # type: ignore[attr-defined]
 
 
-def test_step_has_a_curve_for_each_piece() -> None:
-    for clip, expected in (("", WRITTEN), ("@clip(outer)", WRITTEN.intersection(MATERIAL))):
-        assert compiled(clip).export("step").decode().count("GEOMETRIC_CURVE_SET(") == len(expected.geoms)
-
-
-def dark(picture: Image.Image, made: Model, spot: Point) -> bool:
-    """Tells whether there is ink on a square of 4 mm about a spot."""
-    left, bottom, right, top = made._compiled.drawing.box  # type: ignore[union-attr]
-    width, height = picture.size
-    scale = min(width / (right - left), height / (top - bottom))
-    x = width / 2 + (spot.x - (left + right) / 2) * scale
-    y = height / 2 - (spot.y - (bottom + top) / 2) * scale
-    part = picture.convert("L").crop(
-        (int(x - 2 * scale), int(y - 2 * scale), int(x + 2 * scale), int(y + 2 * scale))
-    )
-    return part.getextrema()[0] < 128  # type: ignore[operator]
-
-
-def png(made: Model) -> Image.Image:
-    return Image.open(io.BytesIO(made.export("png")))
-
-
-def pdf(made: Model) -> Image.Image:
-    with PdfDocument(made.export("pdf")) as document:
-        return document[0].render(scale=6).to_pil()
-
-
-@pytest.mark.parametrize("read", [png, pdf])
-def test_nothing_is_seen_over_the_hole(read: Callable[[Model], Image.Image]) -> None:
-    for clip, over_hole in (("", True), ("@clip(outer)", False)):
-        made = compiled(clip)
-        assert dark(read(made), made, Point(10, 0)) is over_hole
-        assert dark(read(made), made, Point(-20, 0))
-
-
 def test_nested_drawings_and_copies_end_at_the_same_material() -> None:
     """A copy that comes with its solid ends at the copy of that, the drawing alone at the same solid."""
     strokes = model(NESTED)._compiled.drawing.strokes  # type: ignore[union-attr]
@@ -150,8 +113,3 @@ def test_nested_drawings_and_copies_end_at_the_same_material() -> None:
     plate = {"engraved": 60 - 10, "engraved.deeper": 30}
     expected = {f"view.{of}.plate.{name}": size for of in ("outer", "twin") for name, size in plate.items()}
     assert lengths == pytest.approx(expected | {"view.beside": 90 - 10, "view.low": 90 - 10})
-
-
-def test_bodies_in_space_are_the_same() -> None:
-    for suffix in ("3mf", "stl"):
-        assert len({compiled(clip).export(suffix) for clip in ("", "@clip(outer)")}) == 1, suffix

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 import shapely
-from hypothesis import given
-from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
@@ -17,10 +14,8 @@ from aidl_lang.export import ExportError, Options
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
-from tests.amount import tries
 from tests.compiled import EXAMPLES, compiled
 
-ROOT = Path(__file__).parents[2]
 CAPITAL, DIGIT = 0.73, 0.64
 """Height and width of the digits of DejaVu Sans, relative to the size of the font."""
 
@@ -150,21 +145,6 @@ def test_values_can_be_read(name: str):
     check(p)
 
 
-@pytest.mark.parametrize("name", ["plate", "lighthouse", "toy_sword", "ruler"])
-def test_digits_are_20_pixels_high_in_a_png(name: str):
-    p = drawn(PROGRAMS[name])
-    pixel = max(p.width, p.height) / 1600
-    assert all(value_of(g).size * CAPITAL >= 19 * pixel for g in dimensions(p))
-
-
-def test_the_body_is_as_without_dimensions():
-    plain, dimensioned = pipeline.compile(SourceFile("a.aidl", PLATE)), drawn(PLATE)
-    svg = plain.export(".svg", Options()).decode()
-    bare = [g.name for g in dimensioned.groups if "dimension" not in g.name]
-    assert bare == [g.attrib["id"] for g in ElementTree.fromstring(svg).iter() if "id" in g.attrib]
-    assert "dimension" not in svg
-
-
 def test_cut_files_have_no_dimensions():
     with pytest.raises(ExportError) as caught:
         pipeline.compile(SourceFile("a.aidl", PLATE)).export(".svg", Options(dimension=True, cut=True))
@@ -192,64 +172,7 @@ def test_short_lengths_stand_nearer_than_long_ones():
     assert not any(line.crosses(e) for g in groups for line in lines_of(g, "dimension") for e in extensions)
 
 
-def test_same_program_same_bytes():
-    one, other = (
-        pipeline.compile(SourceFile("a.aidl", PLATE)).export(".svg", Options(dimension=True))
-        for _ in range(2)
-    )
-    assert one == other
-
-
-holes = st.lists(
-    st.tuples(st.integers(-45, 45), st.integers(-25, 25), st.sampled_from([1, 2, 3.5, 4])), max_size=8
-)
-
-
-@tries(25)
-@given(st.integers(60, 300), st.integers(60, 300), holes)
-def test_plates_with_holes(width: int, height: int, at: list[tuple[int, int, float]]):
-    text = f"solid p {{ body = rectangle(center: origin, width: {width}, height: {height})\n"
-    for n, (x, y, r) in enumerate(at):
-        text += f"hole h{n} {{ rim = circle(center: ({x}, {y}), radius: {r}) }}\n"
-        text += f"constrain h{n}.rim.center == body.center + ({x}, {y})\n"
-    check(drawn(text + "}"))
-
-
 # --- Hostile programs ------------------------------------------------------------------------------
-
-
-def test_an_empty_drawing():
-    assert not dimensions(drawn("solid s { }"))
-
-
-@pytest.mark.parametrize(
-    ("size", "said"), [("0.003", "0.003"), ("0.00012345", "0.00012"), ("123456789012", "123456789012")]
-)
-def test_tiny_and_huge(size: str, said: str):
-    p = drawn(f"solid s {{ body = rectangle(center: origin, width: {size}, height: {size}) }}")
-    check(p)
-    assert [value_of(g).text for g in dimensions(p)] == [said, said]
-
-
-def test_odd_names_are_written_as_text():
-    text = 'solid s { param style = "</svg>" in ["</svg>", "b"]\n body = rectangle(width: 3, height: 4) }'
-    svg = pipeline.compile(SourceFile("a.aidl", text)).export(".svg", Options(dimension=True))
-    assert len(list(ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}svg"))) == 1
-
-
-def test_a_thousand_equal_holes_are_one_dimension():
-    text = """solid s {
-        body = rectangle(center: origin, width: 400, height: 300)
-        for i in 0..39 {
-            for j in 0..24 {
-                hole h[i][j] { rim = circle(center: fixed((-190 + 9.7 * i, -140 + 11.5 * j)), radius: 3) }
-            }
-        }
-    }"""
-    p = drawn(text)
-    check(p)
-    said = {value_of(g).text for g in dimensions(p)}
-    assert said == {"400", "300", "1000× ⌀6", "39× 9.7", "24× 11.5"}
 
 
 def test_too_many_are_counted():

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
 
-import pypdfium2
 import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
-from aidl_lang.export import ExportError, Job, Options
+from aidl_lang.export import ExportError, Job
 from aidl_lang.export.dimension_marks import DIGIT, Block
 from aidl_lang.export.drafting import Draft, drafted
 from aidl_lang.export.drafting.tables import SCALES, STANDARDS, papers
@@ -249,47 +247,11 @@ def test_what_the_program_does_not_state_is_added(body: str, wanted: set[str]):
     assert wanted <= values(page)
 
 
-def test_nothing_is_said_twice():
-    text = """solid s {
-        b = rectangle(width: 80, height: 50)
-        left = rectangle(width: 20, height: 50)
-        constrain { left.bb.left == b.bb.left  left.center_y == b.center_y }
-    }"""
-    (page,) = pages(text)
-    assert values(page) == {"80", "50"}
-
-
 def test_the_values_are_those_of_the_solved_model():
     (page,) = pages((ROOT / "examples" / "motor_bracket.aidl").read_text("utf-8"))
     for group in dimension_groups(page):
         said = next(m.text for m in group.marks if isinstance(m, Text)).split("× ")[-1].strip("⌀R°")
         assert float(said) == pytest.approx(float(group.attributes["data-value"]), abs=0.0051)
-
-
-def test_a_pdf_has_the_paper_for_its_pages_and_bears_no_date():
-    found = compiled(ASSEMBLY)
-    (made,) = found.drafted([".pdf"], Draft(), Options())
-    assert found.drafted([".pdf"], Draft(), Options())[0].data == made.data
-    with pypdfium2.PdfDocument(made.data) as document:
-        assert len(document) == 4
-        sides = [[side / 72 * 25.4 for side in page.get_size()] for page in document]
-        assert sides[0] == pytest.approx([420, 297])
-        assert sides[1:] == [pytest.approx([210, 297])] * 3
-
-
-def test_letters_in_the_pdf_are_as_high_as_said():
-    """Measured on the page: the height of the upright of a digit."""
-    (made,) = compiled("solid s { r = rectangle(width: 111, height: 111) }").drafted(
-        [".pdf"], Draft(), Options()
-    )
-    with pypdfium2.PdfDocument(io.BytesIO(made.data)) as document:
-        text = document[0].get_textpage()
-        found = text.get_text_range()
-        at = found.index("111")
-        left, bottom, right, top = text.get_charbox(at)
-        upright = (top - bottom) / 72 * 25.4
-        across = (right - left) / 72 * 25.4
-        assert 2.49 <= max(upright, across) <= 3.5
 
 
 BY_HAND = """
@@ -333,13 +295,6 @@ def test_dimensions_by_hand_stand_where_they_are_asked_for():
     assert line_of("35 ±0.05")[1] == pytest.approx(top - 20 - 38)
 
 
-def test_compile_draws_them_too():
-    drawn = compiled(BY_HAND).export(".svg", Options(dimension=True)).decode()
-    assert "⌀20 H7 (+0.021/0)" in drawn
-    assert "25 ±0.1" in drawn
-    assert ">25<" not in drawn
-
-
 def test_many_holes_are_told_in_a_table():
     (page,) = pages(PANEL)
     assert values(page) == {"120", "80"}
@@ -357,47 +312,15 @@ def test_many_holes_are_told_in_a_table():
     assert {row[0] for row in rows} | {"X", "Y"} == {m.text for m in signs.marks if isinstance(m, Text)}
 
 
-def test_holes_in_order_need_no_table():
-    hole = "hole h[i][j] { c = circle(center: fixed((20 * i, 20 * j)), radius: 3) }"
-    rows = f"for i in 0..3 {{ for j in 0..2 {{ {hole} }} }}"
-    (page,) = pages(f"solid s {{ b = rectangle(center: (30, 20), width: 90, height: 70) {rows} }}")
-    assert not [g for g in page.groups if g.attributes.get("class") == "table"]
-    assert {"12× ⌀6", "3× 20", "2× 20"} <= values(page)
-
-
 def test_parts_bear_the_numbers_of_the_list():
     (first, *_) = pages(ASSEMBLY)
     items = [g for g in first.groups if g.attributes.get("class") == "item"]
     assert [m.text for g in items for m in g.marks if isinstance(m, Text)] == ["1", "2", "3"]
 
 
-def test_dimensions_from_part_to_part_stand_on_the_first_sheet():
-    first, board, *_ = pages(
-        """assembly a {
-            @detached solid left { r = rectangle(center: fixed((0, 0)), width: 20, height: 30) }
-            @detached solid right { c = circle(center: fixed((60, 0)), radius: 5) }
-            dimension(left.r.right, right.c.center, tolerance: 0.2)
-            dimension(left.r.bottom, left.r.top, tolerance: 0.3)
-        }"""
-    )
-    assert "50 ±0.2" in values(first)
-    assert values(board) == {"20", "30 ±0.3"}
-
-
 def test_a_free_outline_is_told_as_such():
     (page,) = pages("solid s { e = ellipse(rx: 30, ry: 20) }")
     assert "Outline not dimensioned: as in the file" in words(page)
-
-
-def test_parts_of_one_shape_and_two_sizes_are_two():
-    found = pages(
-        """assembly a {
-            @detached solid s { c = circle(radius: 9) }
-            @detached solid t { c = circle(center: fixed((40, 0)), radius: 4) }
-            @detached solid u { c = circle(center: fixed((60, 0)), radius: 4) }
-        }"""
-    )
-    assert [sorted(values(page)) for page in found[1:]] == [["⌀18"], ["⌀8"]]
 
 
 SAID = """
@@ -427,13 +350,6 @@ def test_what_is_said_of_holes_and_parts_stands_on_the_sheet():
     assert "Note 1: this is more than has a place beside a hole" in words(page)
 
 
-def test_threads_are_told_in_the_table_of_holes_too():
-    text = PANEL.replace("for i, p", """t = tap_hole("m5") at fixed((-40, -20)) for i, p""")
-    (page,) = pages(text)
-    table = next(g for g in page.groups if g.name == "holes")
-    assert "M5" in {m.text for m in table.marks if isinstance(m, Text)}
-
-
 @pytest.mark.parametrize(("depth", "wanted"), [((2.0,), "⌀8, 2 deep"), ((2.0, 90.0), "⌀8 × 90° countersunk")])
 def test_how_a_hole_is_sunk_stands_behind_its_diameter(depth: tuple[float, ...], wanted: str):
     found = compiled("solid s { b = rectangle(width: 40, height: 30) hole e { c = circle(radius: 4) } }")
@@ -444,38 +360,3 @@ def test_how_a_hole_is_sunk_stands_behind_its_diameter(depth: tuple[float, ...],
     model = replace(found.model, root=replace(root, structures=holes))
     (page,) = drafted(Job(model, found.drawing), Draft())
     assert wanted in values(page)
-
-
-@pytest.mark.parametrize(
-    ("body", "wanted", "unwanted"),
-    [
-        # In the middle of the outline, whose axis is not drawn.
-        (
-            "b = rectangle(width: 100, height: 60) hole a { c = circle(center: (0, -12), diameter: 6) }"
-            " hole d { c = circle(center: (30, 10), diameter: 8) }",
-            {"50", "80"},
-            set(),
-        ),
-        # A flange that is not symmetric: from its centre.
-        ("b = circle(radius: 40) hole a { c = circle(center: (10, 12), radius: 4) }", {"10", "12"}, {"50"}),
-        # The middle of a slot is not seen, the centres of its ends are.
-        (
-            "b = rectangle(width: 90, height: 50) for i in 0..1 {"
-            " hole w[i] { s = slot(center: fixed((20 * i, 4)), length: 16, width: 6) } }"
-            " constrain w[1].s.center.x == w[0].s.center.x + 20",
-            {"20"},
-            set(),
-        ),
-        # What is asked for and follows from the rest is auxiliary.
-        (
-            "b = rectangle(width: 80, height: 50) hole h { c = circle(center: (7, 5), radius: 4) }"
-            " dimension(b.left, h.c.center) dimension(h.c.center, b.right) dimension(b.left, b.right)",
-            {"80", "47", "(33)"},
-            {"33"},
-        ),
-    ],
-)
-def test_centres_are_tied_to_what_is_seen(body: str, wanted: set[str], unwanted: set[str]):
-    (page,) = pages(f"solid s {{ {body} }}")
-    assert wanted <= values(page)
-    assert not unwanted & values(page)

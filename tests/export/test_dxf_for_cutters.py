@@ -14,8 +14,6 @@ import pytest
 import shapely
 from ezdxf.document import Drawing as Document
 from shapely import LinearRing, Polygon
-from svgelements import SVG
-from svgelements import Path as SvgPath
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
@@ -86,29 +84,6 @@ def ring(entity: Any, sagitta: float = 1e-3) -> np.ndarray[Any, Any]:
     return np.array(found)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("options", [{}, {"dxf": "r12"}, {"kerf": 0.15}, {"tolerance": 0.001}], ids=str)
-def test_each_contour_is_one_closed_entity(name: str, options: dict[str, Any]) -> None:
-    result = compiled(name)
-    assert result.drawing is not None
-    cut = [e for e in document(name, **options).modelspace() if e.dxf.layer not in ("drawing", "engrave")]
-    assert all(map(is_closed, cut))
-    assert len(cut) == sum(len(body.region.loops) for body in result.drawing.bodies)
-    rings = [Polygon(ring(e)) for e in cut]
-    assert all(map(shapely.is_valid, rings))
-    for k, shape in enumerate(rings):
-        assert not any(shape.contains_properly(later) for later in rings[k + 1 :])
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_as_many_contours_as_the_picture_for_cutters(name: str) -> None:
-    count = sum(1 for e in document(name).modelspace() if e.dxf.layer in ("solid", "hole"))
-    data = compiled(name).export(".svg", Options(cut=True)).decode()
-    paths = SVG.parse(io.StringIO(data)).elements(lambda e: e.values.get("class") == "cut")
-    subpaths = [sub for path in paths if isinstance(path, SvgPath) for sub in path.as_subpaths()]
-    assert len(subpaths) == count > 0
-
-
 def test_the_sign_is_engraved_by_closed_polylines_too() -> None:
     engraved = [e for e in document("sign").modelspace() if e.dxf.layer == "drawing"]
     assert all(e.dxftype() == "LWPOLYLINE" and e.closed for e in engraved)
@@ -137,29 +112,6 @@ def test_arcs_are_within_the_tolerance_both_ways(name: str, tolerance: float) ->
             spots = shapely.points(one.coords)[:: max(1, len(one.coords) // 2000)]
             worst = max(worst, float(shapely.distance(spots, other).max()))
     assert 0.2 * tolerance < worst <= 1.02 * tolerance
-
-
-def test_fitted_arcs_run_on_smoothly() -> None:
-    """The arcs turn no corner that the curves have not: what bends less than a degree bends by nothing."""
-    corners = 0
-    for entity in document("gear_pair").modelspace().query("LWPOLYLINE"):
-        points = entity.get_points("xyb")
-        bends = [
-            _turn(_way(a, b, leaving=False), _way(b, c, leaving=True))
-            for a, b, c in zip(points, points[1:] + points[:1], points[2:] + points[:2], strict=True)
-        ]
-        assert not [bend for bend in bends if 1e-3 < bend < math.radians(1)]
-        corners += sum(bend >= math.radians(1) for bend in bends)
-    assert corners > 50
-
-
-def _way(a: Any, b: Any, *, leaving: bool) -> float:
-    chord = math.atan2(b[1] - a[1], b[0] - a[0])
-    return chord - 2 * math.atan(a[2]) if leaving else chord + 2 * math.atan(a[2])
-
-
-def _turn(a: float, b: float) -> float:
-    return abs((b - a + math.pi) % math.tau - math.pi)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -244,18 +196,6 @@ def program(body: str) -> Document:
     return ezdxf.read(io.StringIO(result.export(".dxf").decode()))
 
 
-def test_an_open_stroke_stays_open() -> None:
-    (stroke, _) = program(
-        "c = circle(radius: 30)"
-        "drawing d { b = bezier((0, 0), (3, 8), (7, 8), (10, 0)) l = line(b.end, (15, 0)) }"
-    ).modelspace()
-    assert stroke.dxftype() == "LWPOLYLINE"
-    assert not stroke.closed
-    points = stroke.get_points("xyb")
-    assert {tuple(points[0][:2]), tuple(points[-1][:2])} == {(0, 0), (15, 0)}
-    assert 0 in [bulge for *_, bulge in points[:-1]]
-
-
 @pytest.mark.parametrize(("step", "count"), [(0.015, 9), (0.2, 10)])
 def test_a_step_too_short_to_cut_is_closed_up(step: float, count: int) -> None:
     low, high = [(0, 0), (40, 0), (40, 10), (30, 10)], [(20, 20), (10, 20), (10, 30), (0, 30)]
@@ -264,8 +204,3 @@ def test_a_step_too_short_to_cut_is_closed_up(step: float, count: int) -> None:
     points = found.get_points("xy")
     assert len(points) == count
     assert min(math.dist(a, b) for a, b in pairwise([*points, points[0]])) > 0.03
-
-
-def test_a_tiny_part_keeps_its_shape() -> None:
-    (found,) = program("e = ellipse(center: fixed((0, 0)), rx: 0.02, ry: 0.01)").modelspace()
-    assert Polygon(ring(found, 1e-7)).area == pytest.approx(math.pi * 2e-4, rel=0.02)

@@ -16,16 +16,15 @@ import shapely.geometry
 
 import aidl_lang
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.prose import fixed, significant
+from aidl_lang.common.prose import significant
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.export import Job, export
 from aidl_lang.export.json import to_dict, to_json
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import Box, Change, ConstraintReport, Mobility, SolvedModel
 from tests.compiled import LIGHTER
 from tests.compiled import model as model_of
-from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
+from tests.geometry.models import arc, circle, model, primitive, rectangle, structure
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
 SOURCE = SourceFile("x.aidl", "assembly a {\n    b.above(c)\n}\n")
@@ -102,61 +101,6 @@ def test_members():
     assert "timings" not in document
 
 
-def test_a_schema_that_means_something():
-    m = everything()
-    document = to_dict(m, draw(m)[0])
-    document["root"]["structures"][0]["geometry"]["r"]["typo"] = 1
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(document, SCHEMA)
-
-
-def test_lists_of_numbers_stay_in_one_line():
-    m = everything()
-    text = to_json(m, draw(m)[0])
-    assert '"start": [0, 0],' in text
-    assert json.loads(text) == to_dict(m, draw(m)[0])
-
-
-def test_places_of_diagnostics():
-    m = everything()
-    note = Diagnostic("N0601", "so", SPAN)
-    (entry,) = to_dict(m, draw(m)[0], [note])["diagnostics"]
-    assert entry == {
-        "code": "N0601", "severity": "note", "message": "so", "hints": [],
-        "file": "x.aidl", "line": 2, "column": 5, "end_line": 2, "end_column": 15,
-        "label": "", "secondary": [], "fix": None,
-    }  # fmt: skip
-
-
-def test_the_same_bytes_each_time():
-    m = everything()
-    for suffix in (".json", ".svg"):
-        one, other = (export(Job(m, draw(m)[0]), suffix).data for _ in range(2))
-        assert one == other
-        assert b"-0.0," not in one
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (-0.0, "0"),
-        (-1e-9, "0"),
-        (1.5, "1.5"),
-        (100.0, "100"),
-        (1 / 3, "0.333333"),
-        (1e7, "10000000"),
-    ],
-)
-def test_fixed_decimals(value: float, text: str):
-    assert fixed(value) == text
-
-
-def test_compound_shapes_nest():
-    m = model(structure("solid", "s", compound("outer", Line((0, 0), (1, 0)), type_="path")))
-    jsonschema.validate(to_dict(m, draw(m)[0]), SCHEMA)
-
-
 def test_readings_of_ambiguous_calls_are_told():
     program = """drawing d {
         a = circle(center: (0, 0), radius: 5)
@@ -196,22 +140,6 @@ def test_the_exact_outlines_of_a_region():
     assert found["plate"]["centroid"][0] == pytest.approx(math.pi * (15 * 18 - 20 * 16) / area, rel=1e-9)
 
 
-def test_pieces_of_every_kind_follow_each_other():
-    """A leaf of a Bézier curve and a line, cut by an ellipse and a circle."""
-    found, _ = regions("""solid leaf {
-        bow = bezier(fixed((0, 0)), fixed((10, 30)), fixed((30, 30)), fixed((40, 0)))
-        foot = line(bow.end, bow.start)
-        hole bite { rim = ellipse(center: fixed((0, 0)), rx: 12, ry: 6) }
-        hole nick { rim = circle(center: fixed((30, 0)), radius: 5) }
-    }""")
-    (face,) = found["leaf"]["faces"]
-    outer = face["outer"]
-    assert {p["type"] for p in outer} == {"bezier", "line", "arc", "ellipse_arc"}
-    ends = [(p["points"][0], p["points"][3]) if "points" in p else (p["start"], p["end"]) for p in outer]
-    assert [end for _, end in ends] == [start for start, _ in [*ends[1:], ends[0]]]
-    assert all(p["clockwise"] for p in outer if p["type"] in ("arc", "ellipse_arc"))
-
-
 def test_shapely_reads_the_polygons():
     found, tolerance = regions(PLATE)
     assert tolerance == 0.06
@@ -240,10 +168,3 @@ def test_polygons_of_the_examples_have_the_areas_of_the_regions(path: Path):
         box, bounds = region["bb"], polygons.bounds
         sides = (box["left"], box["bottom"], box["right"], box["top"])
         assert bounds == pytest.approx(sides, abs=tolerance)
-
-
-def test_what_encloses_nothing_has_no_faces():
-    m = model(structure("drawing", "d", circle("c", 0, 0, 3)))
-    document = to_dict(m, draw(m)[0])
-    assert document["regions"] == {}
-    assert document["tolerance"] == 0.006

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-import zipfile
 
 import ezdxf
 import pytest
@@ -48,33 +47,6 @@ def group(svg: str, name: str) -> str:
     return found[0]
 
 
-def test_svg() -> None:
-    svg = written(".svg").data.decode()
-    pane, marks = group(svg, "a.pane"), group(svg, "a.marks")
-    assert 'fill-opacity="0.5"' in pane
-    assert 'stroke-width="0.46"' in pane
-    assert 'stroke-dasharray="4 2"' in pane
-    assert "stroke-linecap" not in pane
-    wide, rim, fine = re.findall("<path .*?/>", marks)
-    assert 'stroke-width="4"' in wide
-    assert 'stroke-opacity="0.25"' in wide
-    assert 'stroke-dasharray="1.2 0.8"' in rim
-    assert "dash" not in fine
-    assert "opacity" not in group(svg, "a.plate")
-
-
-def test_pixels() -> None:
-    picture = Image.open(io.BytesIO(written(".png", pixels=1060).data)).convert("RGB")
-    assert near(picture.getpixel((530 + 250, 330)), (128, 128, 128))
-    assert near(picture.getpixel((530 - 300, 330 + 200)), (64, 0, 191))
-
-
-def test_pdf() -> None:
-    page = PdfDocument(written(".pdf").data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
-    assert near(page.getpixel((530 + 250, 330)), (128, 128, 128))
-    assert near(page.getpixel((530 - 300, 330 + 200)), (64, 0, 191))
-
-
 @pytest.mark.parametrize("length", [0.01, 100])
 def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
     program = f"@dash({length}, {3 * length}) @stroke(1000) drawing d {{ one = line((0, 0), (500m, 0)) }}"
@@ -82,12 +54,6 @@ def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
     middle = picture.getpixel((200, picture.height // 2))
     assert isinstance(middle, int)
     assert 190 < middle < 220
-
-
-def test_the_widest_line_is_in_sight() -> None:
-    program = "@stroke(10) drawing d { one = rectangle(width: 40, height: 20) }"
-    assert 'viewBox="-25 -15 50 30"' in written(".svg", program).data.decode()
-    assert 'width="42.4mm"' in written(".svg", program, cut=True).data.decode()
 
 
 # --- DXF -------------------------------------------------------------------------------------------
@@ -135,25 +101,6 @@ def test_a_geometry_has_its_own_colour_in_a_dxf() -> None:
     assert [e.rgb for e in made.modelspace()] == [(255, 0, 0), (0, 0, 255)]
 
 
-# --- Space -----------------------------------------------------------------------------------------
-
-
-def test_solids_that_show_through() -> None:
-    step = written(".step").data
-    assert step.count(b"SURFACE_STYLE_TRANSPARENT(0.5)") == 1
-    made = zipfile.ZipFile(io.BytesIO(written(".3mf").data)).read("3D/3dmodel.model").decode()
-    assert re.findall('displaycolor="(.*?)"', made) == ["#0000FFFF", "#FFFF0080"]
-
-
-@pytest.mark.parametrize("name", ["blueprint", "ink"])
-def test_reduced_pictures_keep_lines(name: str) -> None:
-    assert _looks(written(".svg", theme=name).data.decode()) == _looks(written(".svg").data.decode())
-
-
-def _looks(svg: str) -> list[str]:
-    return re.findall(r'(?:stroke-width|stroke-dasharray|stroke-opacity)="[^"]*"', svg)
-
-
 # --- Outlines --------------------------------------------------------------------------------------
 
 
@@ -168,25 +115,6 @@ assembly a {
     }
 }
 """
-
-
-@pytest.mark.parametrize("theme", ["colour", "blueprint", "ink"])
-def test_a_solid_without_outline(theme: str) -> None:
-    svg = written(".svg", BALL, theme=theme).data.decode()
-    # What shows through is left out where all fills are of one colour.
-    assert ('stroke="none"' in group(svg, "a.shine")) is (theme == "colour")
-    assert 'stroke-width="0.4"' in group(svg, "a.skin")
-    assert re.search(r'stroke-width="0\.\d+"', group(svg, "a.shine.mark"))
-
-
-def test_pixels_of_a_solid_without_outline() -> None:
-    program = BALL.replace('"crimson"', '"white"').replace("@opacity(0.6) @stroke(none)", "@stroke(WIDTH)")
-    for stroke, darkest in (("none", 255), ("2", 128)):
-        picture = Image.open(
-            io.BytesIO(written(".png", program.replace("WIDTH", stroke), pixels=640).data)
-        ).convert("L")
-        edge = [picture.getpixel((x, 320)) for x in range(200, 250)]
-        assert min(edge) == darkest
 
 
 def test_contours_are_cut_without_an_outline_too() -> None:
@@ -245,33 +173,6 @@ solid a {
 """
 
 
-def test_borders_between_geometries_are_fine_lines() -> None:
-    made = compiled(TURRET)
-    assert made.drawing is not None
-    knob, seams = made.drawing.seams
-    assert (seams.path, seams.body, knob.path) == ("a", "a", "a.knob")
-    # The collar lies over the end of the shaft, the knob over its side, the hole cut the collar's edge.
-    found = sorted(tuple(sorted((_near(p.start), _near(p.end)))) for p in seams.pieces)  # type: ignore[union-attr]
-    assert found == [((-10, 15), (-5, 15)), ((5, 15), (10, 15))]
-    svg = written(".svg", TURRET).data.decode()
-    assert 'class="seam"' in group(svg, "a")
-    assert 'stroke="#6e3716"' in group(svg, "a.knob")
-    assert "seam" not in written(".svg", TURRET, cut=True).data.decode()
-    plain = written(".svg", TURRET.replace("seams", "outline")).data.decode()
-    assert 'class="seam"' not in group(plain, "a")
-    assert 'stroke-opacity="0.55"' in group(plain, "a.knob")
-
-
-def _near(p: tuple[float, float]) -> tuple[float, float]:
-    return round(p[0], 6), round(p[1], 6)
-
-
-def test_a_solid_without_outline_has_the_seams_it_asks_for() -> None:
-    svg = written(".svg", TURRET.replace("@edges", "@stroke(none) @edges")).data.decode()
-    assert svg.count('class="seam"') == 2
-    assert "seam" not in written(".svg", TURRET.replace("@edges(seams)", "@stroke(none)")).data.decode()
-
-
 @pytest.mark.parametrize("suffix", [".dxf", ".stl", ".step", ".3mf"])
 def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
     (note,) = [n for n in written(suffix, "@thickness(2)" + TURRET).notes if n.code == "N0741"]
@@ -316,12 +217,6 @@ def test_pictures_hold_it_all(suffix: str) -> None:
     assert written(suffix).notes == ()
 
 
-def test_who_asks_for_nothing_is_told_nothing() -> None:
-    program = '@color("red") @thickness(2) solid s { rim = circle(radius: 5) }'
-    for suffix in (".dxf", ".step", ".stl", ".3mf"):
-        assert written(suffix, program).notes == ()
-
-
 def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
     program = "/// A square.\n/// It has four corners.\nsolid plate { body = square(size: 30) }"
     assert PdfDocument(written(".pdf", program).data).get_metadata_dict()["Title"] == "A square."
@@ -355,20 +250,6 @@ def test_letters_are_filled_and_their_counters_open() -> None:
         assert near(image.getpixel((530 - 200, 330)), (255, 255, 0))  # within the O
         assert near(image.getpixel((530 - 200 + 125, 330)), (255, 0, 0))  # its right side
         assert near(image.getpixel((530 + 200, 330)), (255, 255, 0))  # within the outlined I
-
-
-def test_letters_take_the_lines_of_a_theme() -> None:
-    svg = written(".svg", LETTERS, theme="ink").data.decode()
-    assert group(svg, "a.marks").count('fill="#000000"') == 1
-
-
-def test_a_cutter_gets_the_outlines_of_letters() -> None:
-    svg = group(written(".svg", LETTERS, cut=True).data.decode(), "a.marks:engrave")
-    assert set(re.findall('fill="(.*?)"', svg)) == {"none"}
-    made = ezdxf.read(io.StringIO(written(".dxf", LETTERS).data.decode()))
-    entities = [e for e in made.modelspace() if e.dxf.layer == "drawing"]
-    assert {e.dxftype() for e in entities} == {"LWPOLYLINE"}
-    assert all(e.closed for e in entities if e.dxftype() == "LWPOLYLINE")
 
 
 HALOED = """
@@ -410,20 +291,6 @@ def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
     assert near(at(26, 0), blue)
 
 
-def test_only_what_lies_over_something_has_a_gap() -> None:
-    svg = written(".svg", HALOED).data.decode()
-    assert [name for name in ("plate", "ring", "cord", "away") if "halo" in group(svg, f"a.{name}")] == [
-        "ring",
-        "cord",
-    ]
-    assert "halo" not in written(".svg", HALOED, cut=True).data.decode()
-
-
-@pytest.mark.parametrize("suffix", [".dxf", ".step", ".stl", ".3mf"])
-def test_other_files_say_that_they_have_no_gaps(suffix: str) -> None:
-    assert any("`@halo`" in note.message for note in written(suffix, HALOED).notes)
-
-
 # --- Shade -----------------------------------------------------------------------------------------
 
 
@@ -455,13 +322,6 @@ def test_a_round_bar_is_lit_from_the_left(suffix: str) -> None:
     assert seen["above"] == pytest.approx(seen["below"], abs=2)
 
 
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_level_bar_is_lit_from_above(suffix: str) -> None:
-    seen = _brightness("@shade(round, 90deg)", suffix=suffix)
-    assert seen["above"] > seen["middle"] > seen["below"]
-    assert seen["left"] == pytest.approx(seen["right"], abs=2)
-
-
 @pytest.mark.parametrize("frame", ["", "rotated 180deg", "at (3, 4)"])
 def test_light_comes_from_one_side_however_a_part_is_turned(frame: str) -> None:
     assert _brightness("@shade(round)", frame=frame) == pytest.approx(_brightness("@shade(round)"), abs=2)
@@ -472,13 +332,6 @@ def test_shade_goes_along_with_a_part_that_is_turned() -> None:
     assert _brightness("@shade(round)", frame="rotated 90deg") == pytest.approx(
         _brightness("@shade(round, 90deg)"), abs=2
     )
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_ball_is_brightest_at_the_upper_left(suffix: str) -> None:
-    seen = _brightness("@shade(ball)", suffix=suffix)
-    assert seen["left"] > seen["right"]
-    assert seen["above"] > seen["below"]
 
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
@@ -513,17 +366,6 @@ def test_what_fades_is_flat_where_its_box_is() -> None:
     level = image.getpixel((width // 2 + int(0.3 * (width - 2 * inner[0])), height // 2))
     upright = image.getpixel((width // 2, height // 2 - int(0.3 * (height - 2 * inner[1]))))
     assert level == pytest.approx(upright, abs=40)
-
-
-def test_what_fades_lies_over_others_without_hiding_them() -> None:
-    program = """
-    @stroke(none) assembly a {
-        @color("black") solid under { p = rectangle(center: fixed((0, 0)), width: 20, height: 4) }
-        @color("white") @shade(fade) solid light { p = circle(center: fixed((0, 0)), radius: 12) }
-        drawing line { l = line(fixed((-9, 0)), fixed((9, 0))) }
-    }
-    """
-    assert [d.code for d in compiled(program).diagnostics] == []
 
 
 def test_shade_ends_where_it_is_said() -> None:

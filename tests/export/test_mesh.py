@@ -65,22 +65,6 @@ assembly stand {
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_a_plate_with_a_hole(suffix: str) -> None:
-    """Chords of 0.004 mm at most: both circles lose less than that times their length."""
-    body = only(written(RING, suffix).data, suffix)
-    assert body.is_watertight
-    assert body.is_winding_consistent
-    assert body.euler_number == 0  # one hole
-    exact = 3 * math.pi * (20**2 - 8**2)
-    assert body.volume == pytest.approx(exact, abs=3 * 0.004 * 2 * math.pi * (20 + 8))
-    assert body.volume != pytest.approx(exact, rel=1e-6)
-    assert body.bounds.tolist() == [
-        pytest.approx((-20, -20, 0), abs=0.004),
-        pytest.approx((20, 20, 3), abs=0.004),
-    ]
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_every_vertex_lies_on_the_outline(suffix: str) -> None:
     body = only(written(RING, suffix).data, suffix)
     radii = [math.hypot(x, y) for x, y, _ in body.vertices]
@@ -113,29 +97,6 @@ def test_what_is_left_out_is_named(suffix: str) -> None:
     assert bodies(made.data, suffix)["stand.note"].volume == pytest.approx(200, rel=1e-6)
 
 
-def test_many_that_are_left_out() -> None:
-    flat = [structure("solid", f"s[{k}]", circle("c", 9 * k, 0, 1)) for k in range(7)]
-    m = model(
-        structure("assembly", "a", *flat, structure("solid", "t", circle("c", -9, 0, 1), thickness=(2.0,)))
-    )
-    (note,) = export(Job(m, draw(m)[0]), ".stl").notes
-    assert (
-        note.message
-        == "`a.s[0]`, `a.s[1]`, `a.s[2]`, `a.s[3]`, `a.s[4]` and 2 more have no thickness and are left out"
-    )
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_nothing_has_a_thickness(suffix: str) -> None:
-    with pytest.raises(ExportError) as reason:
-        written(RING.replace("@thickness(3mm)", ""), suffix)
-    assert render(reason.value.diagnostic) == (
-        "error[E0917]: `ring` has no thickness\n"
-        "  = hint: say how thick: `@thickness(3mm)` before it or what is around it\n"
-        "  = hint: or for all: `--thickness 3`"
-    )
-
-
 def test_there_is_no_body() -> None:
     with pytest.raises(ExportError) as reason:
         written("drawing d { a = line(fixed((0, 0)), fixed((1, 0))) }", ".stl", thickness=3)
@@ -154,26 +115,6 @@ def test_a_body_too_large_for_triangles() -> None:
     )
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_the_same_bytes_each_time(suffix: str) -> None:
-    assert written(STAND, suffix).data == written(STAND, suffix).data
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_odd_names(suffix: str) -> None:
-    name = "a<b>&\"' Größe"
-    two = [structure("solid", f"{name}{k}\n\x00", circle("c", 9 * k, 0, 1)) for k in range(2)]
-    found = bodies(of_model(model(structure("assembly", name, *two)), suffix, 1), suffix)
-    assert list(found) == [f"{name}.{name}{k}__" for k in range(2)]
-
-
-def test_a_binary_file_is_not_taken_for_text() -> None:
-    m = model(structure("solid", "solid", circle("c", 0, 0, 1)))
-    data = of_model(m, ".stl", 1)
-    assert data.startswith(b"AIDL solid\0")
-    assert len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
-
-
 def test_colours_and_materials() -> None:
     import zipfile
 
@@ -181,16 +122,6 @@ def test_colours_and_materials() -> None:
     assert 'unit="millimeter"' in made
     assert '<base name="birch" displaycolor="#FF6347FF"/>' in made
     assert made.count("<item ") == 3
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_far_out_only_single_precision_is_lost(suffix: str) -> None:
-    """Both formats are read in single precision: steps of 1/128 mm at 100 m."""
-    far = 1e5
-    m = model(structure("solid", "s", rectangle("r", far, far, far + 0.5, far + 0.25)))
-    body = only(of_model(m, suffix, 1), suffix)
-    assert body.bounds[0].tolist() == pytest.approx((far, far, 0), abs=1 / 128)
-    assert body.bounds[1].tolist() == pytest.approx((far + 0.5, far + 0.25, 1), abs=1 / 128)
 
 
 def test_what_does_not_fit_into_3mf() -> None:

@@ -14,10 +14,9 @@ from svgelements import Close, Line, Move, Path
 import aidl_lang
 from aidl_lang.export.comparison import Comparison
 from aidl_lang.export.comparison.picture import overlay
-from aidl_lang.export.marks import Area, Curves, Frame, Text
+from aidl_lang.export.marks import Area, Curves, Frame
 from aidl_lang.export.svg import to_svg
 from tests.amount import tries
-from tests.documents import ROOT
 
 SVG = "{http://www.w3.org/2000/svg}"
 KINDS = ("both", "before", "after")
@@ -89,51 +88,6 @@ def test_areas_agree_with_shapely(x: int, y: int, r: int) -> None:
         assert drawn.symmetric_difference(area).area < 0.1, kind
 
 
-def test_arcs_stay_arcs() -> None:
-    """A disc moved by its radius: two arcs bound what is in both, and as many each of the crescents."""
-    text = "assembly t {{ solid s {{ c = circle(center: fixed(({x}, 0)), radius: 10) }} }}"
-    found = groups(comparison(text.format(x=0), text.format(x=10)))
-    for kind in KINDS:
-        (path,) = [p for p in found[kind].iter(f"{SVG}path") if p.attrib["fill"] != "none"]
-        assert path.attrib["d"].count("A") == 2
-        assert "L" not in path.attrib["d"]
-
-
-def test_nothing_changed_is_all_grey() -> None:
-    """800 - 25π, and of the knob what is beyond x = 20: 81 acos(2/9) - 2 √77."""
-    picture = {
-        g.name: g for g in overlay(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=0, y=0, r=5))).groups
-    }
-    assert (picture["before"].marks, picture["after"].marks, picture["moves"].marks) == ((), (), ())
-    assert [m.text for m in picture["legend"].marks if isinstance(m, Text)] == ["in both: 812.99 mm²"]
-
-
-def test_legend_tells_areas() -> None:
-    """A square of 20 moved by 5: 15 by 20 is in both, 5 by 20 in either."""
-    text = "assembly t {{ solid s {{ r = square(center: fixed(({x}, 0)), size: 20) }} }}"
-    legend = groups(comparison(text.format(x=0), text.format(x=5)))["legend"]
-    words = [t.text for t in legend.iter(f"{SVG}text") if t.get("aria-hidden") is None]
-    assert words == ["in both: 300 mm²", "only before: 100 mm²", "only after: 100 mm²"]
-
-
-def test_what_is_gone_is_hatched_and_dashed() -> None:
-    """Without colours too the two can be told apart. Hatches lie in what is gone."""
-    text = "assembly t {{ solid s {{ c = circle(center: fixed(({x}, 0)), radius: 10) }} }}"
-    picture = {g.name: g for g in overlay(comparison(text.format(x=0), text.format(x=10))).groups}
-    hatches = [m for m in picture["before"].marks if isinstance(m, Curves)]
-    assert len(hatches) == 1
-    crescent = (disc(0, 0, 10) - disc(10, 0, 10)).buffer(0.02)
-    lines = shapely.MultiLineString([(p.start, p.end) for p in hatches[0].pieces])  # type: ignore[union-attr]
-    assert crescent.contains(lines)
-    # Lines 1 step apart measure the area that they fill; the drawing is 30 wide.
-    assert lines.length * 0.014 * 30 == pytest.approx(crescent.area, rel=0.05)
-    assert [
-        m.ink.dash is not None for m in picture["before-outlines"].marks if isinstance(m, Area) and m.ink
-    ] == [True]
-    assert [m.ink.dash for m in picture["after-outlines"].marks if isinstance(m, Area) and m.ink] == [None]
-    assert not any(isinstance(m, Curves) for m in picture["after"].marks)
-
-
 def test_arrows_lead_from_old_to_new() -> None:
     text = """
     assembly t {{
@@ -166,20 +120,3 @@ def test_plans_and_nothing_at_all() -> None:
     assert [type(m) for m in picture["after-outlines"].marks] == [Frame]
     empty = "assembly a { construction c = circle(center: fixed((0, 0)), radius: 1) }"
     assert to_svg(overlay(comparison(empty, empty))).startswith("<?xml")
-
-
-@pytest.mark.parametrize(
-    ("name", "param", "value"),
-    [("telephone", "width", 200), ("motor_bracket", "motor", "nema23"), ("finger_box", "depth", 100)],
-)
-def test_examples_cover_what_they_cover(name: str, param: str, value: str | float) -> None:
-    """What is in both and in one makes up that one, to the measure of the drawings themselves."""
-    path = ROOT / "examples" / f"{name}.aidl"
-    versions = [aidl_lang.compile(path), aidl_lang.compile(path, {param: value})]
-    found = groups(aidl_lang.diff(*versions))
-    both, *alone = (covered(found[kind]) for kind in KINDS)
-    for one, version in zip(alone, versions, strict=True):
-        drawn = ElementTree.fromstring(version.to_svg())
-        whole = shapely.union_all([covered(g) for g in drawn.iter(f"{SVG}g")])
-        assert both.union(one).symmetric_difference(whole).area < 2e-4 * whole.area
-        assert both.intersection(one).area < 1e-4 * whole.area

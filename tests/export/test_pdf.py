@@ -40,11 +40,6 @@ def of(*marks: object, box: tuple[float, float, float, float] = (0, 0, 100, 100)
     return to_pdf([Picture(box, (Group("g", tuple(marks)),))], "test")  # type: ignore[arg-type]
 
 
-def test_the_page_has_the_size_of_the_picture():
-    page = PdfDocument(written(PLATE))[0]
-    assert [MM * side for side in page.get_size()] == pytest.approx([106, 56], abs=1e-4)
-
-
 def test_material_and_holes():
     page = PdfDocument(written(PLATE))[0]
     shown = page.render(scale=3).to_pil()
@@ -73,10 +68,6 @@ def test_areas_of_curves():
     for area, loop in loops.items():
         (body,) = read_pdf(of(Area(Face(loop), "#000000", Ink("#000000", 0.1))))
         assert body.area == pytest.approx(area, rel=1e-5)
-
-
-def test_outlines_alone_are_not_filled():
-    assert read_pdf(of(Area(Face(Loop((Circle((50, 50), 20),))), None, Ink("#ff0000", 0.1)))) == []
 
 
 def test_dots_frames_dashes_and_opacity():
@@ -111,22 +102,6 @@ def test_texts_can_be_searched_and_stand_where_they_should():
     found = text.get_text_range().index("up")
     assert boxes[found + 1][1] > boxes[found][1] + 2
     assert boxes[found + 1][0] == pytest.approx(boxes[found][0], abs=2)
-
-
-def test_the_halo_lies_below_the_text():
-    shown = PdfDocument(of(Text((10, 40), "MMMM", 20, "#0000ff")))[0].render(scale=3).to_pil()
-    colors = shown.convert("RGB").getcolors(1 << 20)
-    assert (
-        sum(count for count, color in colors if near(color, (0, 0, 255))) / (shown.width * shown.height)
-        > 0.02
-    )
-
-
-def test_what_is_clipped_is_not_seen():
-    group = Group("g", (Area(Face(Loop((Circle((50, 50), 40),))), "#000000", None),), clip=(0, 0, 50, 100))
-    shown = PdfDocument(to_pdf([Picture((0, 0, 100, 100), (group,))], "t"))[0].render(scale=2).to_pil()
-    assert near(shown.getpixel((shown.width // 2 - 20, shown.height // 2)), (0, 0, 0))
-    assert near(shown.getpixel((shown.width // 2 + 20, shown.height // 2)), (255, 255, 255))
 
 
 def test_tiles_are_pages():

@@ -7,15 +7,12 @@ import io
 import math
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-import ezdxf
 import numpy as np
 import pypdfium2
 import pytest
 import trimesh
-from shapely.geometry import Polygon
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
@@ -24,9 +21,7 @@ from aidl_lang.export import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT
-from tests.export import step_reading
 from tests.export.readers import Loop, read_dxf
-from tests.export.test_dxf_for_cutters import is_closed, ring
 
 PANELS = ("base", "lid", "front", "back", "right", "left")
 HOLES = {"base": 4, "lid": 9, "front": 4, "back": 0, "right": 3, "left": 1}
@@ -43,16 +38,6 @@ def case() -> Model:
     return found
 
 
-def test_panels_are_apart_and_of_one_stock() -> None:
-    drawing = case()._compiled.drawing
-    assert drawing is not None
-    assert tuple(body.path.removeprefix("pi_case.") for body in drawing.bodies) == PANELS
-    assert {(body.style.material, body.style.thickness) for body in drawing.bodies} == {("birch plywood", 3)}
-    assert all(
-        pair.relation == "apart" and pair.gap is not None and pair.gap > 4.99 for pair in drawing.pairs
-    )
-
-
 def sheet(suffix: str, **options: Any) -> bytes:
     made = case()._compiled.exported(
         suffix, Options(sheet=SHEET, kerf=KERF, profile=PROFILES["lightburn"], **options)
@@ -60,42 +45,6 @@ def sheet(suffix: str, **options: Any) -> bytes:
     assert made.notes == ()
     assert made.further == ()
     return made.data
-
-
-def test_dxf_has_closed_contours_on_the_layers_of_the_profile() -> None:
-    found = ezdxf.read(io.StringIO(sheet(".dxf").decode()))
-    assert not found.audit().errors
-    by_layer: dict[str, list[Any]] = {}
-    for entity in found.modelspace():
-        assert is_closed(entity)
-        by_layer.setdefault(entity.dxf.layer, []).append(entity)
-    counts = {layer: len(entities) for layer, entities in by_layer.items()}
-    assert list(by_layer) == ["C00-fill", "C05-inner", "C10-outer"]
-    assert counts["C10-outer"] == len(PANELS)
-    assert counts["C05-inner"] == sum(HOLES.values())
-    # R A S P B E R R Y P I: one outline each; R, A, P have a hole, B two.
-    assert counts["C00-fill"] == 11 + sum({"R": 1, "A": 1, "P": 1, "B": 2}.get(c, 0) for c in "RASPBERRYPI")
-
-
-def test_the_cut_is_half_on_either_side() -> None:
-    """Each outline against the drawn one, grown or shrunk by shapely."""
-    drawn = read_dxf(case().export("dxf"))
-    wide = ezdxf.read(io.StringIO(sheet(".dxf").decode())).modelspace()
-    for name, body in drawn.items():
-        if name == "pi_case.lid.label":
-            continue
-        shapes = sorted((Polygon(loop.polygon(64)) for loop in body.loops), key=lambda p: -p.area)
-        cut = [Polygon(ring(e, 1e-3)) for e in wide if e.dxf.layer != "C00-fill" and _path(e) == name]
-        cut.sort(key=lambda p: -p.area)
-        assert len(cut) == len(shapes) == 1 + HOLES[name.rpartition(".")[2]]
-        for k, (before, after) in enumerate(zip(shapes, cut, strict=True)):
-            grown = before.buffer(KERF / 2 if k == 0 else -KERF / 2, join_style="mitre", mitre_limit=10)
-            assert after.area == pytest.approx(grown.area, rel=2e-3)
-            assert after.length == pytest.approx(grown.length, rel=2e-3)
-
-
-def _path(entity: Any) -> str:
-    return "".join(tag.value for tag in entity.get_xdata("AIDL") if tag.code == 1000)
 
 
 def test_svg_and_pdf_are_as_large_as_the_sheet_and_hold_as_much() -> None:
@@ -138,19 +87,6 @@ def test_the_cut_list_adds_up() -> None:
 def panels(suffix: str) -> dict[str, bytes]:
     found = case()._compiled.exporting(Options()).parts(suffix)
     return {item.name: made.data for item, made in found}
-
-
-def test_step_of_each_panel(tmp_path: Path) -> None:
-    told = {
-        name.rpartition(".")[2]: body for name, body in read_dxf(case().export("dxf", dxf="splines")).items()
-    }
-    for name, data in panels(".step").items():
-        found = step_reading.read(data, tmp_path)
-        solids = [part for part in found.parts if part.count("SOLID")]
-        (solid,) = solids
-        assert solid.is_valid
-        assert solid.is_closed
-        assert solid.volume == pytest.approx(THICKNESS * told[name].area, rel=1e-9)
 
 
 # --- Put together --------------------------------------------------------------------------------

@@ -12,7 +12,6 @@ from aidl_lang.export.marks import Group, Picture, Text
 from aidl_lang.export.pdf import to_png
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedStructure
-from tests.export.colours import near
 from tests.geometry.models import circle, model, rectangle, structure
 
 PLATE = structure(
@@ -45,33 +44,14 @@ def test_material_holes_and_margins():
         assert at(*spot) == WHITE, spot
 
 
-def test_the_share_of_material_is_the_area():
-    shown = image(PLATE, 2120)
-    teal = sum(count for count, color in shown.getcolors(1 << 20) if near(color, TEAL))
-    # Half of each outline, 0.25 mm wide, lies over the material.
-    area = 5000 - 100 * 3.14159265 - (300 + 62.8318) * 0.125
-    assert teal / 20**2 == pytest.approx(area, rel=0.002)
-
-
 def test_the_resolution_is_stated():
     assert image(PLATE).info["dpi"] == pytest.approx((254, 254), abs=0.1)
-
-
-@pytest.mark.parametrize(("size", "pixels"), [(1e-3, 300), (1e7, 300), (10, 16), (10, 4000)])
-def test_any_size(size: float, pixels: int):
-    shown = image(structure("solid", "s", rectangle("r", 0, 0, size, size)), pixels)
-    assert shown.size == (pixels, pixels)
-    assert shown.getpixel((pixels // 2, pixels // 2)) != WHITE
 
 
 def test_a_very_long_picture_is_not_too_slim_to_see():
     shown = image(structure("solid", "s", rectangle("r", 0, 0, 1e6, 1)), 1000)
     assert shown.size[0] == 1000
     assert shown.size[1] >= 10
-
-
-def test_nothing_is_white():
-    assert image(structure("assembly", "nothing")).getcolors() == [(1060 * 1060, WHITE)]
 
 
 def test_texts_have_the_font_that_comes_along():

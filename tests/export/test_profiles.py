@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
 import io
 import re
 from functools import cache
 
 import ezdxf
-import pypdfium2
-import pypdfium2.raw as pdfium
 import pytest
 from ezdxf.colors import int2rgb
 from ezdxf.document import Drawing as Document
@@ -137,98 +134,6 @@ def test_ponoko_cuts_blue_and_engraves_red_with_the_thinnest_lines() -> None:
     assert {path.values["stroke-width"] for path in lines} == {"0.01"}
     found = document(PLATE, PROFILES["ponoko"])
     assert {found.layers.get(e.dxf.layer).dxf.lineweight for e in found.modelspace()} == {0}
-
-
-def test_areas_are_closed_and_have_the_size_of_what_is_drawn() -> None:
-    filled = [p for p in svg_paths(PLATE, PROFILES["lightburn"]) if p.values["fill"] != "none"]
-    assert len(filled) == 2  # the letters of a text are one path
-    *_, ring = filled
-    outer, inner = (
-        Polygon([(s.x, s.y) for s in map(sub.point, [k / 720 for k in range(720)])])
-        for sub in map(SvgPath, ring.as_subpaths())
-    )
-    assert abs(outer.area - inner.area) == pytest.approx(3.141593 * (25 - 9), rel=1e-3)
-    entities = [e for e in document(PLATE, PROFILES["lightburn"]).modelspace() if e.dxf.layer == "C00-fill"]
-    assert len(entities) == 7
-    assert all(e.dxftype() == "CIRCLE" or e.closed for e in entities)
-
-
-def test_plain_follows_letters_and_keeps_colours() -> None:
-    text = PLATE.replace("drawing frame", '@color("teal") drawing frame')
-    told = in_svg(text, PROFILES["plain"])
-    assert [color for operation, color, _ in told if operation == "engrave"].count("#008080") == 1
-    assert [filled for operation, _, filled in told if operation == "engrave"] == [False] * 6
-    found = document(text, PROFILES["plain"])
-    assert {e.dxf.layer for e in found.modelspace()} == {"solid", "hole", "drawing", "fill", "score", "cut"}
-    assert in_svg(text, PROFILES["glowforge"]) == in_svg(PLATE, PROFILES["glowforge"])
-
-
-def test_pdf_has_the_same_colours_and_widths_in_the_same_order() -> None:
-    data = compiled().export(".pdf", Options(profile=PROFILES["ponoko"]))
-    with pypdfium2.PdfDocument(data) as made:
-        objects = list(made[0].get_objects())
-        found = [_of_pdf(o) for o in objects if o.type == pdfium.FPDF_PAGEOBJ_PATH]
-    told = [(color, filled) for _, color, filled in in_svg(PLATE, PROFILES["ponoko"])]
-    assert [(color, filled) for color, filled, _ in found] == told
-    widths = [width for _, filled, width in found if not filled]
-    assert widths == pytest.approx([0.01] * len(widths), rel=1e-3)
-
-
-def _of_pdf(drawn: pypdfium2.PdfObject) -> tuple[str, bool, float]:
-    fill, stroke = ctypes.c_int(), ctypes.c_int()
-    assert pdfium.FPDFPath_GetDrawMode(drawn.raw, fill, stroke)
-    ask = pdfium.FPDFPageObj_GetFillColor if fill.value else pdfium.FPDFPageObj_GetStrokeColor
-    channels = [ctypes.c_uint() for _ in range(4)]
-    assert ask(drawn.raw, *channels)
-    width = ctypes.c_float()
-    assert pdfium.FPDFPageObj_GetStrokeWidth(drawn.raw, width)
-    color = "#{:02x}{:02x}{:02x}".format(*(c.value for c in channels[:3]))
-    return color, bool(fill.value), width.value
-
-
-def test_r12_has_the_nearest_colours_of_the_index() -> None:
-    found = document(PLATE, PROFILES["glowforge"], dxf="r12")
-    assert {
-        layer.dxf.name: layer.dxf.color for layer in found.layers if layer.dxf.name not in ("0", "DEFPOINTS")
-    }.items() >= {
-        "fill": 7,
-        "engrave": 5,
-        "score": 3,
-        "inner": 1,
-        "outer": 6,
-    }.items()
-
-
-# --- Order ---------------------------------------------------------------------------------------
-
-NESTED = """\
-assembly nest {
-    @detached solid around {
-        disc = circle(center: fixed((0, 0)), radius: 40)
-        hole bay { rim = circle(center: fixed((0, 0)), radius: 30) }
-        hole eye { rim = circle(center: fixed((35, 0)), radius: 2) }
-    }
-    @detached solid within {
-        disc = circle(center: fixed((0, 0)), radius: 20)
-        hole eye { rim = circle(center: fixed((0, 0)), radius: 5) }
-    }
-}
-"""
-
-
-@pytest.mark.parametrize("name", PROFILES)
-def test_nothing_is_cut_in_a_piece_that_has_come_loose(name: str) -> None:
-    circles = document(NESTED, PROFILES[name]).modelspace()
-    assert [c.dxf.radius for c in circles] == [5, 2, 20, 30, 40]
-    told = [operation for operation, *_ in in_svg(NESTED, PROFILES[name])]
-    assert told == ["inner", "inner", "outer", "outer", "outer"]
-
-
-def test_an_order_of_ones_own() -> None:
-    text = 'order = ["outer", "inner", "score", "engrave", "fill"]'
-    told = [operation for operation, *_ in in_svg(PLATE, parsed(text, "shop.toml"))]
-    places = [OPERATIONS.index(operation) for operation in told]
-    assert places == sorted(places, reverse=True)
 
 
 # --- Files ---------------------------------------------------------------------------------------

@@ -43,13 +43,6 @@ def test_curves_keep_their_shape(piece: Piece) -> None:
         assert point(mark.pieces[0], k / 8) == pytest.approx((4 * x, 4 * y))
 
 
-def test_every_mark_is_scaled() -> None:
-    assert scaled(scaled(PICTURE, 4.0), 0.25) == PICTURE
-    for before, after in zip(MARKS, scaled(PICTURE, 4.0).groups[0].marks, strict=True):
-        assert type(before) is type(after)
-        assert before != after
-
-
 def test_a_picture_of_any_size_becomes_the_same_pixels() -> None:
     """But for the last shade of what is drawn at the edge of a line."""
     plain = _pixels(scaled(PICTURE, 2.0**8))

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from aidl_lang.export import ExportError, Options
+from aidl_lang.export import Options
 from aidl_lang.export.themes import REDUCED, THEMES
 from tests.compiled import compiled
 
@@ -26,19 +26,6 @@ def svg(**options: object) -> str:
 
 def colours(text: str) -> set[str]:
     return set(re.findall(r'(?:fill|stroke)="(#\w+|[a-z]+)"', text)) - {"none"}
-
-
-@pytest.mark.parametrize("name", REDUCED)
-def test_a_reduced_picture_has_three_colours(name: str) -> None:
-    theme = REDUCED[name]
-    assert colours(svg(theme=name)) == {theme.paper, theme.fill, theme.line}
-    assert {"gold", "crimson"} <= colours(svg())
-
-
-@pytest.mark.parametrize("name", REDUCED)
-def test_the_shapes_are_the_same(name: str) -> None:
-    paths = re.findall(r' d="([^"]*)"', svg(theme=name))
-    assert paths[1:] == re.findall(r' d="([^"]*)"', svg())  # the first is the paper
 
 
 @pytest.mark.parametrize("name", REDUCED)
@@ -78,25 +65,7 @@ def test_what_is_shaded_hides_what_is_below_it(name: str) -> None:
     assert f'fill="{REDUCED[name].fill}" fill-rule="evenodd" stroke="{REDUCED[name].line}"' in shown[0]
 
 
-def test_the_theme_of_a_cutter_is_what_a_cutter_follows() -> None:
-    assert svg(theme="cutter") == svg(cut=True)
-
-
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
 def test_every_picture_has_every_theme(suffix: str) -> None:
     made = {compiled(PROGRAM).export(suffix, Options(theme=name, pixels=100)) for name in THEMES}
     assert len(made) == len(THEMES)
-
-
-def test_a_model_has_no_theme() -> None:
-    with pytest.raises(ExportError) as caught:
-        compiled(PROGRAM).export(".dxf", Options(theme="ink"))
-    assert caught.value.diagnostic.message == "`--theme` has no meaning for `.dxf`"
-    assert caught.value.diagnostic.hints == ("formats for it: .pdf, .png, .svg",)
-
-
-def test_what_a_cutter_follows_has_no_theme() -> None:
-    with pytest.raises(ExportError) as caught:
-        svg(theme="blueprint", kerf=0.2)
-    assert caught.value.diagnostic.code == "E0924"
-    assert caught.value.diagnostic.message.startswith("`--theme blueprint` colours a picture")

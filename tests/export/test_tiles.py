@@ -16,7 +16,7 @@ from svgelements import SVG, Path
 from aidl_lang.export import ExportError, Job, Options, export
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.picture import tiled
-from aidl_lang.geometry.curves import Circle, Line, Vec, bounds, point
+from aidl_lang.geometry.curves import Circle, Line, Vec, point
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
 from tests.amount import tries
@@ -94,61 +94,12 @@ def test_pages_come_in_reading_order_and_say_where_they_belong():
     ]
 
 
-def test_blank_pages_are_left_out_but_counted_in_rows_and_columns():
-    outline = frame(900, 900)
-    hollow = one(Area(Face(outline), None, INK), box=(0.0, 0.0, 900.0, 900.0))
-    filled = one(Area(Face(outline), "#ff0000", INK), box=(0.0, 0.0, 900.0, 900.0))
-    # Five columns and four rows; nothing but the frame is drawn of the hollow one.
-    assert len(tiled(filled, A4)) == 20
-    labels = [label(p) for p in tiled(hollow, A4)]
-    assert len(labels) == 20 - 3 * 2
-    assert labels[6:8] == ["7/14: row 2, column 5", "8/14: row 3, column 1"]
-
-
-def test_a_hole_in_a_filled_area_is_blank():
-    ring = Face(frame(900, 900), (Loop((Circle((450, 450), 420),), reversed=True),))
-    labels = [label(p) for p in tiled(one(Area(ring, "#ff0000", None), box=(0.0, 0.0, 900.0, 900.0)), A4)]
-    assert not any("row 2, column 3" in text for text in labels)
-    assert any("row 1, column 3" in text for text in labels)
-
-
 def test_dots_and_texts_are_drawn_where_they_are():
     box = (0.0, 0.0, 900.0, 277.0)
     marks = Dot((5, 5), 1, "#000000"), Text((880, 100), "end", 3, "#000000")
     found = tiled(one(*marks, box=box), A4)
     assert [label(p) for p in found] == ["1/2: row 1, column 1", "2/2: row 1, column 5"]
     assert [p.groups[0].marks for p in found] == [marks[:1], marks[1:]]
-
-
-def test_an_empty_picture_is_one_page():
-    (page,) = tiled(Picture((0.0, 0.0, 10.0, 10.0), ()), A4)
-    assert names(page) == ["page-marks"]
-
-
-def crosses(page: Picture) -> set[tuple[float, float]]:
-    found = set()
-    for mark in page.groups[-1].marks:
-        if isinstance(mark, Curves) and mark.role == "registration":
-            left, bottom, right, top = bounds(mark.pieces[0])
-            assert right - left == pytest.approx(6)
-            found.add((round((left + right) / 2, 6), round((bottom + top) / 2, 6)))
-    return found
-
-
-def test_neighbours_share_their_crosses():
-    found = tiled(one(Area(Face(frame(500, 500)), "#ff0000", INK), box=(0.0, 0.0, 500.0, 500.0)), A4)
-    places = {label(p).split(": ")[1]: p for p in found}
-    assert len(places) == 6
-    for row in (1, 2):
-        for column in (1, 2, 3):
-            here = places[f"row {row}, column {column}"]
-            for beside in (f"row {row}, column {column + 1}", f"row {row + 1}, column {column}"):
-                if beside in places:
-                    assert len(crosses(here) & crosses(places[beside])) >= 2
-    every = set().union(*(crosses(p) for p in found))
-    # Each lies in the sight of two pages at least, 5 mm from the edge of one.
-    for x, y in every:
-        assert sum((x, y) in crosses(p) for p in found) >= 2
 
 
 def job(**options) -> Job:
@@ -185,16 +136,6 @@ def test_svg_pages_are_true_to_scale_and_clipped():
         assert data.count(b'clip-path="url(#' + clip + b')"') == data.count(b"data-path") > 0
         rect = root.find(".//{*}clipPath/{*}rect")
         assert (float(rect.attrib["width"]), float(rect.attrib["height"])) == (192, 279)
-
-
-def test_overlaps_show_the_same():
-    """The same curves, seen through windows that lie a step of 180 mm apart."""
-    made = export(job(cut=True), ".svg")
-    pages = [ElementTree.fromstring(data) for data in (made.data, *made.further)]
-    boxes = [[float(v) for v in page.attrib["viewBox"].split()] for page in pages]
-    assert [b[0] - a[0] for a, b in pairwise(boxes)] == pytest.approx([180, 180])
-    paths = {page.findall(".//{*}path[@class='cut']")[-1].attrib["d"] for page in pages}
-    assert len(paths) == 1
 
 
 def refusal(**options) -> tuple[str, str, tuple[str, ...]]:

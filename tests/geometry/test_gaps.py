@@ -7,7 +7,7 @@ import math
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, ends
@@ -44,32 +44,6 @@ def assert_closed(found: Region) -> None:
     for loop in found.loops:
         for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
             assert loop.is_whole or ends(one)[1] == ends(after)[0]
-
-
-def test_the_note_names_both_ends_the_gap_and_the_place():
-    (note,) = notes(compiled(WEDGE.replace("END", "(0, 0.01)")))
-    assert note.message == (
-        "a gap of 0.01 mm between `slope.end` and `base.start` at (0, 0) was closed in solid `wedge`"
-    )
-    assert note.hints == ("to let them meet exactly: `constrain slope.end == base.start`",)
-    assert note.span is not None
-    assert note.span.text == "slope = line(side.end, (0, 0.01))"
-    assert [label.text for label in note.secondary] == ["to this end"]
-
-
-def test_the_fix_makes_the_ends_meet():
-    (note,) = notes(compiled(WEDGE.replace("END", "(0, 0.01)")))
-    assert note.span is not None
-    text, count = apply_fixes(note.span.source, [note])
-    assert count == 1
-    assert text.endswith("(0, 0.01))\n    constrain slope.end == base.start\n}\n")
-    assert "N0708" not in codes(text)
-
-
-def test_a_closed_outline_is_closed_to_the_last_digit():
-    found = region(compiled(WEDGE.replace("END", "(0.013, 0.01)")), "wedge")
-    assert_closed(found)
-    assert area(found) == pytest.approx(500, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -121,25 +95,9 @@ def test_curves_of_every_kind_stay_what_they_are():
     assert kinds == {Bezier, Circle}
 
 
-def test_an_arc_that_meets_itself_is_to_be_a_circle():
-    (note,) = notes(
-        compiled("solid s { a = arc(center: (0, 0), radius: 2, start_angle: 0deg, end_angle: 359.99deg) }")
-    )
-    assert note.hints == ("to close it exactly, write a `circle` in place of `a`",)
-    assert note.fix is None
-
-
 def test_where_nothing_is_enclosed_all_stays_as_it_was():
     text = "solid s { a = line((0, 0), (40, 0))\n b = line((40, 0.01), (40, 25)) }"
     assert codes(text) == ["W0702"]
-
-
-def test_drawings_keep_their_gaps():
-    text = WEDGE.replace("END", "(0, 0.01)").replace("solid", "drawing")
-    result = compiled(text)
-    assert not result.diagnostics
-    assert result.drawing is not None
-    assert result.drawing.strokes[2].pieces[0] == Line((40, 25), (0, 0.01))
 
 
 def test_overshooting_ends_are_trimmed_without_a_word():

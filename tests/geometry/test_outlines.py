@@ -12,7 +12,6 @@ import shapely
 from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.boolean import clipped_each
 from aidl_lang.geometry.curves import (
     Arc,
     Bezier,
@@ -21,7 +20,6 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
-    all_bounds,
     bounds,
     ends,
     inward,
@@ -75,27 +73,6 @@ def stars(draw: st.DrawFn) -> list[Vec]:
 # --- Fillets and chamfers ----------------------------------------------------------------------------
 
 
-@given(st.floats(1, 100), st.floats(1, 100), st.floats(0.01, 1))
-def test_rounded_rectangle_has_its_closed_form(width: float, height: float, share: float) -> None:
-    r = share * min(width, height) / 2
-    sides = polygon([(0, 0), (width, 0), (width, height), (0, height)]).faces[0].outer.pieces
-    assert sum(length(c) for c in rounded(sides, "fillet", r)) == pytest.approx(
-        2 * (width + height) - (8 - 2 * math.pi) * r
-    )
-
-
-@given(st.floats(15, 165), st.floats(0.1, 3))
-def test_fillet_touches_both_edges(degrees: float, r: float) -> None:
-    """The circle is as far from both edges as its radius, and takes r / tan(α/2) off each."""
-    a = math.radians(degrees)
-    edges = [Line((0, 0), (100, 0)), Line((100 * math.cos(a), 100 * math.sin(a)), (0, 0))]
-    (made,) = finish(edges, [Work("fillet", c, (r, r)) for c in corners_of(edges, 1e-6)]).finished
-    assert isinstance(made.piece, Arc)
-    assert made.piece.center == pytest.approx((r / math.tan(a / 2), r))
-    assert abs(made.piece.sweep) == pytest.approx(math.pi - a)
-    assert max(made.cuts) == pytest.approx(r / math.tan(a / 2) / 100)
-
-
 @pytest.mark.parametrize("first", [(0, 200), (200, 0), (30, -120)])
 @pytest.mark.parametrize("r", [0.3, 2.0])
 def test_fillets_of_arcs_are_tangent(first: tuple[float, float], r: float) -> None:
@@ -145,18 +122,6 @@ def test_polygons_round_off_at_both_kinds_of_corners(corners: list[Vec], share: 
     assert enclosed(rounded(sides, "fillet", r)) == pytest.approx(expected, rel=1e-5)
 
 
-def test_largest_radius_is_told() -> None:
-    sides = polygon([(0, 0), (60, 0), (60, 40), (0, 40)]).faces[0].outer.pieces
-    (lower_left, *_) = corners_of(sides, 1e-6)
-    (failure,) = finish(sides, [Work("fillet", lower_left, (50, 50))]).failures
-    assert failure.largest == pytest.approx(40)
-    works = [Work("fillet", c, (25, 25)) for c in corners_of(sides, 1e-6)]
-    failures = finish(sides, works).failures
-    assert {abs(f.work.corner.at[0] - f.other.corner.at[0]) for f in failures} == {0}
-    assert not finish(sides, [sized(work, 20) for work in works]).failures
-    assert finish(sides, [sized(work, 20.01) for work in works]).failures
-
-
 # --- Offsets -----------------------------------------------------------------------------------------
 
 
@@ -189,20 +154,6 @@ def test_offset_of_a_convex_polygon_has_its_closed_form(a: float, b: float, d: f
     assert area(offset(triangle, d)) == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
 
 
-def test_sharp_points_are_rounded_once_they_stand_out_too_far() -> None:
-    needle = polygon([(0, 0), (100, 0), (100, 5)])
-    assert pieces(offset(needle, 1), Arc)
-    assert max(bounds(p)[0] for p in offset(needle, 1).faces[0].outer.pieces) < 102
-
-
-def test_offset_of_a_ring_of_circles_is_exact() -> None:
-    ring = Region((Face(Loop((Circle((0, 0), 10),)), (Loop((Circle((0, 0), 4),), reversed=True),)),))
-    assert area(offset(ring, 1)) == pytest.approx(math.pi * (121 - 9))
-    assert area(offset(ring, -1)) == pytest.approx(math.pi * (81 - 25))
-    assert area(offset(ring, 4.5)) == pytest.approx(math.pi * 14.5**2)
-    assert not offset(ring, -3.01)
-
-
 @pytest.mark.parametrize(
     "d", [6.0, -6.0, *(pytest.param(d, marks=pytest.mark.slow) for d in (-2.0, -14.0, -19.0))]
 )
@@ -233,15 +184,6 @@ def test_the_largest_fillet_of_a_polygon(corners: list[Vec]) -> None:
     assert not finish(lines, made).failures
     larger = [sized(w, w.sizes[0] * (1 + 1e-6)) for w in made]
     assert finish(lines, larger).failures
-
-
-def test_runs_that_grow_together() -> None:
-    """Two share the short side, then the third takes what is left of the others beside a fillet of 5."""
-    lines = [Line(p, q) for p, q in pairwise([(0, 0), (60, 0), (60, 40), (0, 40), (0, 0)])]
-    works = {c.at: Work("fillet", c, (5.0, 5.0)) for c in corners_of(lines, 1e-6)}
-    runs: dict[Vec, int] = {(0, 0): 1, (0, 40): 2, (60, 40): 3, (60, 0): 0}
-    made = fitted(lines, list(works.values()), [runs[p] for p in works], 60.0)
-    assert {w.corner.at: w.sizes[0] for w in made} == {(0, 0): 20, (0, 40): 20, (60, 40): 35, (60, 0): 5}
 
 
 # --- Strokes -------------------------------------------------------------------------------------------
@@ -324,25 +266,6 @@ def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -
     expected = (a + b) * tangent + a * a * (math.pi / 2 + lean) + b * b * (math.pi / 2 - lean)
     assert area(ours) == pytest.approx(expected, rel=1e-12)
     assert len(pieces(ours, Arc)) == 2
-
-
-def test_hull_of_a_circle_around_all() -> None:
-    assert hull([Circle((0, 0), 9), Line((0, 0), (3, 3)), Circle((2, 0), 4)]).loops[0].is_whole
-
-
-@given(st.lists(st.builds(Bezier, *[st.tuples(*[st.floats(-100, 100)] * 2)] * 4), min_size=16, max_size=24))
-def test_boxes_of_many_cubics_are_those_of_each(cubics: list[Bezier]) -> None:
-    level, bent = Bezier((0, 0), (1, 0), (2, 0), (3, 0)), Bezier((0, 0), (0, 0), (5, 9), (5, 9))
-    curves = [*cubics, Circle((1, 2), 3), level, bent]
-    assert np.array(all_bounds(curves)) == pytest.approx(np.array([bounds(c) for c in curves]), abs=1e-9)
-
-
-def test_clipped_lines_end_on_the_border() -> None:
-    disc = Region((Face(Loop((Circle((0, 0), 5),))),))
-    (one,) = clipped_each([Line((-9, 3), (9, 3))], disc)
-    (inner,) = one.inner
-    assert [abs(p[0]) for p in ends(inner)] == pytest.approx([4, 4])
-    assert clipped_each([Line((6, -9), (6, 9))], disc)[0].inner == ()
 
 
 # --- Frames --------------------------------------------------------------------------------------------

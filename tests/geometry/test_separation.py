@@ -76,23 +76,3 @@ def test_curves_told_apart_have_only_shared_ends_in_common(curves: list[Piece]):
             spots += [p for p in ends(a) if locate(b, p, TOLERANCE) is not None]
             spots += [p for p in ends(b) if locate(a, p, TOLERANCE) is not None]
             assert all(any(math.dist(p, q) <= 2 * TOLERANCE for q in shared) for p in spots)
-
-
-def test_neighbours_in_a_smooth_outline_are_told_apart():
-    arc = arc_between((0.0, 0.0), (4.0, 4.0), math.pi / 2)
-    smooth = Bezier((4.0, 4.0), (4.0, 6.0), (2.0, 8.0), (0.0, 8.0))
-    assert may_meet([arc, smooth, Line((0.0, 8.0), (-4.0, 8.0))]) == {
-        (0, 1): False,
-        (0, 2): False,
-        (1, 2): False,
-    }
-
-
-def test_neighbours_that_meet_again_are_not_told_apart():
-    there, back = Line((0.0, 0.0), (4.0, 0.0)), Bezier((4.0, 0.0), (4.0, 3.0), (2.0, 3.0), (2.0, -1.0))
-    assert may_meet([there, back]) == {(0, 1): True}
-
-
-def test_curves_that_lie_on_each_other_are_not_told_apart():
-    whole, half = Line((0.0, 0.0), (4.0, 0.0)), Line((0.0, 0.0), (2.0, 0.0))
-    assert may_meet([whole, half, Circle((0.0, 3.0), 3.0)]) == {(0, 1): True, (0, 2): True, (1, 2): True}

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
 from aidl_lang.geometry import sheets
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, ends, point
+from aidl_lang.geometry.curves import Circle, Line, Piece, ends, point
 from aidl_lang.geometry.drawing import Body, Drawing, draw
 from aidl_lang.geometry.region import area, face_polygons
 from aidl_lang.geometry.sheets import Layout
@@ -143,22 +143,6 @@ def plate(name: str, w: float, h: float, x: float = 0, **looks) -> SolvedStructu
     return structure("solid", name, rectangle("r", x, 0, x + w, h), **looks)
 
 
-def test_equal_parts_fill_sheets_row_by_row():
-    drawing = drawing_of(*(plate(f"p{k}", 40, 20, 50 * k) for k in range(300)))
-    layout = laid_out(drawing, (600, 400), 3)
-    # Thirteen columns of 43 mm and seventeen rows of 23 mm go into 597 × 397 mm.
-    assert [len(d.bodies) for d in layout.sheets] == [221, 79]
-    check(drawing, layout, (600, 400), 3)
-
-
-def test_what_fits_exactly_fits():
-    assert len(laid_out(drawing_of(plate("a", 594, 394)), (600, 400), 3).sheets) == 1
-    assert len(laid_out(drawing_of(plate("a", 594 + 1e-9, 394)), (600, 400), 3).sheets) == 1
-    assert laid_out(drawing_of(plate("a", 594.01, 394)), (600, 400), 3).oversize == (
-        ("part.a", (594.01, 394)),
-    )
-
-
 def test_parts_are_turned_where_it_helps_and_not_otherwise():
     def factors(layout: Layout, drawing: Drawing) -> list[complex]:
         before = {body.path: numbers(outline(body)) for body in drawing.bodies}
@@ -176,47 +160,6 @@ def test_parts_are_turned_where_it_helps_and_not_otherwise():
     tight = laid_out(pair, (100, 60), 5)  # one above the other, both lying
     assert len(tight.sheets) == 1
     assert sorted(factors(tight, pair), key=str) == sorted([1, 1j], key=str)
-
-
-def test_stocks_are_apart_and_in_order():
-    drawing = drawing_of(
-        plate("a", 20, 20, 0, material=("steel",), thickness=(2.0,)),
-        plate("b", 20, 20, 30, material=("birch",), thickness=(6.0,)),
-        plate("c", 20, 20, 60),
-        plate("d", 20, 20, 90, material=("birch",), thickness=(3.0,)),
-        plate("e", 20, 20, 120, material=("steel",), thickness=(2.0,)),
-    )
-    layout = laid_out(drawing, (200, 200), 3)
-    assert [[b.path for b in d.bodies] for d in layout.sheets] == [
-        ["part.c"],
-        ["part.d"],
-        ["part.b"],
-        ["part.a", "part.e"],
-    ]
-
-
-def test_arcs_and_holes_come_along():
-    tongue = compound(
-        "g",
-        Line((0, 0), (80, 0)),
-        arc((80, 10), 10, -90, 90),
-        Line((80, 20), (0, 20)),
-        Line((0, 20), (0, 0)),
-    )
-    solid = structure("solid", "s", tongue, structure("hole", "bore", circle("c", 80, 10, 4)))
-    drawing = drawing_of(solid)
-    (laid,) = laid_out(drawing, (40, 200), 5).sheets
-    check(drawing, Layout((laid,)), (40, 200), 5)
-    (face,) = laid.bodies[0].region.faces
-    assert [p.radius for p in face.outer.pieces if isinstance(p, Arc)] == [10]
-    (bore,) = face.holes[0].pieces
-    # Turned by a quarter, (80, 10) of 90 × 20 lies 10 from the left and 80 from below.
-    assert isinstance(bore, Circle)
-    assert bore.radius == 4
-    assert bore.center == pytest.approx((15, 85), abs=1e-12)
-    # The region of the hole stays where the body has it: writers ask it for the layer of the edge.
-    (moved,) = laid.regions["part.s.bore"].loops[0].pieces
-    assert moved == bore
 
 
 def line(name: str, x0: float, y0: float, x1: float, y1: float) -> SolvedStructure:
@@ -264,12 +207,6 @@ def test_of_overlapping_parts_the_one_that_has_most_is_engraved():
         assert math.dist(*ends(piece)) == pytest.approx(50)
         assert ends(piece)[0][0] - wide.box[0] == pytest.approx(5)
         assert layout.strays == ()
-
-
-def test_parts_that_overlap_are_each_complete():
-    a, b = plate("a", 40, 20), plate("b", 40, 20, 10)
-    (laid,) = laid_out(drawing_of(a, b), (100, 100), 3).sheets
-    assert [area(body.region) for body in laid.bodies] == pytest.approx([800, 800])
 
 
 @tries(4)

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import random
 
-import pytest
-
-from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.styles import stacked
 from tests.geometry.models import structure
 
@@ -15,25 +12,6 @@ def order(**said: dict[str, tuple[str, ...]]) -> str:
     """The order of structures with names of one letter, written in this order."""
     root = structure("assembly", "_", *(structure("solid", name, **words) for name, words in said.items()))
     return "".join(s.name for s in stacked(root) if s.name != "_")
-
-
-@pytest.mark.parametrize(
-    ("said", "expected"),
-    [
-        ({"a": {}, "b": {}, "c": {}}, "abc"),
-        ({"a": {}, "b": {}, "c": {"behind": ("a",)}}, "cab"),
-        ({"a": {}, "b": {}, "c": {"behind": ("b",)}}, "acb"),
-        ({"a": {"in_front": ("c",)}, "b": {}, "c": {}, "d": {}}, "bcad"),
-        ({"a": {}, "b": {"behind": ("c",)}, "c": {}}, "abc"),
-        ({"p": {}, "q": {}, "a": {}, "b": {"behind": ("a",)}, "c": {"behind": ("b",)}}, "pqcba"),
-        ({"a": {"in_front": ("b",)}, "b": {"in_front": ("c",)}, "c": {}, "d": {}}, "cbad"),
-        ({"a": {}, "b": {}, "c": {"behind": ("a", "b")}}, "cab"),
-        ({"a": {}, "b": {"in_front": ("c",), "behind": ("d",)}, "c": {}, "d": {}}, "acbd"),
-        ({"a": {"behind": ("c",), "in_front": ("d",)}, "b": {}, "c": {}, "d": {}}, "bdac"),
-    ],
-)
-def test_who_states_an_order_moves(said: dict[str, dict[str, tuple[str, ...]]], expected: str) -> None:
-    assert order(**said) == expected
 
 
 def test_whatever_is_stated_holds() -> None:
@@ -52,9 +30,3 @@ def test_whatever_is_stated_holds() -> None:
         for own, words in said.items():
             assert all(found.index(own) < found.index(other) for other in words.get("behind", ()))
             assert all(found.index(own) > found.index(other) for other in words.get("in_front", ()))
-
-
-def test_all_of_a_structure_goes_with_it() -> None:
-    inner = structure("solid", "a", structure("drawing", "x"), in_front=("b",))
-    root: SolvedStructure = structure("assembly", "r", inner, structure("solid", "b"))
-    assert [s.name for s in stacked(root)] == ["r", "b", "a", "x"]

@@ -14,7 +14,6 @@ from aidl_lang.geometry.region import (
     Loop,
     Region,
     area,
-    face_polygons,
     loop_points,
     piece_points,
     polygon_area,
@@ -49,22 +48,6 @@ def test_no_chord_departs_by_more_than_the_tolerance(piece: Piece, tolerance: fl
     assert shapely.distance(shapely.LineString(spots), shapely.points(line)).max() < 1e-4
 
 
-def test_chords_are_as_long_as_the_tolerance_allows():
-    """A circle of radius r needs pi / acos(1 - tolerance / r) of them."""
-    for tolerance in (1e-1, 1e-3, 1e-6):
-        needed = math.pi / math.acos(1 - tolerance / 20)
-        assert len(loop_points(Loop((Circle((0, 0), 20),)), tolerance)) == math.ceil(needed)
-
-
-def test_loops_keep_their_own_direction():
-    whole = Circle((4, 0), 3)
-    forward, backward = (loop_points(Loop((whole,), turn), 0.01) for turn in (False, True))
-    assert np.array_equal(forward[::-1], backward)
-    assert polygon_area(forward) > 0 > polygon_area(backward)
-    lines = (Line((0, 0), (0, 5)), Line((0, 5), (5, 0)), Line((5, 0), (0, 0)))
-    assert loop_points(Loop(lines), 0.01).tolist() == [[0, 0], [0, 5], [5, 0]]
-
-
 def region(x: float) -> Region:
     """A stadium with a round and an elliptic hole, and a whole circle beside it."""
     top, bottom = arc((x + 20, 0), 10, -90, 90), arc((x, 0), 10, 90, 270)
@@ -85,19 +68,6 @@ def test_the_area_converges():
 
 def _area(r: Region, tolerance: float) -> float:
     return sum(map(polygon_area, region_polygons(r, tolerance)))
-
-
-def test_outer_polygons_run_counter_clockwise_and_holes_clockwise():
-    r = region(0)
-    signs = [math.copysign(1, polygon_area(p)) for p in region_polygons(r, 0.1)]
-    assert signs == [1, -1, -1, 1]
-    outer, *holes = face_polygons(r.faces[0], 0.1)
-    assert shapely.Polygon(outer, holes).is_valid
-
-
-def test_a_hole_smaller_than_the_tolerance_stays():
-    (polygon,) = region_polygons(Region((Face(Loop((Circle((0, 0), 0.01),))),)), 5.0)
-    assert polygon_area(polygon) > 0.97 * math.pi * 0.01**2
 
 
 def test_a_sliver_thinner_than_the_tolerance_does_not_turn_inside_out():

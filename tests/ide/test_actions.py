@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, applied, between, look, run
+from aidl_lang.tools.ide.workspace import View, applied, look, run
+from tests.amount import TRIES_ALL
 from tests.compiled import FEW
 
 from .conftest import EXAMPLES, cursor, opened, seen
@@ -47,12 +46,6 @@ def test_a_fix_is_offered_where_its_mistake_is() -> None:
     elsewhere = actions(view, 0, 0)
     assert [a.title for a in elsewhere if a.kind == "quickfix"] == []
     assert [a.title for a in elsewhere if a.kind == "source.fixAll"] == ["Apply all fixes"]
-
-
-def test_all_fixes_are_applied_at_once() -> None:
-    marked = "solid a {¦\n    c = circle(centre: origin, radus: 4)\n    constrain c.diamter == 5\n}\n"
-    text = done(marked, "Apply")
-    assert compiled(text).ok
 
 
 def test_each_constraint_of_a_conflict_can_give_way() -> None:
@@ -125,11 +118,6 @@ def test_a_number_that_must_give_way_cannot_become_exact() -> None:
         action.make()
 
 
-def test_no_name_is_offered_for_what_has_one() -> None:
-    _, found = offered("param width = 6¦0 in 20..90\nsolid a { c = circle(center: origin, radius: width) }\n")
-    assert found == []
-
-
 # --- Templates --------------------------------------------------------------------------------------
 
 TOWER = """\
@@ -159,18 +147,6 @@ def test_a_structure_of_a_loop_becomes_a_template_with_what_it_uses() -> None:
     assert '        @color("red")\n        floor[i] = floor_solid(i: i, width: width)\n' in text
     assert text.index("floor_solid(i, width)") < text.index("/// A tower.")
     assert compiled(text).export(".svg") == compiled(TOWER).export(".svg")
-
-
-def test_attributes_and_comments_stay_where_they_are() -> None:
-    text = done(TOWER.replace("solid roof", "solid¦ roof"), "Extract `roof`")
-    assert "    @thickness(2)\n    roof = roof_solid() // on top\n" in text
-    assert compiled(text).ok
-
-
-def test_the_root_and_a_template_are_not_extracted() -> None:
-    assert not any(a.title.startswith("Extract") for a in offered(TOWER.replace("tower {", "tow¦er {"))[1])
-    marked = "solid peg¦(d = 3) { c = circle(center: origin, radius: d) }\nassembly a { p = peg() }\n"
-    assert not any(a.title.startswith("Extract") for a in offered(marked)[1])
 
 
 def test_what_needs_a_function_from_around_it_is_left() -> None:
@@ -233,28 +209,15 @@ assembly a {
             assert compiled(text).ok
 
 
-def test_nothing_is_missing_where_nothing_moves_or_nothing_is_known() -> None:
-    view, found = offered("solid a { c = circle(center: fixed((0, 0)), radius: 4)¦ }\n")
-    assert not any(a.title.startswith("Add") for a in found)
-    unsolved = replace(view, outcome=None)
-    assert not any(a.title.startswith("Add") for a in actions(unsolved, 20, 20))
-
-
 # --- Anywhere ---------------------------------------------------------------------------------------
 
 
 def test_every_place_of_the_examples_is_answered(example: View) -> None:
     view = run(example)
-    for at in range(0, len(view.source.text) + 1, 7):
+    for at in range(0, len(view.source.text) + 1, 7 if TRIES_ALL else 31):
         for action in actions(view, at, min(at + 3, len(view.source.text))):
             assert action.title
             assert action.kind in ("quickfix", "refactor.extract", "refactor.rewrite", "source.fixAll")
-
-
-def test_edits_between_two_texts_make_one_of_the_other() -> None:
-    view = seen(TOWER)
-    other = TOWER.replace("let thick", "let thin\nlet thick").replace("    } // on top\n", "    }\n")
-    assert applied(TOWER, between(view.source, other)) == other
 
 
 def test_solved_values_are_written_here_and_everywhere() -> None:
@@ -298,24 +261,7 @@ def test_a_note_is_allowed_before_its_statement() -> None:
     assert _allowed(head + told, "b.left", "N0602") == f'{head}@allow("N0602")\n    {told}'
 
 
-def test_a_note_is_allowed_beside_what_stands_on_its_line() -> None:
-    head = "solid s {\n    b = rectangle(width: 60, height: 40)\n    constrain { b.center == origin, "
-    told = "b.left + b.right == 0 }\n}\n"
-    assert _allowed(head + told, "b.left", "N0602") == f'{head}@allow("N0602") {told}'
-
-
-def test_a_note_on_what_begins_with_a_sign_is_allowed_around_it() -> None:
-    head = "solid s {\n    b = rectangle(width: 60, height: 40)\n    constrain b.center == origin\n    "
-    told = "constrain {\n        -b.left == b.right\n    }\n}\n"
-    assert _allowed(head + told, "-b.left", "N0602") == f'{head}@allow("N0602")\n    {told}'
-
-
 def test_another_code_is_allowed_where_one_is() -> None:
     text = 'solid s {\n    @allow("W0201") param k = 0\n    dot = circle(radius: 0)\n}\n'
     text = text.replace("dot", '@allow("N0505") dot')
     assert '@allow("N0505", "W0706") dot' in _allowed(text, "circle", "W0706")
-
-
-def test_errors_are_not_allowed() -> None:
-    _, found = offered("solid s { b = circle(radius: no¦thing) }")
-    assert not any(a.title.startswith("Allow") for a in found)

@@ -9,16 +9,14 @@ from pathlib import Path
 import pytest
 
 from aidl_dev.reference.coverage import cells
-from aidl_lang.checking.library import load
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
-from aidl_lang.tools.ide.completion.names import forms, read
+from aidl_lang.tools.ide.completion.names import forms
 from aidl_lang.tools.ide.workspace import Workspace, look
-from aidl_lang.tools.vocabulary import expanded, vocabulary
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import FEW
 
 from .conftest import cursor, seen
@@ -105,18 +103,6 @@ def test_every_member_is_there(thing: str) -> None:
         assert "E0202" not in codes, completion.label
 
 
-def test_members_of_what_is_wanted_come_first() -> None:
-    assert labels("x = circle(center: first.¦)")[:3] == ["start", "end", "midpoint"]
-    assert labels("x = circle(radius: first.¦)")[0] == "length"
-    assert labels("constrain { rim.radius == second.¦ }")[0] == "length"
-
-
-def test_methods_leave_out_the_receiver() -> None:
-    found = one("constrain { body.¦ }", "centered_in")
-    assert (found.kind, found.text) == ("method", "centered_in($1)")
-    assert "line" in one("constrain first.¦", "parallel").documentation
-
-
 def test_indices_are_those_that_were_drawn() -> None:
     text, offset = cursor(THINGS.replace("%s", "assert peg[¦2].width > 0"))
     view = seen(text, solved=True, parts=PARTS)
@@ -179,27 +165,7 @@ def test_what_fits_comes_first() -> None:
     assert labels("p = path(from: (0, 0), ¦)").index("right") < 12
 
 
-def test_details_and_documentation() -> None:
-    width = one("x = circle(radius: ¦)", "width")
-    assert (width.kind, width.detail) == ("param", "param 60mm")
-    assert "How wide it is." in width.documentation
-    assert "solid washer" in one("x = ¦", "ring").documentation
-    assert one("constrain { ¦ }", "bore").detail == "hole"
-
-
 # --- Constraints -----------------------------------------------------------------------------------
-
-
-def test_constraints_that_fit_the_things_at_hand_come_first() -> None:
-    found = offered("constrain { ¦ }")
-    parallel = next(c for c in found if c.label == "parallel")
-    assert parallel.text == "parallel(${1|first,second|}, ${2|second,first|})"
-    assert parallel.rank < 10
-    only_structures = offered("¦", "assembly a {\n solid b { todo }\n solid c { todo }\n constrain { %s }\n}")
-    first = [c.label for c in only_structures[:12]]
-    assert {"above", "left_of", "inside"} <= set(first)
-    assert "parallel" not in first
-    assert next(c for c in only_structures if c.label == "above").plain == "above(b, c)"
 
 
 def test_constraints_with_names_filled_in_compile() -> None:
@@ -230,25 +196,11 @@ drawing d {
     assert mine.text == "beside_it(${1:c}, ${2:l}, by: ${3:by})"
 
 
-@pytest.mark.parametrize("name", ["parallel", "equal_radius", "midpoint", "above"])
+@pytest.mark.parametrize("name", ["parallel", "midpoint"])
 def test_the_table_of_what_fits_is_that_of_the_compiler(name: str) -> None:
     works = {(c.form.format(name=name), c.first, c.second) for c in cells(name) if c.outcome == "works"}
     told = {(form.text, a, b) for form in forms()[name] for a, b in form.pairs}
     assert told == works
-
-
-def test_all_constraints_of_the_table_exist() -> None:
-    for name, listed in forms().items():
-        assert name in load().callables or name in vocabulary().built_in
-        assert all(form.pairs for form in listed), name
-
-
-def test_reading_the_table() -> None:
-    page = "## above\n\n`above(a, b)`: any two, but no number and no list\n\n## r\n\n`r(a)`: arc, circle\n"
-    found = read(page)
-    assert ("point", "structure") in found["above"][0].pairs
-    assert not any("number" in pair or "list" in pair for pair in found["above"][0].pairs)
-    assert found["r"][0].pairs == {("arc", ""), ("circle", "")}
 
 
 # --- Arguments, words, units -----------------------------------------------------------------------
@@ -337,18 +289,6 @@ def test_nothing_where_nothing_is_to_be_offered(marked: str) -> None:
     assert labels(marked) == []
 
 
-def test_the_beginning_of_a_statement() -> None:
-    found = offered("¦")
-    assert [c.label for c in found[:4]] == list(vocabulary().kinds)
-    assert {"param", "constrain", "for", "assert", "fillet", "circle"} <= {c.label for c in found}
-    assert "import" not in {c.label for c in found}
-    assert "import" in labels("¦", "%s\nsolid a { todo }")
-    in_items = set(labels("constrain {\n ¦\n}"))
-    assert {"for", "if", "let", "prefer"} <= in_items
-    assert not {"solid", "param", "fillet"} & in_items
-    assert [c.text for c in offered("so¦ thing { }")] == ["solid"]
-
-
 # --- Imports ---------------------------------------------------------------------------------------
 
 
@@ -419,27 +359,3 @@ def test_what_is_inserted_parses_no_worse(path: Path) -> None:
             ]
             worse = [errors(m) for m in made]
             assert min(worse) <= before, (completion.label, broken[token.start - 40 : token.start])
-
-
-def test_a_long_list_is_cut_and_a_prefix_narrows_it() -> None:
-    many = "\n".join(f"a{n} = circle(radius: 3)" for n in range(250))
-    text, offset = cursor(f"solid s {{\n{many}\nconstrain {{ ¦ }}\n}}")
-    assert len(complete(seen(text), offset)) == MOST
-    text, offset = cursor(f"solid s {{\n{many}\nconstrain {{ a249¦ }}\n}}")
-    assert [c.label for c in complete(seen(text), offset)][:1] == ["a249"]
-
-
-def test_places_are_code_points() -> None:
-    text, offset = cursor("// \U0001d51b\r\nsolid ä {\r\n\twä = circle(radius: 3)\r\n\tx = wä.ra¦\r\n}\r\n")
-    found = complete(seen(text), offset)
-    radius = next(c for c in found if c.label == "radius")
-    assert put(text, radius).endswith("x = wä.radius\r\n}\r\n")
-
-
-def test_plain_text_of_a_snippet() -> None:
-    assert expanded("at (${1:0}, ${2:0}) ${3|left,right|} {\n    $0\n}") == "at (0, 0) left {\n    \n}"
-
-
-def test_an_empty_file() -> None:
-    view = look(Path("/project/part.aidl"), "", MemoryWorld({}))
-    assert {"solid", "assembly", "import", "param"} <= {c.label for c in complete(view, 0)}

@@ -31,13 +31,6 @@ def swept(view: View) -> Found:
     return tried(view, SETTINGS, lambda done, count: None, 60.0)
 
 
-def test_first_param_offers_to_try_them_all() -> None:
-    view = seen(PLATE, solved=True)
-    assert titles(view) == [("width", "try the ends of 3 params")]
-    one = seen("param r = 3 in 1..5\nsolid a { b = circle(center: origin, radius: r) }", solved=True)
-    assert titles(one) == [("r", "try the ends of this param")]
-
-
 def test_each_param_tells_what_came_of_it() -> None:
     view = seen(PLATE, solved=True)
     assert titles(view, swept(view)) == [
@@ -49,29 +42,6 @@ def test_each_param_tells_what_came_of_it() -> None:
         ("height", "works from 20mm to 200mm, one kind throughout"),
         ("look", 'works with "other" and "third"'),
     ]
-
-
-def test_param_of_a_template_is_told_once() -> None:
-    text = """\
-assembly a {
-    @detached
-    solid leg(wide = 5) {
-        param long = 9mm in 5..20
-        body = rectangle(center: (0, 0), width: wide, height: long)
-    }
-    left = leg() at (0, 0)
-    right = leg() at (30, 0)
-}
-"""
-    view = seen(text, solved=True)
-    found = swept(view)
-    assert [each.knob.path for each in found.sweep.turned] == [
-        "left.long",
-        "left.long",
-        "right.long",
-        "right.long",
-    ]
-    assert titles(view, found) == [("long", "works from 5mm to 20mm, one kind throughout")]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +59,3 @@ def test_there_may_be_nothing_to_try(text: str) -> None:
     assert titles(view) == []
     with pytest.raises(ValueError, match="the program has to work as it is written"):
         swept(view)
-
-
-def test_text_that_is_not_solved_yet_offers_nothing() -> None:
-    assert titles(seen(PLATE)) == []

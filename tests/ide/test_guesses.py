@@ -100,67 +100,6 @@ def written_down(view: View) -> str:
     return applied(view.source.text, edits)
 
 
-def test_a_var_is_told_by_its_name() -> None:
-    guess = told(seen("drawing d { var gap = 5mm\n p = (gap, 0)\n constrain gap == 7 }", solved=True))[
-        "d.gap"
-    ]
-    assert (guess.span.text, guess.solved, guess.unit) == ("5mm", pytest.approx(7.0), "mm")
-
-
-def test_numbers_of_a_loop_are_shared() -> None:
-    view = seen("drawing d { for i in 0..2 { c[i] = circle(center: (5, 0), radius: 1) } }", solved=True)
-    assert [(g.span.text, g.is_shared, g.solved) for g in guesses(view)] == [
-        ("5", True, 5.0),
-        ("0", True, 0.0),
-        ("1", True, 1.0),
-    ]
-
-
-def test_places_that_differ_have_no_one_value() -> None:
-    loop = "for i in 0..1 { c[i] = circle(center: (5, 0), radius: 1) }"
-    text = f"drawing d {{ {loop}\n constrain c[1].center.x == 9 }}"
-    first = guesses(seen(text, solved=True))[0]
-    assert (first.span.text, first.solved) == ("5", None)
-
-
-def test_a_template_made_once_has_numbers_of_its_own() -> None:
-    template = "hole bore(r = 3) { rim = circle(center: (1, 1), radius: r) }\n"
-    once = seen(f"solid s {{ {template} a = bore(r: 4) at (2, 2) }}", solved=True)
-    twice = seen(f"solid s {{ {template} a = bore(r: 4) at (2, 2)\n b = bore(r: 5) at (9, 2) }}", solved=True)
-    assert [g.is_shared for g in guesses(once) if g.path.endswith("rim.center.x")] == [False]
-    assert [g.is_shared for g in guesses(twice) if g.path.endswith("rim.center.x")] == [True]
-    assert told(twice)["s.b.r"].span.text == "5"
-
-
-def test_a_named_number_that_is_computed_with_elsewhere_is_shared() -> None:
-    text = "drawing d { let w = 10\n a = square(size: w)\n b = rectangle(width: 2 * w, height: 3) }"
-    found = {g.span.text: g.is_shared for g in guesses(seen(text, solved=True))}
-    assert found == {"10": True, "3": False}
-
-
-def test_arithmetic_and_exact_numbers_are_none() -> None:
-    text = (
-        "drawing d { param n = 3\n a = circle(center: (1 + 2, n), radius: 2 * n)\n"
-        " constrain a.left == fixed(4) }"
-    )
-    assert guesses(seen(text, solved=True)) == []
-
-
-def test_numbers_of_the_library_and_of_other_files_are_none_of_this_text() -> None:
-    text = 'import thing from "other.aidl"\nsolid s { a = thing() at (3, 4) }'
-    view = seen(text, solved=True, other="solid thing() { r = circle(center: (7, 8), radius: 2) }")
-    assert view.outcome is not None
-    assert view.outcome.status == "solved"
-    assert [g.span.text for g in guesses(view)] == ["3", "4"]
-
-
-def test_a_program_that_does_not_solve_has_none() -> None:
-    assert guesses(seen("solid s { c = circle(center: (0, 0), radius: }", solved=True)) == []
-    assert guesses(seen("solid s { c = circle(center: (0, 0), radius: 3) }")) == []
-    text = "solid s { c = circle(center: fixed((0, 0)), radius: fixed(3))\n constrain c.radius == 4 }"
-    assert guesses(seen(text, solved=True)) == []
-
-
 def test_places_are_right_after_astral_characters_and_other_line_ends() -> None:
     text = (
         "\ufeff// \U0001d518 😀\r\ndrawing d {\r\n\tc = circle(center: (1, /* 😀 */ 2), radius: 3)\r\n}\r\n"

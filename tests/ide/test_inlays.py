@@ -34,31 +34,11 @@ def test_the_edit_writes_the_value() -> None:
     assert inlays(seen(text, solved=True)) == []
 
 
-def test_what_is_as_good_as_written_says_nothing() -> None:
-    assert (
-        shown("drawing d { c = circle(center: (1, 2), radius: 3)\n constrain c.center.y == 2.00001 }") == []
-    )
-
-
-def test_a_part_of_the_text_has_its_own() -> None:
-    view = seen(MOVED, solved=True)
-    start = view.source.text.index("guess")
-    assert [i.text for i in inlays(view, view.span(start, start + 12))] == ["→ 7 cm"]
-
-
 def test_a_kept_size_that_changed_says_so_in_words() -> None:
     view = seen("drawing d { c = circle(center: (1, 2), radius: 3)\n constrain c.radius == 4 }", solved=True)
     (hint,) = inlays(view)
     assert (hint.text, hint.kind) == ("→ 4 mm", InlayKind.SOLVED)
     assert "a size that had to change, written as 3 and solved to 4" in hint.tooltip
-
-
-def test_a_number_of_many_is_not_written() -> None:
-    circle = "c[i] = circle(center: (5, 0), radius: 1)"
-    text = f"drawing d {{ for i in 0..1 {{ {circle}\n constrain c[i].center.x == 9 }} }}"
-    (hint,) = inlays(seen(text, solved=True))
-    assert hint.text == "→ 9 mm"
-    assert hint.edits == ()
 
 
 def test_the_reading_of_an_ambiguous_call_is_told() -> None:

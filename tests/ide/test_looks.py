@@ -6,7 +6,7 @@ import pytest
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.lenses import lenses
-from aidl_lang.tools.ide.outline import as_bytes, colors, spellings
+from aidl_lang.tools.ide.outline import colors, spellings
 from aidl_lang.tools.ide.workspace import View, applied, run
 
 from .conftest import seen
@@ -38,11 +38,6 @@ def test_whatever_is_picked_is_what_is_drawn(wanted: tuple[int, int, int]) -> No
         for spelling in spellings(view, color.span, wanted):
             text = applied(view.source.text, [Edit(color.span, spelling)])
             assert colors(seen(text))[number].rgb == wanted
-
-
-def test_parts_from_0_to_1_become_bytes() -> None:
-    assert as_bytes((0.0, 0.5, 1.0)) == (0, 128, 255)
-    assert as_bytes((-1.0, 2.0, 1 / 255)) == (0, 255, 1)
 
 
 def titles(text: str) -> list[tuple[str, str]]:

@@ -90,8 +90,3 @@ def test_what_the_comments_say() -> None:
     above = helped("constrain c.above(b, ¦")
     assert above is not None
     assert above.overloads[0].parameters[2].about == "`gap` is exact"
-
-
-def test_the_innermost_block_counts() -> None:
-    text, offset = cursor("solid a { x = circle( \n hole b { ¦ } }")
-    assert signature_help(seen(text), offset) is None

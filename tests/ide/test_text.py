@@ -17,14 +17,13 @@ from aidl_lang.tools.ide.outline import (
     Entry,
     folds,
     outline,
-    search,
     selections,
     semantic_tokens,
 )
-from aidl_lang.tools.ide.workspace import View, format_document, format_range
+from aidl_lang.tools.ide.workspace import View, format_document
 from tests.amount import tries
 
-from .conftest import EXAMPLES, opened, seen
+from .conftest import EXAMPLES, seen
 
 PART = """\
 import "other.aidl" as other
@@ -77,14 +76,6 @@ def test_the_outline_has_what_is_declared() -> None:
     ]
 
 
-def test_things_are_found_by_some_of_their_letters() -> None:
-    project = opened({"part.aidl": PART, "other.aidl": "param outer_width = 1\nparam Breadth = 2"})
-    names = [(f.path.name, f.container, f.entry.name) for f in search(project, "width")]
-    assert names == [("part.aidl", "", "width"), ("other.aidl", "", "outer_width")]
-    assert [f.entry.name for f in search(project, "rm")] == ["rim", "rim"]
-    assert search(project, "xyzzy") == []
-
-
 def colored(view: View) -> list[tuple[str, str]]:
     return [(c.span.text, c.type) for c in semantic_tokens(view)]
 
@@ -127,41 +118,6 @@ def test_folds_stay_where_brackets_are_missing() -> None:
     view = seen(PART.replace("solid washer", "solid washer { ( ] }\nsolid x"))
     found = {(f.start, f.end, f.kind) for f in folds(view)}
     assert {(2, 3, "comment"), (7, 19, "region"), (8, 11, "region"), (17, 18, "comment")} <= found
-
-
-def test_folds_of_a_program() -> None:
-    assert [(f.start, f.end, f.kind) for f in folds(seen(PART))] == [
-        (2, 3, "comment"),
-        (7, 19, "region"),
-        (8, 11, "region"),
-        (13, 14, "region"),
-        (17, 18, "comment"),
-    ]
-
-
-def test_a_selection_grows_from_a_word_to_the_file() -> None:
-    view = seen(PART)
-    grown = [s.one_line for s in selections(view, PART.index("double(4)"))]
-    assert grown[:3] == ["double", "double(4)", "height: double(4)"]
-    assert grown[-1] == " ".join(PART.split())
-
-
-def test_the_canonical_form_comes_in_small_edits() -> None:
-    text = PART.replace("param width = 60mm", "param   width=60mm").replace("fn double(x)", "fn double( x )")
-    view = seen(text, other="param a = 1")
-    edits = format_document(view)
-    assert [e.span.line for e in edits] == [4, 8]  # the call fits in one line
-    expected, _ = pipeline.formatted(view.source, view.world)
-    assert apply(text, edits) == expected
-    line = text.index("fn double")
-    assert apply(text, format_range(view, view.span(line, line))) == text.replace("( x )", "(x)").replace(
-        "param   width=60mm", "param width = 60mm"
-    )
-    assert format_range(view, view.span(text.index("solid washer"), len(text))) == []
-
-
-def test_a_program_that_does_not_parse_is_not_formatted() -> None:
-    assert format_document(seen("solid a {  x = = 3 }")) == []
 
 
 def check_everything(view: View, at: int) -> None:

@@ -75,14 +75,6 @@ def test_a_line_that_had_to_change_is_moved_without_writing_its_length() -> None
     assert "line((5, 5), (65, 5))" in rewritten(both, sizes=True)
 
 
-def test_exact_numbers_params_and_expressions_are_not_touched() -> None:
-    text = (
-        "drawing d { param w = 3\n let u = 4\n c = circle(center: (u + 1, 2), radius: w)\n"
-        " e = circle(center: fixed((9, 9)), radius: fixed(2))\n constrain c.center == (8, 8) }"
-    )
-    assert rewritten(seen(text, solved=True)) == text.replace("(u + 1, 2)", "(u + 1, 8)")
-
-
 @pytest.mark.parametrize("name", ["telephone", "phone_stand", "lighthouse", "wrench", "handset"])
 def test_examples_draw_the_same_and_have_nothing_left_to_tell(name: str) -> None:
     path = next(p for p in EXAMPLES if p.stem == name)
@@ -110,12 +102,6 @@ def test_a_program_that_would_draw_something_else_is_left_alone() -> None:
     assert view.outcome.status == "solved"
     with pytest.raises(CannotError, match="would not draw the same"):
         write_back(view)
-
-
-def test_line_ends_and_astral_characters_stay() -> None:
-    circle = "\tc = circle(center: (1, /* \U0001f600 */ 2), radius: 3)\r\n"
-    text = f"\ufeff// \U0001d518\r\ndrawing d {{\r\n{circle}\tconstrain c.center == (1, -7)\r\n}}\r\n"
-    assert rewritten(seen(text, solved=True)) == text.replace("*/ 2", "*/ -7")
 
 
 @pytest.mark.parametrize(

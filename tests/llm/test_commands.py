@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from aidl_lang.tools.llm.messages import Finish, Image, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers import Closable, Connection, Price, connect
+from aidl_lang.tools.llm.providers import Closable, Connection, connect
 
 Make = Callable[..., Closable]
 
@@ -80,14 +80,6 @@ sys.stdout.write("code")
     assert (reply.text, heard) == ("ünïcode", ["ünï", "code"])
 
 
-def test_characters_may_come_in_halves(command: Make) -> None:
-    halves = r"""
-import sys, time
-for byte in "✓é".encode(): sys.stdout.buffer.write(bytes([byte])); sys.stdout.flush(); time.sleep(0.02)
-"""
-    assert ask(command(halves)).text == "✓é"
-
-
 def test_command_may_tell_more_as_json(command: Make) -> None:
     told = {
         "text": "solid a {}",
@@ -99,18 +91,6 @@ def test_command_may_tell_more_as_json(command: Make) -> None:
     reply = command(f"print('''{json.dumps(told)}''')").reply(SAID, PLAIN, heard.append)
     assert reply == Reply("solid a {}", Usage(100, 10, 0.5), Finish.CUT, "mine")
     assert heard == ["solid a {}"]
-
-
-def test_cost_by_the_price(command: Make) -> None:
-    told = {"text": "a", "usage": {"input": 1_000_000, "output": 500_000}}
-    assert ask(command(f"print('{json.dumps(told)}')", price=Price(2, 10))).usage.cost == pytest.approx(7.0)
-
-
-@pytest.mark.parametrize("text", ['{"a": 1}', "{ not json", '[{"text": "x"}]', "{" * 9999])
-def test_json_of_another_kind_is_the_text(command: Make, text: str) -> None:
-    heard: list[str] = []
-    reply = command(f"import sys; sys.stdout.write({text!r})").reply(SAID, PLAIN, heard.append)
-    assert reply.text == "".join(heard) == text
 
 
 @pytest.mark.parametrize(
@@ -176,15 +156,6 @@ def test_failures(command: Make, program: str, code: str, message: str, hints: t
     assert failure(command(program)) == (code, message, hints)
 
 
-def test_only_the_end_of_what_it_said_is_told(command: Make) -> None:
-    program = "import sys\nfor i in range(9): print('line', i, file=sys.stderr)\nsys.exit(3)"
-    assert failure(command(program)) == (
-        "E0936",
-        "`COMMAND` ended with exit code 3",
-        ("it said: line 6", "it said: line 7", "it said: line 8"),
-    )
-
-
 def test_silent_command_is_killed_with_its_children(command: Make, tmp_path: Path) -> None:
     program = f"""
 import subprocess, sys, time
@@ -218,11 +189,6 @@ time.sleep(600)
     with pytest.raises(KeyboardInterrupt):
         command(program).reply(SAID, PLAIN, hear)
     assert _ends(int((tmp_path / "pid").read_text()))
-
-
-def test_input_need_not_be_read(command: Make) -> None:
-    said = [Message("user", "x" * 3_000_000)]
-    assert command("print('done')").reply(said, PLAIN, lambda piece: None).text == "done\n"
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,9 +10,8 @@ from typing import Any
 import pytest
 
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.llm.messages import find_program
 from tests.grammars.engines import engine
-from tests.llm.scripted import Failed, Says, Scripted
+from tests.llm.scripted import Failed, Scripted
 
 PROGRAM = "solid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n"
 KNOWN = "llama.cpp, sglang, vllm, llama.cpp:llguidance, sglang:llguidance, vllm:llguidance"
@@ -67,30 +65,6 @@ def test_what_a_server_is_sent(
     assert transcript["provider"] == f"openai:m (constrained: {server})"
 
 
-def test_every_request_of_a_conversation_has_it(generate: Callable[..., Any]) -> None:
-    wrong = REPLY.replace("rectangle(", "rectangular_thing(")
-    code, server = generate([Failed(503), wrong, REPLY], "--constrain", "llama.cpp")
-    assert code == 0
-    assert [len(request.body["grammar"]) for request in server.requests] == 3 * [
-        len(server.requests[0].body["grammar"])
-    ]
-
-
-def test_a_command_reads_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("reply.py").write_text(
-        "import json, sys\n"
-        "open('grammar', 'w', encoding='utf-8').write(json.load(sys.stdin)['sampling']['grammar'])\n"
-        f"print({REPLY!r})\n",
-        encoding="utf-8",
-    )
-    provider = ["--provider", f"exec:{sys.executable} reply.py"]
-    assert main(["generate", "a plate", *provider, "--constrain", "llama.cpp"]) == 0
-    assert Path("grammar").read_text("utf-8") == grammar(capsys)
-
-
 # --- Servers that do not ------------------------------------------------------------------------
 
 
@@ -119,12 +93,6 @@ def test_a_reply_that_does_not_keep_to_the_grammar(
     )
 
 
-def test_a_reply_cut_off_is_no_breach(generate: Callable[..., Any]) -> None:
-    code, server = generate([Says(REPLY[:60], finish="length"), REPLY], "--constrain", "llama.cpp")
-    assert code == 0
-    assert server.requests[1].texts[-1].startswith("Your reply was cut off")
-
-
 def test_a_server_that_refuses_it(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
     refusal = Failed(400, "Unrecognized request argument supplied: ebnf")
     code, _ = generate([refusal], "--constrain", "sglang")
@@ -148,18 +116,6 @@ def test_anthropic_takes_none(
     )
 
 
-def test_openscad_has_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("aidl_eval.openscad.OpenScad.missing", lambda _: None)
-    said = ["--base-url", "http://localhost:1/v1", "--model", "m", "--constrain", "vllm"]
-    assert main(["eval", "--variants", "openscad", *said]) == 2
-    assert capsys.readouterr().err == (
-        "error[E0950]: --constrain has no grammar for `openscad`\n  = hint: leave --constrain out\n"
-    )
-
-
 def test_an_unknown_kind_of_server(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["generate", "a plate", "--constrain", "ollama"])
@@ -168,21 +124,6 @@ def test_an_unknown_kind_of_server(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 # --- What the grammar lets through is found -------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ("", ""),
-        ("Two words, and `code`.\r\n", " \n"),
-        ("``two``\n", "\n"),
-        ("", "          "),
-    ],
-)
-def test_what_is_let_through_is_found(before: str, after: str) -> None:
-    text = f"{before}```aidl\n{PROGRAM}\n        ```{after}"
-    assert engine(True).takes(text)[2]
-    assert (find_program(text, ("aidl",), bool).program or "").strip() == PROGRAM.strip()
 
 
 def test_a_block_begins_on_a_line_of_its_own() -> None:

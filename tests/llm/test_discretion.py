@@ -12,7 +12,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure
+from aidl_lang.common.world import FileError, MemoryWorld, ReadFailure
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import Workspace
@@ -91,22 +91,6 @@ def test_a_tool_tells_nothing_of_other_files(project: Path, name: str, tool: str
     assert "E02" in made.text
 
 
-def test_what_stands_beside_a_program_can_be_used(project: Path) -> None:
-    program = 'import "bolts.aidl"\n' + BODY.replace("}\n", "    left = bolt(size: 6)\n}\n")
-    made = answer(Tools(Workspace(project)), "compile", {"program": program})
-    assert made.data["status"] == "solved"
-    assert made.data["findings"]["listed"] == []
-
-
-def test_files_that_are_given_are_the_readers_own(project: Path) -> None:
-    files = {"secret.aidl": "let size = 3\nlet other = nonsense\n"}
-    made = answer(
-        Tools(Workspace(project)), "check", {"program": _imports("secret.aidl", project), "files": files}
-    )
-    assert "secret.aidl line 2: there is no `nonsense` here" in made.text
-    assert "  2 | let other = nonsense" in made.text
-
-
 # --- What is told of a mistake ---------------------------------------------------------------------
 
 
@@ -125,20 +109,6 @@ def test_a_file_with_slips_is_refused_as_a_whole() -> None:
         '  1 | import "a.aidl"\n'
         "  hint: `aidl check a.aidl` tells what is wrong in it"
     )
-
-
-def test_a_mistake_in_an_import_is_told_by_its_place() -> None:
-    files = {"a.aidl": f"let b = 1\nlet c = {SECRET}\n"}
-    assert _told(f'import "a.aidl"\n{BODY}', files) == (
-        "error E0201: there is no `…` here (in `a.aidl`, line 2)\n  why: not declared"
-    )
-
-
-def test_remarks_on_imports_are_left_out() -> None:
-    files = {"a.aidl": f"solid t(n = 1) {{ {SECRET} = circle(radius: n); param unused = 3 }}\n"}
-    assert pipeline.check(SourceFile("a.aidl", files["a.aidl"]))
-    program = 'import "a.aidl"\nassembly m {\n    x = t()\n}\n'
-    assert _told(program, files) == ""
 
 
 def test_a_conflict_with_an_import_quotes_only_what_the_reader_wrote() -> None:
@@ -181,10 +151,3 @@ def test_what_is_wrong_elsewhere_is_told_where_the_reader_has_a_part_in_it() -> 
             hints=("give one up",),
         )
     ]
-
-
-def test_what_the_reader_and_the_library_wrote_is_quoted() -> None:
-    program = "solid s {\n    r = rectangle(widht: 60, height: 40)\n    q = nothing_known\n}\n"
-    source = SourceFile("part.aidl", program)
-    found = pipeline.compile(source, DiskWorld(".")).diagnostics
-    assert Reader.of(source).diagnostics(found) == found

@@ -7,13 +7,6 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.aidl import Aidl
 
-
-def floats(program: str) -> tuple[str, ...]:
-    model = pipeline.compile(SourceFile("part.aidl", program)).model
-    assert model is not None
-    return generation.floats(model)
-
-
 LAMP = """assembly lamp {
     solid foot { plate = rectangle(width: 60, height: 8) }
     solid pole { rod = rectangle(center: (0, 34), width: 6, height: 60) }
@@ -21,23 +14,6 @@ LAMP = """assembly lamp {
     CONSTRAIN
 }
 """
-
-
-def test_parts_without_a_constraint_float() -> None:
-    assert floats(LAMP.replace("CONSTRAIN", "")) == ("foot", "pole", "shade")
-    tied = LAMP.replace("CONSTRAIN", "constrain pole.above(foot, gap: 0)")
-    assert floats(tied) == ("shade",)
-
-
-def test_an_inequality_ties() -> None:
-    assert (
-        floats(LAMP.replace("CONSTRAIN", "constrain { foot.below(pole); shade.inside(pole, margin: -80) }"))
-        == ()
-    )
-
-
-def test_a_part_alone_does_not_float() -> None:
-    assert floats("solid plate { outline = rectangle(width: 60, height: 40) }") == ()
 
 
 def test_what_is_told_of_floating_parts() -> None:

@@ -17,7 +17,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.pages import guide
-from tests.llm.scripted import Cut, Failed, Limited, Says, Scripted
+from tests.llm.scripted import Says, Scripted
 
 PLATE = """solid plate {
     param width = 60 in 40..90
@@ -84,38 +84,6 @@ def test_a_program_that_is_right(generate: Callable[..., Any], capsys: pytest.Ca
     assert [m["role"] for m in transcript()["messages"]] == ["system", "user", "assistant"]
 
 
-def test_on_standard_output(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
-    code, _ = generate([block(PLATE)])
-    assert code == 0
-    assert capsys.readouterr().out == PLATE
-    assert list(Path().iterdir()) == []
-
-
-def test_a_busy_server_and_a_lost_connection_cost_no_attempt(generate: Callable[..., Any]) -> None:
-    steps = [Limited(), Failed(503), Cut("```aidl\nsolid"), block(PLATE)]
-    code, server = generate(steps, "-o", "plate.aidl", "--attempts", "1")
-    assert code == 0
-    assert len(server.requests) == 4
-    assert len(transcript()["attempts"]) == 1
-
-
-def test_a_server_that_stays_busy(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
-    code, _ = generate([Limited()] * 9, "-o", "plate.aidl")
-    assert code == 2
-    assert "error[E093" in capsys.readouterr().err
-    assert not Path("plate.aidl").exists()
-
-
-def test_a_server_that_fails_later_leaves_what_was_had(
-    generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, _ = generate([block(WRONG), Failed(401, "the key has expired")], "-o", "plate.aidl")
-    assert code == 1
-    assert "the key has expired" in capsys.readouterr().err
-    assert Path("plate.aidl").read_text("utf-8") == WRONG
-    assert transcript()["failure"]
-
-
 def test_a_reply_cut_off_at_the_limit(generate: Callable[..., Any]) -> None:
     cut = Says("I think long.\n```aidl\nsolid plate {\n    outline =", finish="length")
     code, server = generate([cut, block(PLATE)], "-o", "plate.aidl")
@@ -127,14 +95,6 @@ def test_a_reply_cut_off_at_the_limit(generate: Callable[..., Any]) -> None:
     first, second = transcript()["attempts"]
     assert (first["finish"], first["program"], first["verdict"]) == ("cut", None, None)
     assert second["verdict"]["ok"]
-
-
-def test_a_reply_without_a_program(generate: Callable[..., Any]) -> None:
-    code, server = generate(["What size shall it be?", "", block(PLATE)], "-o", "plate.aidl")
-    assert code == 0
-    asked = "Your reply holds no program. End it with the whole program in one ```aidl block."
-    assert said(server, 1) == said(server, 2) == asked
-    assert server.requests[2].texts[-2] == "(nothing)"
 
 
 def test_no_program_at_all(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,19 +133,6 @@ def test_a_wrong_program_mended_on_the_second_try(
     assert [a["verdict"]["stage"] for a in transcript()["attempts"]] == ["types", "done"]
 
 
-def test_what_a_fix_mends_needs_no_second_try(
-    generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]
-) -> None:
-    misspelt = PLATE.replace("radius: 5", "radus: 5").replace("outline.top_right", "outlin.top_right")
-    code, server = generate([block(misspelt)], "-o", "plate.aidl")
-    assert code == 0
-    assert Path("plate.aidl").read_text("utf-8") == PLATE
-    assert len(server.requests) == 1
-    error = capsys.readouterr().err
-    assert "attempt 1: valid, 2 fixed by machine" in error
-    assert "fixed: write `outline`" in error
-
-
 def test_fixes_are_told_with_what_is_left(generate: Callable[..., Any]) -> None:
     code, server = generate(
         [block(WRONG.replace("outline.top", "outlin.top")), block(PLATE)], "-o", "plate.aidl"
@@ -198,19 +145,6 @@ def test_fixes_are_told_with_what_is_left(generate: Callable[..., Any]) -> None:
         "  + 5 | constrain bore.rim.center == outline.top_right - (10, 10)\n\n"
         "The program is wrong: 1 error"
     )
-
-
-def test_one_that_never_gets_right(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
-    code, server = generate([block(WRONG)] * 9, "-o", "plate.aidl", "-o", "plate.svg")
-    assert code == 1
-    assert len(server.requests) == 5
-    assert Path("plate.aidl").read_text("utf-8") == WRONG
-    assert not Path("plate.svg").exists()
-    error = capsys.readouterr().err
-    assert "not valid after 5 attempts" in error
-    assert "error[E0203]" in error
-    assert error.endswith("the program is not valid, nothing drawn\n")
-    assert not transcript()["result"]["ok"]
 
 
 # --- What gets lost -------------------------------------------------------------------------------

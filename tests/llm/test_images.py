@@ -39,16 +39,6 @@ def test_small_pictures_are_sent_as_they_are(tmp_path: Path, kind: str, media: s
     assert (image.media_type, image.data) == (media, data)
 
 
-def test_giants_are_scaled_down(tmp_path: Path) -> None:
-    path = tmp_path / "giant.png"
-    picture = PIL.Image.new("RGBA", (5000, 1000), (255, 0, 0, 128))
-    path.write_bytes(encoded(picture, "PNG"))
-    image = read_image(str(path))
-    with PIL.Image.open(io.BytesIO(image.data)) as sent:
-        assert (sent.format, sent.size, sent.mode) == ("PNG", (2048, 410), "RGBA")
-        assert sent.getpixel((100, 100)) == (255, 0, 0, 128)
-
-
 def test_what_is_long_becomes_jpeg(tmp_path: Path) -> None:
     noise = numpy.random.default_rng(1).integers(0, 256, (1500, 1500, 3), dtype=numpy.uint8)
     path = tmp_path / "noise.png"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import builtins
-import socket
 from collections.abc import Callable
 from typing import Any
 
@@ -13,7 +12,7 @@ import pytest
 from aidl_lang.tools.cli import options
 from aidl_lang.tools.llm.messages import Finish, Image, Message, ProviderError, Sampling, Usage
 from aidl_lang.tools.llm.providers import Connection, Price, connect
-from tests.llm.scripted import Cut, Failed, Garbage, Hangs, Limited, Request, Says, Scripted, Step
+from tests.llm.scripted import Cut, Failed, Garbage, Hangs, Request, Says, Scripted, Step
 
 Start = Callable[..., Scripted]
 
@@ -100,13 +99,6 @@ def test_anthropic_has_no_seed(scripted: Start) -> None:
     assert server.requests == []
 
 
-def test_anthropic_refuses_empty_texts_so_none_is_sent(scripted: Start) -> None:
-    server = scripted(["yes"])
-    said = [*SAID, Message("assistant", " \n"), Message("user", "go on")]
-    server.provider("anthropic").reply(said, PLAIN, lambda piece: None)
-    assert server.requests[0].texts == ["the guide", "a telephone", "(nothing)", "go on"]
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("stream", [True, False])
 @pytest.mark.parametrize(
@@ -129,37 +121,11 @@ def test_refusal_of_openai_is_text(scripted: Start) -> None:
     assert (reply.text, reply.finish) == ("I will not", Finish.REFUSED)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_empty_reply_is_a_reply(scripted: Start, kind: str) -> None:
-    assert ask(scripted([Says("")]), kind).text == ""
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_usage_that_is_not_told_is_unknown(scripted: Start, kind: str) -> None:
-    assert ask(scripted([Says("yes", usage=None)]), kind).usage == Usage(None, None, None)
-
-
 def test_cost_is_what_the_server_says_else_by_the_price(scripted: Start) -> None:
     price = Price(2.5, 10)
     server = scripted([Says("a", cost=0.004), Says("b"), Says("c", usage=None)])
     costs = [ask(server, price=price).usage.cost for _ in range(3)]
     assert costs == [0.004, pytest.approx((100 * 2.5 + 10 * 10) / 1e6), None]
-
-
-def test_usage_that_is_nonsense_is_unknown(scripted: Start) -> None:
-    body = (
-        '{"choices": [{"message": {"content": "yes"}}], '
-        '"usage": {"prompt_tokens": -4, "completion_tokens": "many", "cost": NaN}}'
-    )
-    reply = ask(scripted([Garbage(body, "application/json")]))
-    assert (reply.text, reply.usage) == ("yes", Usage(None, None, None))
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_busy_and_failing_servers_are_asked_again(scripted: Start, kind: str) -> None:
-    server = scripted([Limited(), Failed(503), "at last"])
-    assert ask(server, kind).text == "at last"
-    assert len(server.requests) == 3
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -180,32 +146,6 @@ def test_reply_that_always_breaks_off(scripted: Start, kind: str) -> None:
         f"the reply of {kind}:test-model broke off, however often it was asked for",
         ("look at the server, and at what stands between you and it",),
     )
-
-
-REFUSALS = [
-    (Failed(401, "no such key"), "E0932", "the key was refused (401): no such key"),
-    (Failed(403, "not for you"), "E0932", "the key was refused (403): not for you"),
-    (Failed(402, "no credit"), "E0933", "the limit on requests is reached (402): no credit"),
-    (Limited(), "E0933", "the limit on requests is reached (429): too many requests"),
-    (Failed(404, "what?"), "E0934", "there is no model `test-model` (404): what?"),
-    (Failed(400, "a \x1b[2J\nb"), "E0935", "the request was refused (400): a [2J b"),
-    (Failed(413, "x" * 400), "E0935", f"the request was refused (413): {'x' * 299}…"),
-]
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(("step", "code", "message"), REFUSALS)
-def test_refusals(scripted: Start, kind: str, step: Step, code: str, message: str) -> None:
-    assert failure(scripted([step] * 3), kind)[:2] == (code, message)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_server_that_keeps_failing(scripted: Start, kind: str) -> None:
-    server = scripted([Failed(500)] * 3)
-    code, message, hints = failure(server, kind)
-    assert (code, hints) == ("E0936", ("try again later",))
-    assert message.endswith(" fails: the server is out of order")
-    assert len(server.requests) == 3
 
 
 def test_models_are_named_when_one_is_not_there(scripted: Start) -> None:
@@ -265,21 +205,6 @@ def test_what_is_not_the_protocol(scripted: Start, kind: str, garbage: Garbage) 
     assert hints == ("look at the base URL, and at what stands between you and the server",)
 
 
-@pytest.mark.parametrize(
-    "odd",
-    [
-        '{"choices": [null]}',
-        '{"choices": [{"delta": 3}]}',
-        '{"choices": [{"delta": {"content": {"a": 1}}}], "usage": [], "model": 4}',
-        '{"choices": []}',
-    ],
-)
-def test_odd_events_are_passed_over(scripted: Start, odd: str) -> None:
-    end = '{"choices": [{"delta": {"content": "yes"}, "finish_reason": "stop"}]}'
-    reply = ask(scripted([Garbage(f"data: {odd}\n\ndata: {end}\n\n", "text/event-stream")]))
-    assert (reply.text, reply.model) == ("yes", "test-model")
-
-
 def test_parts_that_are_reasoning_are_not_the_text(scripted: Start) -> None:
     parts = '[{"type": "thinking", "thinking": "hm", "text": "hm"}, {"type": "text", "text": "yes"}]'
     body = f'{{"choices": [{{"message": {{"content": {parts}}}}}]}}'
@@ -318,47 +243,11 @@ def test_silence_is_not_asked_again(scripted: Start, kind: str, text: str) -> No
     assert len(server.requests) == 1
 
 
-def test_slow_reply_is_no_silence(scripted: Start) -> None:
-    server = scripted([Says("one word after another", size=4, delay=0.2)])
-    assert ask(server, timeout=1).text == "one word after another"
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_endless_reply_is_stopped(scripted: Start, kind: str) -> None:
-    server = scripted([Says("x" * 1_000_001, size=100_000)])
-    assert failure(server, kind) == (
-        "E0938",
-        "the reply has more than 1,000,000 characters",
-        ("the model repeats itself: set --max-tokens, or take another model",),
-    )
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_long_waits_are_not_waited_for(kind: str, scripted: Start) -> None:
     server = scripted([Failed(429, "come back later", wait=("retry-after", "3600")), "too late"])
     assert failure(server, kind)[0] == "E0933"
     assert len(server.requests) == 1
-
-
-def test_nobody_listens() -> None:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    provider = connect(Connection("openai", "m", f"http://127.0.0.1:{port}/v1", retries=0), {})
-    with pytest.raises(ProviderError) as caught:
-        provider.reply(SAID, PLAIN, lambda piece: None)
-    assert caught.value.diagnostic.code == "E0936"
-    assert caught.value.diagnostic.message == (
-        f"there is no connection to http://127.0.0.1:{port}/v1: [Errno 111] Connection refused"
-    )
-
-
-def test_listener_that_fails_is_not_taken_for_the_server(scripted: Start) -> None:
-    def hear(piece: str) -> None:
-        raise ValueError("the terminal is gone")
-
-    with pytest.raises(ValueError, match="the terminal is gone"):
-        scripted(["yes"]).provider().reply(SAID, PLAIN, hear)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -386,15 +275,6 @@ def test_what_a_server_refuses_is_left_out_and_remembered(scripted: Start) -> No
 def test_the_one_model_of_a_server_is_taken(scripted: Start) -> None:
     server = scripted(["yes"], models=["only-this"])
     assert server.provider(model="").name == "openai:only-this"
-
-
-def test_several_models_are_listed(scripted: Start) -> None:
-    server = scripted([], models=["b", "a"])
-    with pytest.raises(ProviderError) as caught:
-        server.provider(model="")
-    told = caught.value.diagnostic
-    assert (told.code, told.message) == ("E0930", "no model is named")
-    assert told.hints == ("say --model NAME, or set AIDL_MODEL", f"{server.base_url} has a, b")
 
 
 def test_credentials_in_an_address_are_not_told(scripted: Start) -> None:
@@ -460,18 +340,6 @@ def test_choices_that_are_wrong(
     with pytest.raises(ProviderError) as caught:
         connect(said, environment)
     assert (caught.value.diagnostic.code, caught.value.diagnostic.message) == (code, message)
-
-
-def test_all_ways_are_told_when_nothing_is_said() -> None:
-    with pytest.raises(ProviderError) as caught:
-        connect(Connection(), {})
-    assert caught.value.diagnostic.hints == (
-        "OPENAI_API_KEY=… or ANTHROPIC_API_KEY=… in the environment, and --model NAME",
-        "--base-url http://localhost:11434/v1 --model NAME asks a server of your own "
-        "(Ollama, vLLM, llama.cpp)",
-        "--provider 'exec:COMMAND' asks a command",
-        "AIDL_PROVIDER, AIDL_MODEL and OPENAI_BASE_URL say the same in the environment",
-    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

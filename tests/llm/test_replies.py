@@ -48,9 +48,3 @@ def test_the_program_is_found(reply: str) -> None:
 )
 def test_what_is_no_program_is_not_taken_for_one(reply: str) -> None:
     assert found(reply) is None
-
-
-def test_a_block_that_is_not_closed_is_noticed() -> None:
-    reply = f"```aidl\n{PROGRAM}```\nand larger:\n```aidl\nsolid plate {{"
-    assert find_program(reply, ("aidl",), Aidl().reads).is_open
-    assert not find_program(f"```aidl\n{PROGRAM}```", ("aidl",), Aidl().reads).is_open

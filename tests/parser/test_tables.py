@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -17,6 +16,7 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import tables
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import tokenize
+from tests.amount import TRIES_ALL
 from tests.grammars.engines import all_programs
 
 GRAMMAR = resource("grammar/aidl.lark").read_text(encoding="utf-8")
@@ -34,14 +34,10 @@ def test_what_was_kept_reads_as_what_is_built() -> None:
     built = Lark(GRAMMAR, parser="lalr", start="module", maybe_placeholders=False)
     programs = [text for text in all_programs().values() if not parse(SourceFile("", text)).diagnostics]
     assert len(programs) > 500
-    for text in programs:
+    for text in programs[:: 1 if TRIES_ALL else 5]:
         automaton = Automaton()
         assert all(map(automaton.feed, tokenize(SourceFile("", text)).tokens))
         assert automaton.tree == built.parse(text)
-
-
-def test_they_are_plain_data() -> None:
-    assert json.loads(tables.built())["data"]["rules"]
 
 
 def test_a_checkout_has_the_tables_of_its_grammar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,6 @@ import ezdxf
 import ezdxf.bbox
 import pytest
 
-from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.files import Reads
 from aidl_lang.common.resources import resource
@@ -24,7 +23,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.host import Host
-from tests.preview.talking import CHANGED, TEXT, WORDS, serving, talking, write_bytes
+from tests.preview.talking import CHANGED, TEXT, serving, talking
 
 
 @pytest.fixture
@@ -32,19 +31,6 @@ def file(tmp_path: Path) -> Path:
     path = tmp_path / "part.aidl"
     path.write_text(TEXT, "utf-8")
     return path
-
-
-@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_an_edit_changes_nothing_else(file: Path, mark: bytes, end: str) -> None:
-    text = "// 😀 é\n" + TEXT
-    file.write_bytes(mark + text.replace("\n", end).encode())
-    with serving(file) as client, talking(client, file) as page:
-        page.preview()
-        assert page.answer("aidl/setKnob", path="width", value=72.5) == {"applied": True}
-        assert file.read_bytes() == mark + text.replace("60mm", "72.5mm").replace("\n", end).encode()
-        after = page.told(WORDS, version=2)["text"]
-    assert pipeline.knobs(SourceFile("p", after))[0][0].value == 72.5
 
 
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
@@ -147,16 +133,6 @@ def test_dragging_shows_and_writes_the_same(file: Path) -> None:
         )
 
 
-@pytest.mark.parametrize(
-    ("name", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("dxf", b"  0"), ("pdf", b"%PDF")]
-)
-def test_exports_are_the_files_of_the_command(file: Path, name: str, start: bytes) -> None:
-    with serving(file) as client, talking(client, file) as page:
-        made = page.answer("aidl/export", format=name, show=["names", "dimensions"])
-    assert made["name"] == f"part.{name}"
-    assert base64.b64decode(made["data"]).startswith(start)
-
-
 def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
     file.write_text(
         "assembly two { @thickness(3mm) solid a { r = square(size: 50) }\n"
@@ -188,20 +164,6 @@ def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
         ):
             refused = page.answer("aidl/export", format="dxf", options=given)
             assert why in refused["error"]["message"]
-
-
-def test_what_cannot_be_exported_says_why(file: Path) -> None:
-    with serving(file) as client, talking(client, file) as page:
-        assert "thick" in page.answer("aidl/export", format="stl")["error"]["message"]
-
-
-def test_files_are_written_in_one_step_each(file: Path) -> None:
-    files.write([(file, b"one")], write_bytes)
-    assert file.read_bytes() == b"one"
-    assert files.text_of(file) == "one"
-    file.unlink()
-    with pytest.raises(CannotError, match="cannot be read"):
-        files.text_of(file)
 
 
 @pytest.mark.parametrize("order", ["aidl/setKnob", "aidl/save", "aidl/undo", "aidl/takeFile", None])

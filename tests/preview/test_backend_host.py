@@ -60,33 +60,10 @@ def test_of_attempts_only_the_newest_of_each_page_is_made(desk: Desk) -> None:
     assert codes == dict.fromkeys(left_out[:-1], -32800)
 
 
-def test_a_page_is_answered_by_its_own_numbers(desk: Desk) -> None:
-    a, b = desk.join(), desk.join()
-    numbers = desk.ask(a, "aidl/export", "a"), desk.ask(b, "aidl/export", "b")
-    desk.answer("b")
-    desk.answer("a")
-    assert [said(page) for page in (a, b)] == [
-        [{"jsonrpc": "2.0", "id": number, "result": name}] for number, name in zip(numbers, "ab", strict=True)
-    ]
-    viewers = {m["params"]["viewer"] for m in desk.received}
-    assert viewers == {a.name, b.name}
-
-
 def test_a_page_cannot_speak_for_another(desk: Desk) -> None:
     a, b = desk.join(), desk.join()
     desk.hear(a, json.dumps({"id": 1, "method": "aidl/preview", "params": {"viewer": b.name}}))
     assert [m["params"]["viewer"] for m in desk.received] == [a.name]
-
-
-def test_orders_of_a_page_are_carried_out_one_after_the_other(desk: Desk) -> None:
-    page = desk.join()
-    for name in ("one", "two", "three"):
-        desk.ask(page, "aidl/setKnob", name)
-    desk.ask(page, "aidl/try", "attempt")
-    assert desk.asked == ["one", "attempt"]
-    desk.answer("one")
-    desk.answer("two")
-    assert desk.asked == ["one", "attempt", "two", "three"]
 
 
 def test_who_goes_on_ordering_holds_up_nobody(desk: Desk) -> None:
@@ -138,14 +115,3 @@ def test_of_a_page_that_went_the_edits_are_carried_out(desk: Desk) -> None:
     asked = [name for name in desk.asked if name.startswith(("edit", "export", "late"))]
     assert asked == edits
     assert desk.pages == []
-
-
-def test_pictures_that_were_not_taken_are_replaced(desk: Desk) -> None:
-    a, b = desk.join(), desk.join()
-    for version in range(3):
-        for page in (a, b):
-            params = {"viewer": page.name, "version": version}
-            desk._heard({"method": "aidl/previewChanged", "params": params})
-    assert [[m["params"] for m in said(page)] for page in (a, b)] == [
-        [{"viewer": page.name, "version": 2}] for page in (a, b)
-    ]

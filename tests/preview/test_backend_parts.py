@@ -10,9 +10,10 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.agents.workspace import RefusalError
-from aidl_lang.tools.ide.preview import preview, set_knob, tried
+from aidl_lang.tools.ide.preview import preview, set_knob
 from aidl_lang.tools.ide.preview.elements import Slider, Way
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
+from tests.amount import TRIES_ALL
 from tests.preview.views import EXAMPLES, view_of
 
 KNOBS = """
@@ -31,25 +32,6 @@ solid a { body = rectangle(width: width, height: half)
 
 def knob(view: View, path: str) -> Slider:
     return next(k for k in preview(view).knobs if k.path == path)
-
-
-def test_sliders_tell_all_of_a_param() -> None:
-    view = view_of(KNOBS)
-    assert [(k.path, k.kind, k.value, k.unit, k.editable) for k in preview(view).knobs] == [
-        ("width", "number", 160.0, "mm", True),
-        ("teeth", "number", 15.0, "", True),
-        ("lean", "number", -5.5, "deg", True),
-        ("bolt", "choice", "m5", "", True),
-        ("marked", "truth", True, "", True),
-        ("label", "text", "x", "", True),
-        ("half", "number", 80.0, "mm", False),
-    ]
-    teeth, lean = knob(view, "teeth"), knob(view, "lean")
-    assert (teeth.low, teeth.high, teeth.step, teeth.doc) == (12, 24, 1, "Teeth of the wheel.")
-    assert (lean.step, knob(view, "width").step) == (0.5, None)
-    spans = {k.path: k.span.text for k in preview(view).knobs if k.span is not None}
-    assert spans["lean"] == "-5.5deg"
-    assert spans["bolt"] == '"m5"'
 
 
 @pytest.mark.parametrize(
@@ -93,54 +75,6 @@ def test_what_does_not_fit_is_refused(path: str, value: float | str | bool) -> N
         set_knob(view_of(KNOBS), path, value)
 
 
-def test_trying_a_value_is_writing_it() -> None:
-    view = view_of(KNOBS)
-    attempt = tried(view, {"width": 200, "teeth": 20})
-    made = preview(attempt, tried=True)
-    written = preview(view_of(KNOBS.replace("160mm", "200mm").replace("= 15", "= 20")))
-    assert (made.svg, made.box, made.tried) == (written.svg, written.box, True)
-    assert [k.value for k in made.knobs] == [k.value for k in written.knobs]
-    assert preview(tried(attempt, {"width": 160, "teeth": 15})).svg == preview(view).svg
-
-
-@pytest.mark.parametrize("values", [{"width": 5000}, {"width": "wide"}, {"nothing": 1}, {"width": math.nan}])
-def test_a_value_that_does_not_fit_shows_what_was(values: dict[str, float | str | bool]) -> None:
-    view = view_of(KNOBS)
-    made = preview(tried(view, values), tried=True)
-    assert made.svg == preview(view).svg
-    assert any(p.severity == "error" for p in made.problems) or made.stale is False
-
-
-def test_problems_name_elements_and_points() -> None:
-    view = view_of(
-        """
-        solid a {
-            one = line((0, 0), (10, 0))
-            two = line((10, 0), (10, 10))
-            three = line((10, 10), (1, 2))
-        }
-        """
-    )
-    made = preview(view)
-    (problem,) = [p for p in made.problems if p.code == "W0702"]
-    assert {made.elements[k].path for k in problem.elements} == {"a.one", "a.three"}
-    assert set(problem.points) == {(0, 0), (1, 2)}
-    assert [fix.title for fix in problem.fixes] == ["join the two ends"]
-
-
-def test_of_a_loop_the_turn_that_is_meant() -> None:
-    view = view_of(
-        """
-        assembly a {
-            for i in 0..2 { solid part[i] at (i * 10, 0) { body = circle(radius: if i == 2 then 2 else 5) } }
-        }
-        """
-    )
-    made = preview(view)
-    lonely = [p for p in made.problems if p.code == "W0705"]
-    assert [[made.elements[k].path for k in p.elements] for p in lonely] == [["a.part[2]"]]
-
-
 def test_conflicts_name_what_they_relate() -> None:
     view = view_of(
         """
@@ -176,22 +110,6 @@ def ways(text: str) -> dict[str, list[Way]]:
     for way in made.motions:
         found.setdefault(" ".join(made.elements[k].path for k in way.elements), []).append(way)
     return found
-
-
-def test_what_slides_has_an_arrow_that_way() -> None:
-    ((way,),) = ways(
-        """
-        assembly a {
-            solid rail { body = rectangle(center: fixed((0, 0)), width: 100, height: 10) }
-            solid car { body = rectangle(center: (20, 10), width: 20, height: 10) }
-            constrain { rail.center == (0, 0); car.bottom == rail.top }
-        }
-        """
-    ).values()
-    (arrow,) = way.arrows
-    assert arrow.start == pytest.approx((20, 10))
-    assert arrow.end == pytest.approx((20 + 0.14 * 100, 10))
-    assert not way.turns
 
 
 def test_what_slides_along_a_slope_has_an_arrow_along_it() -> None:
@@ -240,17 +158,8 @@ def test_what_turns_has_an_arc_about_what_holds_it() -> None:
     assert turn.start < 30 < turn.start + turn.sweep or turn.start + turn.sweep < 30 < turn.start
 
 
-def test_what_grows_has_arrows_outwards() -> None:
-    (way,) = ways(SEVERAL)["d.plate"]
-    assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in way.arrows} == {(20, True), (-20, False)}
-    assert all(a.end[1] == pytest.approx(a.start[1], abs=1e-6) for a in way.arrows)
-    assert way.words == "change its width"
-    (round_,) = ways(SEVERAL)["d.pin.rim"]
-    assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in round_.arrows} == {(12, True), (6, False)}
-
-
 def test_the_examples_have_arrows_in_finite_places() -> None:
-    for path in EXAMPLES:
+    for path in EXAMPLES[:: 1 if TRIES_ALL else 3]:
         view = run(look(path, path.read_text("utf-8"), Workspace().world(path)))
         assert view.outcome is not None
         assert view.outcome.model is not None
@@ -262,7 +171,3 @@ def test_the_examples_have_arrows_in_finite_places() -> None:
             numbers += [n for t in way.turns for n in (*t.center, t.radius, t.start, t.sweep)]
             assert all(map(math.isfinite, numbers))
             assert way.arrows or way.turns
-
-
-def test_what_holds_still_has_no_motion() -> None:
-    assert not ways("solid a { body = circle(center: (0, 0), radius: 5); constrain body.center == (0, 0) }")

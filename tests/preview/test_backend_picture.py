@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from pathlib import Path
@@ -12,8 +11,7 @@ from lxml import etree
 from shapely.geometry import Polygon
 from svgelements import Path as SvgPath
 
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
-from aidl_lang.tools.ide.preview import LAYERS, Writer, elements_at, preview, svg_of
+from aidl_lang.tools.ide.preview import LAYERS, elements_at, preview, svg_of
 from aidl_lang.tools.ide.preview.elements import elements
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.compiled import LIGHTER
@@ -38,12 +36,6 @@ def shapes(root: etree._Element, number: int, kind: str) -> list[SvgPath]:
     return [SvgPath(path.get("d")) for path in found if path.get("class") == kind]
 
 
-def all_in(structure: SolvedStructure) -> list[SolvedStructure | SolvedGeometry]:
-    """Structures and their named geometry."""
-    below = [each for child in structure.structures for each in all_in(child)]
-    return [structure, *structure.drawn, *below]
-
-
 def polygon_area(path: SvgPath) -> float:
     """By the even-odd rule, of polygons with many corners."""
     total = Polygon()
@@ -52,17 +44,6 @@ def polygon_area(path: SvgPath) -> float:
         ring = Polygon([(p.x, p.y) for p in points]).buffer(0)
         total = total.symmetric_difference(ring)
     return float(total.area)
-
-
-def test_all_of_a_model_is_an_element(example: View) -> None:
-    assert example.outcome is not None
-    assert example.outcome.model is not None
-    of_path = {element.path: element for element in elements(example).values}
-    for thing in all_in(example.outcome.model.root):
-        element = of_path[thing.path]
-        is_structure = isinstance(thing, SolvedStructure)
-        assert element.kind == ("structure" if is_structure else "geometry")
-        assert element.type == (thing.kind if is_structure else thing.type)
 
 
 def test_elements_are_written_where_they_say(example: View) -> None:
@@ -100,29 +81,6 @@ def test_every_element_that_is_drawn_can_be_pointed_at(example: View) -> None:
         assert carried & {number, *inside[number]}
 
 
-def test_shapes_lie_where_the_model_has_them(example: View) -> None:
-    root = svg(example)
-    for number, drawn in enumerate(elements(example).drawn):
-        curves = list(drawn.model.curves()) if isinstance(drawn.model, SolvedGeometry) else []
-        paths = shapes(root, number, "hit")
-        if not curves or not paths:
-            continue
-        boxes = [SvgPath(path).bbox() for path in paths]
-        sampled = [p for curve in curves for p in ends_and_middles(curve)]
-        left, low, right, high = boxes[0]
-        for x, y in sampled:
-            assert left - 1e-4 <= x <= right + 1e-4
-            assert low - 1e-4 <= -y <= high + 1e-4
-
-
-def ends_and_middles(curve: object) -> list[tuple[float, float]]:
-    """Points of a curve by its own numbers."""
-    center, radius = getattr(curve, "center", None), getattr(curve, "radius", None)
-    if center is not None and radius is not None and not hasattr(curve, "start"):
-        return [(center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)) for a in range(6)]
-    return [getattr(curve, end) for end in ("start", "end", "p0", "p3") if hasattr(curve, end)]
-
-
 def test_areas_are_those_of_the_regions() -> None:
     view = view_of(
         """
@@ -152,66 +110,12 @@ def test_areas_are_those_of_the_regions() -> None:
         assert polygon_area(shape) == pytest.approx(area, rel=2e-3)
 
 
-def test_what_lies_on_top_comes_later() -> None:
-    view = view_of(
-        """
-        assembly a {
-            solid under { body = rectangle(center: (0, 0), width: 60, height: 40)
-                          hole eye { rim = circle(center: (0, 0), radius: 5) } }
-            solid over { body = rectangle(center: (0, 0), width: 20, height: 20) }
-        }
-        """
-    )
-    order = [int(node.get("data-element")) for node in svg(view).iterfind(f".//{SVG}path[@data-element]")]
-    places = {e.path: order.index(k) for k, e in enumerate(elements(view).values) if k in order}
-    assert places["a.under"] < places["a.under.eye"] < places["a.under.body.left"] < places["a.over"]
-
-
-@pytest.mark.parametrize("layer", LAYERS)
-def test_layers_are_drawn(layer: str) -> None:
-    view = view_of("solid a { body = rectangle(width: 20, height: 10) }\nsolid b { p = point((3, 4)) }")
-    assert len(list(svg(view, (layer,)).iter())) >= len(list(svg(view).iter()))
-    assert preview(view, ["no such layer", layer]).svg == preview(view, [layer]).svg
-
-
 def test_library_parts_lead_to_the_call() -> None:
     view = view_of('solid s { body = rectangle(width: 90, height: 90)\n mount = motor_mount("nema17") }')
     for element in elements(view).values:
         assert element.span is not None
         if element.path.startswith("s.mount"):
             assert element.span.text == 'mount = motor_mount("nema17")'
-
-
-def test_elements_of_an_imported_file_are_there() -> None:
-    other = "solid bolt(d = 5mm) { solid head { rim = circle(diameter: 2 * d) } }"
-    view = view_of(
-        'import bolt from "other.aidl"\nassembly a { b = bolt(d: 6mm) }', files={"other.aidl": other}
-    )
-    made = Writer(view).preview(preview(view), 1)
-    uris = {e["path"]: e["uri"] for e in made["elements"]}
-    assert uris["a"] == "file:///project/part.aidl"
-    (inner,) = [path for path in uris if path.endswith("rim")]
-    assert uris[inner] == "file:///project/other.aidl"
-
-
-ASTRAL = (
-    "/* 🅰 😀 */ solid a {\r\n\t/* 🚀🚀 */ body = circle(radius: 5) // é\r\n"
-    '\t@note("😀") hole b { rim = circle(radius: 2) } }\r\n'
-)
-
-
-def test_ranges_count_utf_16() -> None:
-    view = view_of(ASTRAL)
-    made = Writer(view).preview(preview(view), 7)
-    lines = [line.encode("utf-16-le") for line in re.split("\r\n|\n|\r", ASTRAL)]
-    for element, data in zip(elements(view).values, made["elements"], strict=True):
-        assert element.span is not None
-        start, end = data["range"]["start"], data["range"]["end"]
-        rows = lines[start["line"] : end["line"] + 1]
-        rows[-1] = rows[-1][: 2 * end["character"]]
-        rows[0] = rows[0][2 * start["character"] :]
-        assert "\r\n".join(row.decode("utf-16-le") for row in rows) == element.span.text
-    assert json.loads(json.dumps(made, allow_nan=False))["version"] == 7
 
 
 def test_a_broken_text_shows_the_last_picture() -> None:
@@ -232,13 +136,6 @@ def test_a_broken_text_shows_the_last_picture() -> None:
     assert preview(view_of(text, view)).stale is False
 
 
-@pytest.mark.parametrize("text", ["", "\ufeff", "solid", "solid a { body = circle(radius: ", "\0", "🅰" * 50])
-def test_what_never_drew_has_no_picture(text: str) -> None:
-    made = preview(view_of(text))
-    assert (made.svg, made.stale) == (None, False)
-    assert made.problems or not text.strip("\ufeff")
-
-
 def test_hostile_texts_stay_texts() -> None:
     evil = "<script>alert(1)</script>\"'&]]>"
     quoted = evil.replace("\\", "\\\\").replace('"', '\\"')
@@ -251,8 +148,3 @@ def test_hostile_texts_stay_texts() -> None:
         *("svg", "defs", "g", "path", "text", "rect", "circle", "clipPath", "line", "tspan")
     }
     assert [k.value for k in preview(view).knobs] == [evil]
-
-
-def test_a_program_that_solves_and_fails_an_assertion_is_wrong() -> None:
-    text = "solid s {{ r = rectangle(width: 30, height: 20) assert r.width > {} }}"
-    assert [preview(view_of(text.format(width))).status for width in (20, 40)] == ["solved", "wrong"]

@@ -169,31 +169,6 @@ def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: 
         assert after["handles"] or page.told(CHANGED, version=2)["handles"]
 
 
-def test_a_save_elsewhere_is_seen(client: TestClient, talking: Any, file: Path) -> None:
-    with talking(client) as page, talking(client) as other:
-        good = [each.preview()["svg"] for each in (page, other)]
-        file.write_text(TEXT.replace("height: 20", "height: 2 +"), "utf-8")
-        for each in (page, other):
-            stale = each.told(CHANGED, stale=True)
-            assert stale["svg"] == good[0]
-            assert stale["problems"][0]["severity"] == "error"
-        file.write_text(TEXT, "utf-8")
-        assert page.told(CHANGED, stale=False)["status"] == "solved"
-
-
-def test_a_save_of_an_imported_file_is_seen(client: TestClient, talking: Any, file: Path) -> None:
-    other = file.with_name("other.aidl")
-    other.write_text("solid bolt(n = 1) { rim = circle(radius: n * 10) }\n", "utf-8")
-    file.write_text('import bolt from "other.aidl"\nassembly a { b = bolt() }\n', "utf-8")
-    with talking(client) as page:
-        while (made := page.preview())["box"][2] != pytest.approx(10):
-            pass
-        other.write_text("solid bolt(n = 1) { rim = circle(radius: n * 15) }\n", "utf-8")
-        while (made := page.told(CHANGED))["box"][2] != pytest.approx(15):
-            pass
-        assert made["status"] == "solved"
-
-
 def test_a_save_before_the_files_are_watched_is_seen(
     file: Path, talking: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -212,19 +187,6 @@ def test_a_save_before_the_files_are_watched_is_seen(
             pass
 
 
-def test_each_page_has_its_own_layers(client: TestClient, talking: Any, file: Path) -> None:
-    with talking(client) as page, talking(client) as other:
-        plain = other.preview()["svg"]
-        named = page.preview(("names", "no such layer"))["svg"]
-        assert "show-names" in named
-        assert "show-names" not in plain
-        assert "show-names" in page.answer("aidl/try", knobs={"width": 90})["svg"]
-        assert "show-names" not in other.answer("aidl/try", knobs={"width": 90})["svg"]
-        file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
-        assert "show-names" in page.told(CHANGED, version=2)["svg"]
-        assert "show-names" not in other.told(CHANGED, version=2)["svg"]
-
-
 def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: Any, file: Path) -> None:
     lines = ("one = line((0, 0), (9, 0))", "two = line((9, 0), (5, 5))", "three = line((5, 5), (1, 2))")
     file.write_text(f"solid a {{ {'; '.join(lines)} }}\n", "utf-8")
@@ -239,15 +201,6 @@ def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: 
         page.told(CHANGED, version=made["version"] + 1)
         assert "constrain one.start == three.end" in file.read_text("utf-8")
         assert page.answer("aidl/fix", **of, fix=0)["error"]["message"] == "the text has changed"
-
-
-def test_what_cannot_be_done_is_told(client: TestClient, talking: Any) -> None:
-    with talking(client) as page:
-        page.preview()
-        assert "range" in page.answer("aidl/setKnob", path="width", value=5000)["reason"]
-        assert page.answer("aidl/try", drag={"id": "nothing", "to": [1, 2]})["error"]["message"]
-        assert "format" in page.answer("aidl/export", format="exe")["error"]["message"]
-        assert page.answer("aidl/export", format="svg")["name"] == "part.svg"
 
 
 @pytest.mark.parametrize("to", [(1e300, 0.0), (float("nan"), 0.0), (float("inf"), 1.0)])
@@ -345,13 +298,6 @@ def test_only_so_many_pages(client: TestClient, talking: Any) -> None:
         each.__exit__(None, None, None)
 
 
-def test_many_attempts_end_with_the_last(client: TestClient, talking: Any) -> None:
-    with talking(client) as page:
-        page.preview()
-        *_, last = [page.ask("aidl/try", knobs={"width": width}) for width in range(20, 101)]
-        assert page.answered(last)["box"][2] == pytest.approx(50)
-
-
 def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(
     client: TestClient, talking: Any
 ) -> None:
@@ -370,16 +316,6 @@ def _said(flood: Talk) -> list[dict[str, Any]]:
     while not any("more than can be done at once" in str(each) for each in flood.heard):
         flood.heard.append(flood._next())
     return flood.heard
-
-
-def test_a_file_that_is_gone_for_a_moment(client: TestClient, talking: Any, file: Path) -> None:
-    with talking(client) as page:
-        page.preview()
-        file.unlink()
-        assert "cannot be read" in page.told(_ERROR)["message"]
-        file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
-        while page.told(CHANGED)["box"][2] != pytest.approx(20):
-            pass
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"\xc3"])

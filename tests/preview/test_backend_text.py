@@ -10,9 +10,8 @@ import pytest
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.preview.files import MOST_STEPS, PAUSE, Manuscript
-from aidl_lang.tools.preview.host import typed
-from tests.preview.talking import CHANGED, TEXT, WORDS, Talk, serving, talking, write_bytes
+from aidl_lang.tools.preview.files import PAUSE, Manuscript
+from tests.preview.talking import TEXT, WORDS, Talk, serving, talking, write_bytes
 
 SET = {"applied": True}
 
@@ -46,21 +45,6 @@ def change(page: Talk, version: int, start: tuple[int, int], end: tuple[int, int
 # --- Pages
 
 
-def test_what_is_typed_is_drawn_and_saved_when_it_is_asked_for(file: Path) -> None:
-    with serving(file) as client, talking(client, file) as page, talking(client, file) as other:
-        page.preview()
-        assert page.text()["version"] == other.text()["version"] == 1
-        assert change(page, 1, (0, 14), (0, 16), "80") == {"applied": True, "version": 2}
-        state = page.told(WORDS, version=2)
-        assert (state["text"], state["saved"], state["undo"]) == (None, False, "Typing")
-        assert page.told(CHANGED, version=2)["box"][2] == pytest.approx(40)
-        assert file.read_text("utf-8") == TEXT
-        assert other.told(WORDS, version=2)["text"] == TEXT.replace("60mm", "80mm")
-        assert page.answer("aidl/save", anyway=False)["applied"]
-        assert file.read_text("utf-8") == TEXT.replace("60mm", "80mm")
-        assert page.told(WORDS)["saved"]
-
-
 def test_a_page_that_is_behind_is_told_so(file: Path) -> None:
     with serving(file) as client, talking(client, file) as page:
         page.preview()
@@ -68,21 +52,6 @@ def test_a_page_that_is_behind_is_told_so(file: Path) -> None:
         late = change(page, 1, (0, 0), (0, 0), "x")
         assert late == {"applied": False, "reason": "the text has changed meanwhile"}
         assert file.read_text("utf-8") == TEXT.replace("60mm", "70mm")
-
-
-def test_undo_and_redo_of_what_was_set(file: Path) -> None:
-    with serving(file) as client, talking(client, file) as page:
-        page.preview()
-        for value in (70, 80):
-            assert page.answer("aidl/setKnob", path="width", value=value) == SET
-        for method, width in (("undo", 70), ("undo", 60), ("redo", 70), ("redo", 80), ("undo", 70)):
-            assert page.answer(f"aidl/{method}")["applied"]
-            assert file.read_text("utf-8") == TEXT.replace("60mm", f"{width}mm")
-        while page.preview()["box"][2] != pytest.approx(35):
-            pass
-        assert page.answer("aidl/setKnob", path="width", value=90) == SET
-        nothing = page.answer("aidl/redo")
-        assert nothing == {"applied": False, "reason": "there is nothing to redo"}
 
 
 def test_undo_does_not_overwrite_what_others_wrote(file: Path) -> None:
@@ -187,27 +156,6 @@ def test_what_is_typed_in_a_go_is_one_step(text: Manuscript) -> None:
     assert text.text == f"{TEXT}0123"
 
 
-def test_steps_are_bounded(text: Manuscript) -> None:
-    for k in range(MOST_STEPS + 5):
-        put(text, TEXT.split(" ")[0] if k == 0 else "param", "param", f"{k}")
-    count = 0
-    while text.undoes:
-        text.undo()
-        count += 1
-    assert count == MOST_STEPS
-
-
-def test_what_cannot_be_written_changes_nothing(file: Path) -> None:
-    def refuse(path: Path, data: bytes) -> None:
-        raise OSError(28, "No space left on device")
-
-    text = Manuscript(file, refuse)
-    text.read()
-    with pytest.raises(CannotError, match="no space left"):
-        put(text, "60mm", "70mm")
-    assert (text.text, text.version, text.undoes) == (TEXT, 1, None)
-
-
 def test_a_write_between_two_looks_is_seen(text: Manuscript, file: Path) -> None:
     theirs = "// theirs\n" + TEXT
     file.write_text(theirs, "utf-8")
@@ -223,13 +171,3 @@ def test_what_is_not_saved_is_kept_beside_the_file(text: Manuscript, file: Path)
     assert kept == file.with_name("part.aidl.unsaved")
     assert kept.read_text("utf-8") == "// mine\n"
     assert file.read_text("utf-8") == TEXT
-
-
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_places_are_utf_16_and_line_ends_stay(end: str) -> None:
-    before = f"// 😀é{end}one{end}two{end}"
-    at = [
-        {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 6}, "text": "e"},
-        {"start": {"line": 1, "character": 3}, "end": {"line": 2, "character": 1}, "text": "\nT\ud800"},
-    ]
-    assert typed(before, at) == f"// 😀e{end}one{end}T\ufffdwo{end}"

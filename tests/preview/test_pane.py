@@ -151,39 +151,6 @@ def test_lines_stay_thin_and_keep_their_proportions(pane: Pane) -> None:
             pane.page.keyboard.press("+")
 
 
-def test_many_thin_dimensions_do_not_make_outlines_thick(pane: Pane) -> None:
-    line = '<path d="M0 0L9 0" fill="none" stroke="red" stroke-width="0.1"/>'
-    pane.shows(svg=SVG.replace("</svg>", f"{line * 40}</svg>"))
-    width = "one => getComputedStyle(one).strokeWidth"
-    assert pane.page.eval_on_selector(".drawing path[fill='#a7bcd6']", width) == "1.25px"
-    assert pane.page.eval_on_selector(".drawing path[stroke=red]", width) == "0.75px"
-
-
-def test_what_stands_around_the_drawing_is_fitted_in_too(pane: Pane) -> None:
-    pane.shows(svg=SVG.replace("</svg>", '<path d="M-90 0L-90 -10" stroke="red" fill="none"/></svg>'))
-    pane.page.keyboard.press("f")
-    x, _, width, _ = stage(pane)
-    left, right = pane.at(-90, 0)[0], pane.at(50, 0)[0]
-    assert x < left < right < x + width
-    assert (left + right) / 2 == pytest.approx(x + width / 2, abs=0.5)
-    expect(pane.find("#status-size")).to_have_text("100 × 60 mm")
-
-
-def test_the_scale_bar_is_as_long_as_it_says(pane: Pane) -> None:
-    for key in ("f", "+", "+", "+", "-", "-", "-", "-", "-", "-"):
-        pane.page.keyboard.press(key)
-        length = float(pane.find("#scale-text").inner_text().removesuffix(" mm"))
-        width = pane.page.evaluate("() => document.getElementById('scale-bar').getBoundingClientRect().width")
-        assert width == pytest.approx(length * pane.scale, abs=0.5)
-        assert f"{length:g}".strip("0.")[0] in "125"
-
-
-def test_the_pointer_tells_its_place(pane: Pane) -> None:
-    pane.move(-40, 12.5)
-    x, y = re.fullmatch(r"(\S+), (\S+) mm", pane.find("#coordinates").inner_text()).groups()
-    assert (float(x.replace("−", "-")), float(y)) == pytest.approx((-40, 12.5), abs=0.11)
-
-
 def test_a_drawing_that_has_moved_out_of_sight_is_looked_for(pane: Pane) -> None:
     moved = SVG.replace('60mm">', '60mm"><g transform="translate(9000 0)">').replace("</svg>", "</g></svg>")
     pane.shows(svg=moved, box=[8950, -30, 9050, 30])
@@ -235,18 +202,6 @@ def test_the_host_reveals_elements(pane: Pane) -> None:
     expect(pane.find(".mark.reveal .line")).to_have_count(0)
 
 
-def test_elements_are_known_by_their_paths_when_numbers_change(pane: Pane) -> None:
-    pane.host.tell("aidl/reveal", {"elements": [RIM]})
-    expect(pane.find(".mark.reveal .line")).to_have_count(1)
-    swapped = SVG.replace('data-element="2"', 'data-element="9"').replace(
-        'data-element="4"', 'data-element="2"'
-    )
-    path = {"kind": "geometry", "type": "circle", "range": None, "uri": None, "hint": ""}
-    names = ["part", "part.plate", "part.plate.bore.rim"]
-    pane.shows(svg=swapped, elements=[{**path, "path": name} for name in names])
-    assert outlined(pane, "reveal") == [drawn(pane, RIM)]
-
-
 # What is said
 
 
@@ -275,23 +230,6 @@ def test_a_stale_picture_is_marked(pane: Pane) -> None:
     pane.shows()
     expect(pane.find("#stale")).to_be_hidden()
     assert pane.page.evaluate(filters) == "none"
-
-
-def test_typing_errors_do_not_move_the_drawing(pane: Pane) -> None:
-    before = pane.at(0, 0), pane.scale
-    pane.shows(stale=True, status="wrong", problems=[problem()] * 5)
-    expect(pane.find("#problems")).to_be_visible()
-    assert (pane.at(0, 0), pane.scale) == before
-    pane.shows()
-    assert (pane.at(0, 0), pane.scale) == before
-
-
-def test_before_anything_is_drawn(pane: Pane) -> None:
-    pane.shows(svg=None, elements=[], status="wrong", stale=True, problems=[problem()])
-    expect(pane.find("#empty")).to_contain_text("There is no drawing yet")
-    expect(pane.find("#empty code")).to_have_text("bore")
-    expect(pane.find("#stale")).to_be_hidden()
-    assert pane.find("#world path").count() == 0
 
 
 def test_work_that_takes_long_and_what_cannot_be_done(pane: Pane) -> None:

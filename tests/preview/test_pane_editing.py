@@ -115,22 +115,6 @@ def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
     pane.host.wait(lambda: (200, True) in knobs(pane))
 
 
-def test_escape_while_sliding_forgets_it(pane: Pane) -> None:
-    pane.page.mouse.move(*along(pane, 100))
-    pane.page.mouse.down()
-    pane.page.mouse.move(*along(pane, 150))
-    pane.host.hears("aidl/try")
-    pane.shows(tried=True, degrees=5)
-    expect(pane.find("#status-freedom")).to_have_text("5 degrees of freedom")
-    pane.page.keyboard.press("Escape")
-    expect(field(pane)).to_have_value("100")
-    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
-    pane.page.mouse.move(*along(pane, 170))
-    pane.page.mouse.up()
-    expect(field(pane)).to_have_value("100")
-    assert not any(final for _, final in knobs(pane))
-
-
 @pytest.mark.parametrize("text", ["120", "1e9", "99,5", " 80+20 ", "12cm", "abc", "−7"])
 def test_what_is_typed_is_worked_out_by_the_host(pane: Pane, text: str) -> None:
     field(pane).fill(text)
@@ -138,14 +122,6 @@ def test_what_is_typed_is_worked_out_by_the_host(pane: Pane, text: str) -> None:
     assert pane.host.hears("aidl/setKnob") == {"uri": URI, "path": "width", "value": text.strip()}
     pane.shows(knobs=[knob(value=110)])
     expect(field(pane)).to_have_value("110")
-
-
-@pytest.mark.parametrize("text", ["", "100", " 100 "])
-def test_what_is_typed_and_says_nothing_new_is_not_written(pane: Pane, text: str) -> None:
-    field(pane).fill(text)
-    field(pane).press("Enter")
-    expect(field(pane)).to_have_value("100")
-    assert knobs(pane) == []
 
 
 def test_why_a_number_is_refused_is_told_beside_it(pane: Pane) -> None:
@@ -161,16 +137,6 @@ def test_why_a_number_is_refused_is_told_beside_it(pane: Pane) -> None:
     field(pane).press("Escape")
     expect(refusal).to_be_hidden()
     expect(field(pane)).to_have_value("100")
-
-
-def test_a_number_that_can_only_be_tried_is_worked_out_too(pane: Pane) -> None:
-    pane.shows(knobs=[knob(editable=False)])
-    field(pane).fill("12cm")
-    field(pane).press("Enter")
-    asked = {"uri": URI, "knobs": {"width": "12cm"}, "rests": True}
-    assert pane.host.hears("aidl/try") == asked
-    pane.shows(tried=True, knobs=[knob(editable=False, value=120)])
-    expect(field(pane)).to_have_value("120")
 
 
 def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
@@ -251,33 +217,6 @@ def test_a_picture_keeps_the_focus_and_what_is_being_typed(pane: Pane) -> None:
     expect(field(pane, "depth")).to_be_focused()
 
 
-SCALES = [
-    (knob(), 100, {"start": 60, "end": 200, "step": 0.5}, [(100.3, 100.5), (1e3, 200)]),
-    (knob(step=25), 85, {"start": 60, "end": 200, "step": 25}, [(100, 110), (199, 200), (61, 60)]),
-    (knob(unit="", low=1, high=6), 3, {"start": 1, "end": 6, "step": 1}, [(2.4, 2)]),
-    (knob(unit="", low=0, high=1), 0.5, {"start": 0, "end": 1, "step": 0.005}, [(0.1234, 0.125)]),
-    (knob(low=None, high=None), 30, {"start": 0, "end": 60}, [(-9, 0)]),
-    (knob(low=None, high=None), -30, {"start": -60, "end": 0}, []),
-    (knob(low=None, high=None, unit="deg"), 0, {"start": 0, "end": 180}, []),
-    (knob(low=None, high=-5), -8, {"start": -21, "end": -5}, [(0, -5)]),
-    (knob(low=5, high=None), 8, {"start": 5, "end": 21}, []),
-    (knob(low=5, high=5), 5, {"start": 5, "end": 5}, [(7, 5)]),
-]
-
-
-def test_scales(pane: Pane) -> None:
-    program = """async ([knob, value, snaps]) => {
-        const { Scale } = await import("/scales.js");
-        const scale = new Scale(knob, value);
-        const { start, end, step } = scale;
-        return [{ start, end, step }, snaps.map(([to]) => scale.onSlider(to))];
-    }"""
-    for knob_, value, scale, snaps in SCALES:
-        found, snapped = pane.page.evaluate(program, [knob_, value, snaps])
-        assert found == {**found, **scale}
-        assert snapped == [expected for _, expected in snaps]
-
-
 # Points
 
 
@@ -319,29 +258,6 @@ def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
     assert pane.middle(".handle .knot") == pytest.approx(pane.at(30, -5), abs=0.6)
 
 
-def test_points_snap_finer_the_closer_one_looks(pane: Pane) -> None:
-    pane.move(20, 5)
-    pane.page.mouse.wheel(0, -300)
-    pane.page.mouse.wheel(0, -300)
-    pane.page.wait_for_function("() => document.querySelector('.drawing').getScreenCTM().a > 8")
-    grab(pane, 20, 5)
-    pane.move(22.2, 5.4, steps=2)
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in drags(pane)))
-    assert drags(pane)[-1][0] == [22, 5.5]
-
-
-def test_shift_lets_a_point_go_anywhere(pane: Pane) -> None:
-    grab(pane, 20, 5)
-    pane.page.keyboard.down("Shift")
-    pane.move(22.37, 5.42, steps=2)
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in drags(pane)))
-    to = drags(pane)[-1][0]
-    assert to == pytest.approx([22.37, 5.42], abs=0.1)
-    assert to != [22, 5]
-
-
 def test_a_point_is_dragged_at_once_after_another_was_chosen(pane: Pane) -> None:
     pane.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
     grab(pane, 20, 5)
@@ -377,21 +293,3 @@ def test_a_point_moves_by_keys(pane: Pane) -> None:
     pane.page.keyboard.up("ArrowUp")
     pane.host.wait(lambda: drags(pane)[-1:] == [([20, 7], True)])
     assert pane.at(0, 0) == view
-
-
-def test_kinds_of_points_look_different(pane: Pane) -> None:
-    kinds = ["guess", "param", "size"]
-    pane.shows(handles=[handle(id=kind, moves=kind, at=[10 * k, 0]) for k, kind in enumerate(kinds)])
-    pane.page.get_by_role("button", name="Points", exact=True).click()
-    shapes = pane.page.eval_on_selector_all(
-        ".handle .knot", "all => all.map(one => [one.localName, getComputedStyle(one).stroke])"
-    )
-    assert [shape for shape, _ in shapes] == ["circle", "path", "rect"]
-    assert len({color for _, color in shapes}) == 3
-
-
-def test_a_stale_picture_has_no_points(pane: Pane) -> None:
-    pane.page.get_by_role("button", name="Points", exact=True).click()
-    expect(pane.find(".handle")).to_have_count(1)
-    pane.shows(stale=True, status="wrong")
-    expect(pane.find(".handle")).to_have_count(0)

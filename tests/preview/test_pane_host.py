@@ -30,7 +30,6 @@ window.WebSocket = class extends EventTarget {
     }
 };
 """
-CROWDED = NOBODY.replace('new Event("close")', 'new CloseEvent("close", { reason: "There are too many." })')
 
 
 # Connections
@@ -71,11 +70,6 @@ def test_a_host_that_is_away_is_asked_ever_more_seldom(open_pane) -> None:
         assert pane.page.evaluate("() => window.attempts") == attempts
 
 
-def test_why_there_is_no_connection_is_told(open_pane) -> None:
-    banner = open_pane(script=CROWDED, has_clock=True).find("#disconnected")
-    expect(banner).to_contain_text("There are too many. The next try comes in 0.5 s.")
-
-
 def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:
     pane.page.get_by_role("button", name="Layers").click()
     pane.page.get_by_label("Dimensions").check()
@@ -87,18 +81,6 @@ def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:
     assert pane.host.hears("aidl/preview", 4)["show"] == ["names", "dimensions"]
     pane.page.reload()
     assert pane.host.hears("aidl/preview", 5)["show"] == ["names", "dimensions"]
-
-
-def test_what_is_no_message_is_passed_over(pane: Pane) -> None:
-    noise = ("", "null", "7", "[]", "{", '{"method":"unknown"}', '{"no":"method"}', '{"id":99,"result":{}}')
-    for text in (
-        *noise,
-        '{"method":"aidl/previewChanged","params":7}',
-        '{"id":1,"error":{"message":"late"}}',
-    ):
-        pane.host.say_text(text)
-    pane.shows(degrees=7)
-    expect(pane.find("#status-freedom")).to_have_text("7 degrees of freedom")
 
 
 def test_files_are_asked_for_and_saved(pane: Pane) -> None:
@@ -258,18 +240,6 @@ def test_menus_work_by_keys(pane: Pane) -> None:
     pane.page.keyboard.press("Escape")
     expect(pane.find("#export-menu")).to_be_hidden()
     expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
-
-
-def test_panels_fold_and_stay_folded(pane: Pane) -> None:
-    fold = pane.page.get_by_role("button", name="Parameters")
-    expect(pane.find("#knobs-list")).to_be_visible()
-    fold.click()
-    expect(pane.find("#knobs-list")).to_be_hidden()
-    expect(fold).to_have_attribute("aria-expanded", "false")
-    pane.page.reload()
-    pane.host.hears("aidl/preview", 2)
-    pane.shows()
-    expect(pane.find("#knobs-list")).to_be_hidden()
 
 
 def test_keys_in_a_field_are_typed(pane: Pane) -> None:

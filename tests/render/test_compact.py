@@ -2,48 +2,14 @@
 
 from __future__ import annotations
 
-from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
-
-SHELF = """assembly shelf {
-    solid board { edge = rectangle(width: 80, height: 4) }
-    solid foot { edge = rectangle(width: 6, height: 30) }
-    constrain {
-        foot.below(board, gap: 0)
-        foot.bottom == board.bottom - 40
-        foot.height == 30
-    }
-}
-"""
-
-
-def told(program: str) -> str:
-    return compact(pipeline.compile(SourceFile("part.aidl", program)).diagnostics)
 
 
 def span(source: SourceFile, text: str) -> Span:
     start = source.text.index(text)
     return Span(source, start, start + len(text))
-
-
-def test_a_conflict() -> None:
-    assert told(SHELF) == (
-        "error E0601 line 6: `foot.below(board, gap: 0)`, `foot.bottom == board.bottom - 40` and "
-        "`foot.height == 30` cannot hold together\n"
-        "  6 | foot.bottom == board.bottom - 40\n"
-        "  why: 30 would fit\n"
-        "  line 5: conflicts with this; 10 would fit | foot.below(board, gap: 0)\n"
-        "  line 7: conflicts with this; 40 would fit | foot.height == 30\n"
-        "  hint: given the others, `foot.bottom` is 10 more than `board.bottom - 40`\n"
-        "  fix (write `30`): line 6 becomes\n"
-        "            foot.bottom == board.bottom - 30"
-    )
-
-
-def test_nothing() -> None:
-    assert compact([]) == ""
 
 
 def test_errors_come_first_and_what_repeats_is_counted() -> None:
@@ -80,12 +46,6 @@ def test_fixes_are_lines_to_write() -> None:
         "  and: line 4 becomes",
         "    4",
     ]
-
-
-def test_other_files_are_named() -> None:
-    here, there = SourceFile("part.aidl", "use x"), SourceFile("lib.aidl", "let x = 1")
-    told = compact([Diagnostic("E0101", "no", span(here, "x"), secondary=(Label(span(there, "x"), "here"),))])
-    assert told == "error E0101 line 1: no\n  1 | use x\n  lib.aidl line 1: here | let x = 1"
 
 
 def test_what_a_program_holds_cannot_break_the_form() -> None:

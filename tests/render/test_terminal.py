@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.render import TerminalStyle, one_line, render, summary, to_dict, wants_colour
+from aidl_lang.common.render import TerminalStyle, render, wants_colour
 from aidl_lang.common.source import SourceFile, Span
 
 PART = SourceFile(
@@ -41,28 +41,6 @@ def shown(diagnostic: Diagnostic, width: int = 110) -> str:
     return "\n" + render(diagnostic, width=width) + "\n"
 
 
-def test_headline_alone() -> None:
-    assert render(Diagnostic("E0901", "there is no file `x`", hints=("look\nagain",))) == (
-        "error[E0901]: there is no file `x`\n  = hint: look\n          again"
-    )
-
-
-def test_labels_on_one_line_and_wide_characters() -> None:
-    labels = (Label(span("世界"), "this circle"), Label(span("base"), "inside this"))
-    found = Diagnostic("E0401", "`plate` is out of reach", span("plate.center"), "not in `base`", labels)
-    assert shown(found) == dedent("""
-        error[E0401]: `plate` is out of reach
-         --> part.aidl:3:23
-          |
-        2 |     solid base {
-          |           ---- inside this
-        3 |         世界 = circle(center: plate.center, radius: 3)
-          |         ----                  ^^^^^^^^^^^^ not in `base`
-          |         |
-          |         this circle
-        """)
-
-
 def test_labels_that_overlap_hang_below() -> None:
     labels = (Label(span("plate"), "a solid"), Label(span("circle"), "the call"))
     found = Diagnostic("E0401", "out of reach", span("plate.center"), "this", labels)
@@ -78,26 +56,6 @@ def test_labels_that_overlap_hang_below() -> None:
           |                |              a solid
           |                |
           |                the call
-        """)
-
-
-def test_long_span_is_a_bar_with_its_middle_left_out() -> None:
-    whole = span("solid plate" + PART.text.partition("solid plate")[2].removesuffix("}\n"))
-    found = Diagnostic(
-        "W0701", "nothing touches `plate`", whole, "this part", (Label(span("a {"), "in here"),)
-    )
-    assert shown(found) == dedent("""
-        warning[W0701]: nothing touches `plate`
-          --> part.aidl:5:5
-           |
-         1 |   assembly a {
-           |            --- in here
-           |   …
-         5 | /     solid plate {
-         6 | |         edge = square(side: 3)
-           | | …
-        11 | |     }
-           | |_____^ this part
         """)
 
 
@@ -120,36 +78,6 @@ def test_bars_within_bars() -> None:
         """)
 
 
-def test_end_of_file_shows_the_line_before() -> None:
-    end = len(PART.text)
-    assert shown(
-        Diagnostic("E0102", "the file ends too early", Span(PART, end, end), "`}` is missing")
-    ) == dedent("""
-        error[E0102]: the file ends too early
-          --> part.aidl:13:1
-           |
-        12 | }
-        13 |
-           | ^ `}` is missing
-        """)
-
-
-def test_other_files_follow() -> None:
-    other = SourceFile("lib/\x1b[31mbox.aidl", "shape box(width) { }\n")
-    found = Diagnostic("E0301", "no `side`", span("side"), "", (Label(span("box", other), "declared here"),))
-    assert shown(found) == dedent("""
-        error[E0301]: no `side`
-         --> part.aidl:6:23
-          |
-        6 |         edge = square(side: 3)
-          |                       ^^^^
-         ::: lib/␛[31mbox.aidl:1:7
-          |
-        1 | shape box(width) { }
-          |       --- declared here
-        """)
-
-
 def test_fix_is_shown_as_what_goes_and_what_comes() -> None:
     at_end = PART.text.rindex("}")
     edits = (
@@ -168,12 +96,6 @@ def test_fix_is_shown_as_what_goes_and_what_comes() -> None:
         """)
 
 
-def test_fix_of_neighbouring_lines_and_a_whole_line_removed() -> None:
-    line = span("        hole h { }\n")
-    found = Diagnostic("E0501", "nothing is cut", line, fix=Fix("remove it", (Edit(line, ""),)))
-    assert shown(found).partition("  = ")[2] == "fix: remove it\n  |\n7 -         hole h { }\n"
-
-
 def test_very_long_line_is_cut_around_the_span() -> None:
     text = "points = [" + ", ".join(f"({i}, {i})" for i in range(500)) + "]"
     source = SourceFile("long.aidl", text)
@@ -182,21 +104,6 @@ def test_very_long_line_is_cut_around_the_span() -> None:
     excerpt, carets = lines[3], lines[4]
     assert excerpt[carets.index("^") :].startswith("(250, 250)")
     assert excerpt.count("…") == 2
-
-
-def test_crlf_lines_are_shown_without_their_end() -> None:
-    source = SourceFile("crlf.aidl", "a = 1\r\nb = 2\r\n")
-    assert "␍" not in render(Diagnostic("E0101", "odd", span("b", source)))
-
-
-def test_one_line_and_summary() -> None:
-    error = Diagnostic("E0301", "no `side`", span("side"))
-    assert one_line(error) == "part.aidl:6:23: error[E0301]: no `side`"
-    assert summary([]) == ""
-    assert summary([error]) == "1 error"
-    assert summary([error, Diagnostic("W0701", "w"), error, Diagnostic("N0501", "n")]) == (
-        "2 errors, 1 warning and 1 note"
-    )
 
 
 def test_colour_changes_nothing_but_colour() -> None:
@@ -227,36 +134,6 @@ def test_when_colour_is_used(environment: dict[str, str], terminal: bool, wanted
     stream = io.StringIO()
     stream.isatty = lambda: terminal  # type: ignore[method-assign]
     assert wants_colour(stream, environment) is wanted
-
-
-def test_to_dict_has_every_field() -> None:
-    fix = Fix("name it", (Edit(span("side"), "width"),))
-    found = Diagnostic(
-        "E0301", "no `side`", span("side"), "here", (Label(span("h {"), "there"),), ("hint",), fix
-    )
-    place = {"file": "part.aidl", "line": 6, "column": 23, "end_line": 6, "end_column": 27}
-    start = PART.text.index("side")
-    assert to_dict(found) == {
-        "code": "E0301",
-        "severity": "error",
-        "message": "no `side`",
-        **place,
-        "label": "here",
-        "secondary": [
-            {"file": "part.aidl", "line": 7, "column": 14, "end_line": 7, "end_column": 17, "label": "there"}
-        ],
-        "hints": ["hint"],
-        "fix": {
-            "title": "name it",
-            "sure": False,
-            "edits": [{**place, "start": start, "end": start + 4, "replacement": "width"}],
-        },
-    }
-
-
-def test_to_dict_without_a_place() -> None:
-    found = to_dict(Diagnostic("E0901", "there is no file"))
-    assert (found["file"], found["line"], found["fix"], found["secondary"]) == (None, None, None, [])
 
 
 @given(st.text("ab\n\t世\r\x1b", max_size=60), st.data())

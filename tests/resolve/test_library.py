@@ -75,23 +75,9 @@ def _places(node: ast.Node) -> list[tuple[str, int, int]]:
     return [(n.span.source.name, n.span.start, n.span.end) for n in ast.walk(node)]
 
 
-def test_every_tree_of_the_library_survives_as_data() -> None:
-    for module in library.load().modules:
-        for node in module.statements:
-            again = ast.decoded(ast.encoded(node), module.source)
-            assert ast.same(node, again)
-            assert _places(node) == _places(again)
-
-
 def test_only_trees_become_data() -> None:
     with pytest.raises(TypeError, match="SourceFile is no part of a syntax tree"):
         ast.encoded((SourceFile("", ""),))
-
-
-def test_definitions_are_decoded_once(checkout: Path) -> None:
-    opened = fresh()
-    assert opened.callables["rectangle"] is opened.callables["rectangle"]
-    assert opened.callables["rectangle"][0].node is opened.callables["rectangle"][0].node
 
 
 def test_a_changed_library_is_parsed_anew(checkout: Path) -> None:

@@ -18,7 +18,7 @@ from aidl_lang.solver.problem import GroupFailure
 from aidl_lang.solver.refuting import shortfall
 from tests.amount import TRIES_ALL, tries
 
-from .build import E, Model, call, distance
+from .build import E, Model, distance
 from .test_linear_programming import Linear, random_problem
 
 SEEDS = st.integers(0, 100_000)
@@ -121,20 +121,6 @@ def random_distances(seed: int) -> Distances:
     return Distances(rng.uniform(-10, 10, (count, 2)), held, pairs, rng.uniform(2, 20, len(pairs)))
 
 
-@given(SEEDS)
-@tries(8)
-def test_distances_that_conflict(seed: int) -> None:
-    problem = random_distances(seed)
-    solution = solve(problem.model().problem())
-    for failure in solution.failures[:1]:
-        assume(failure.reason != "not converged")
-        assert failure.minimal
-        assert not problem.reachable(failure.conflict, problem.lengths)
-        for member in failure.members:
-            rest = [i for i in failure.conflict if i != member.index]
-            assert problem.reachable(rest, problem.lengths)
-
-
 @pytest.mark.slow  # each kind of conflict is found above and below
 def test_most_conflicts_of_distances_are_found() -> None:
     failures = [f for seed in range(20) for f in solve(random_distances(seed).model().problem()).failures]
@@ -157,35 +143,6 @@ def only_failure(solution: Solution) -> GroupFailure:
     return failure
 
 
-def test_more_equations_than_numbers() -> None:
-    failure = only_failure(solve(anchored([25.0, 25.0, 20.0]).model().problem()))
-    assert failure.reason == "over-determined"
-    assert (failure.equations, failure.moving) == (3, (0, 1))
-
-
-def test_a_curve_that_is_out_of_reach_is_a_contradiction() -> None:
-    failure = solve(anchored([5.0, 5.0, 30.0]).model().problem()).failures[0]
-    assert failure.reason == "contradictory"
-    assert failure.conflict == (0, 1)
-
-
-def test_straight_equations_are_never_called_over_determined() -> None:
-    m = Model()
-    x, y = m.unknown(0.0), m.unknown(1.0)
-    m.equal(x - 1.0)
-    m.equal(y - 2.0)
-    m.equal(x + y - 4.0)
-    failure = only_failure(solve(m.problem()))
-    assert failure.reason == "contradictory"
-
-
-def test_without_enough_steps_nothing_is_claimed() -> None:
-    problem = anchored([25.0, 25.0, 15.5]).model().problem()
-    failure = solve(problem, Settings(iterations=1)).failures[0]
-    assert failure.reason == "not converged"
-    assert max(member.off for member in failure.members) > 1e-6
-
-
 def test_without_time_what_did_not_hold_is_named() -> None:
     failure = only_failure(solve(anchored([25.0, 25.0, 20.0]).model().problem(), Settings(seconds=0.0)))
     assert failure.reason == "timed out"
@@ -203,48 +160,6 @@ def test_explanations_keep_to_their_budget() -> None:
     assert failures
     whole = len(m.constraints) * len(m.initial)
     assert 0 < sum(failure.work for failure in failures) <= WORK + 10 * whole
-
-
-def test_the_same_problem_fails_in_the_same_way() -> None:
-    problem = random_distances(5).model().problem()
-    first, again = solve(problem), solve(problem)
-    assert first.failures
-    assert first.failures == again.failures
-
-
-def test_branches_take_part() -> None:
-    m = Model()
-    x, y = m.unknown(1.0), m.unknown(4.0)
-    lower = m.equal(call("minimum", x, y) - 5.0)
-    upper = m.at_most(call("maximum", x, y) - 3.0)
-    m.at_most(x - 100.0)
-    failure = only_failure(solve(m.problem()))
-    assert failure.conflict == (lower, upper)
-    assert failure.minimal
-
-
-def test_conflicts_across_groups() -> None:
-    m = Model()
-    child = m.group()
-    frame, x = m.unknown(0.0, frame=child), m.unknown(2.0, child)
-    inner = m.equal(x - 2.0, group=child)
-    frame_at = m.equal(frame - 1.0)
-    outer = m.equal(frame + x - 10.0)
-    failure = only_failure(solve(m.problem()))
-    assert sorted(failure.conflict) == [inner, frame_at, outer]
-    assert failure.group == 0
-
-
-def test_preferences_are_not_to_blame() -> None:
-    m = Model()
-    x = m.unknown(0.0)
-    first = m.equal(x - 1.0)
-    m.equal(x - 7.0, weight=5.0)
-    second = m.equal(x - 2.0)
-    problem = m.problem()
-    assert only_failure(solve(problem)).conflict == (first, second)
-    soft = [replace(c, weight=1.0) if i == second else c for i, c in enumerate(problem.constraints)]
-    assert solve(problem.with_constraints(soft)).status == "solved"
 
 
 # -- large ones

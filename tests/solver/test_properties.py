@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, note
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
@@ -32,8 +32,8 @@ from .check import assert_honest, assert_smallest_change, assert_solved, jacobia
 from .kinds import KINDS
 from .random_expressions import HOSTILE, Tangle, tangles
 from .random_problems import Taste, kinds_where, links, profile, sketches
-from .regularity import is_regular, mentioned, neighbours
-from .sketches import Built, Circle, Group, Link, Point, Sketch
+from .regularity import is_regular, neighbours
+from .sketches import Built, Circle, Link, Point, Sketch
 
 ROOT = Path(__file__).resolve().parents[2]
 CLOSE = 1e-6
@@ -216,12 +216,6 @@ def test_what_is_turned_mirrored_or_scaled_is_solved_alike(
     assert_moves_along(sketch, data.draw(matrices), (0.0, 0.0))
 
 
-@given(regular(INEQUALITIES), st.tuples(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4)))
-@profile(30)
-def test_what_is_shifted_is_solved_alike(sketch: Sketch, shift: tuple[float, float]) -> None:
-    assert_moves_along(sketch, np.eye(2), shift)
-
-
 @given(
     regular(replace(INEQUALITIES, kinds=kinds_where(lambda kind: kind.mirrored != 0 or kind.swapped != "")))
 )
@@ -230,31 +224,6 @@ def test_what_is_flipped_about_the_diagonal_is_solved_alike(sketch: Sketch) -> N
     flipped = sketch.flipped()
     expected = sketch.placed_at(coordinates(sketch)).flipped().build()
     assert_same(coordinates(flipped), expected.known[expected.where])
-
-
-@given(regular(replace(INEQUALITIES, groups=2)), st.randoms(use_true_random=False))
-@profile(40)
-def test_the_order_of_unknowns_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
-    order = list(range(len(sketch.build().known)))
-    chance.shuffle(order)
-    note(order)
-    assert_same(coordinates(sketch, order), coordinates(sketch))
-
-
-@given(sketches(TREES))
-@profile(15)
-def test_names_mean_nothing(sketch: Sketch) -> None:
-    problem = sketch.problem()
-    named = replace(problem, names=tuple(f"n{i}" for i in range(len(problem.initial))))
-    assert solve(named).values.tobytes() == solve(problem).values.tobytes()
-
-
-@given(regular(INEQUALITIES), regular(INEQUALITIES))
-@profile(25)
-def test_what_has_nothing_in_common_may_be_in_groups_of_its_own(one: Sketch, other: Sketch) -> None:
-    together = coordinates(one.beside(other))
-    apart = one.within().beside(other.within())
-    assert_same(coordinates(apart)[: len(together)], together)
 
 
 # ---- order ----------------------------------------------------------------------------------------------
@@ -276,14 +245,6 @@ def shuffled(problem: Problem, chance: random.Random) -> Problem:
 def test_the_order_of_constraints_and_rows_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
     problem = sketch.problem()
     assert_same(solved(shuffled(problem, chance)).values, solved(problem).values)
-
-
-@given(regular(TREES), regular(TREES))
-@profile(25)
-def test_the_order_of_siblings_does_not_matter(one: Sketch, other: Sketch) -> None:
-    first, second = one.within(), other.within()
-    ahead, behind = coordinates(first.beside(second)), coordinates(second.beside(first))
-    assert_same(ahead[first.beside(second).halves(first)[0]], behind[second.beside(first).halves(second)[1]])
 
 
 # ---- what changes nothing -------------------------------------------------------------------------------
@@ -368,33 +329,11 @@ def assert_others_stay(built: Built, free: np.ndarray) -> Solution:
     return solution
 
 
-@given(sketches(replace(TREES, points=(3, 6), links=(2, 6))))
-@profile(40)
-def test_insides_stay_if_translations_suffice(sketch: Sketch) -> None:
-    built = sketch.build()
-    assert_others_stay(built, built.problem.group == 0)
-
-
-@given(sketches(replace(EQUATIONS, placed=True)))
-@profile(40)
-def test_the_held_stay_if_the_placed_suffice(sketch: Sketch) -> None:
-    built = sketch.build()
-    placed = set[int]().union(*(c.placed & mentioned(built.problem, c) for c in built.problem.constraints))
-    assert_others_stay(built, np.isin(np.arange(len(built.known)), sorted(placed)))
-
-
 @given(sketches(replace(EQUATIONS, kept=True, groups=2)))
 @profile(40)
 def test_sizes_stay_if_positions_suffice(sketch: Sketch) -> None:
     built = sketch.build()
     assert assert_others_stay(built, ~built.problem.kept).changed == ()
-
-
-@given(regular(replace(EQUATIONS, kept=True, size_noise=0.5)))
-@profile(40)
-def test_sizes_that_must_change_are_reported(sketch: Sketch) -> None:
-    problem = sketch.problem()
-    assert_honest(problem, solved(problem))
 
 
 # ---- preferences ----------------------------------------------------------------------------------------
@@ -418,14 +357,6 @@ def lack(problem: Problem, values: np.ndarray) -> float:
     rows = [(row, c.weight) for c in problem.constraints if c.weight is not None for row in c.rows]
     residuals = values_of(problem, [row.expression for row, _ in rows], values)
     return sum(weight * (r / row.scale) ** 2 for (row, weight), r in zip(rows, residuals, strict=True))
-
-
-@given(regular(replace(EQUATIONS, links=(2, 6))), st.data())
-@profile(40)
-def test_preferences_that_can_hold_with_the_rest_hold(sketch: Sketch, data: st.DataObject) -> None:
-    soft = data.draw(st.sets(st.integers(0, len(sketch.links) - 1))) if sketch.links else set()
-    links = tuple(replace(k, weight=2.0) if i in soft else k for i, k in enumerate(sketch.links))
-    assert all(solved(replace(sketch, links=links).problem()).satisfied)
 
 
 # ---- degrees of freedom ---------------------------------------------------------------------------------
@@ -476,39 +407,3 @@ def test_an_arc_may_begin_where_atan2_jumps() -> None:
     """Its start is to the left of its centre."""
     points = (Point((0.0, 0.0)), Point((-10.0, 0.0), (0.0, 0.05)), Point((0.0, -10.0), (0.05, 0.0)))
     coordinates(Sketch(points, (Circle(0, 5.0, 0.25, kept=True),), links=(Link("arc_length", (0, 1, 2)),)))
-
-
-def test_a_size_may_be_all_that_helps() -> None:
-    """The centres are one above the other, all but a little, and closer than the radii say."""
-    points = (Point((0.0, 10.0), (0.0625, 0.0)), Point((0.0, 0.0)))
-    circles = (Circle(0, 5.0, kept=True), Circle(1, 5.0, -0.0625, kept=True))
-    coordinates(Sketch(points, circles, links=(Link("offset_y", (0, 1)), Link("tangent_outside", (0, 1)))))
-
-
-UNBOUNDED = {
-    "a size of 1e308 in units of a thousandth": Tangle((1e308,), (), (), ((0, "="), (0, "=")), kept=1),
-    "a slope of 1e200": Tangle((1.0,), (1e200,), (("mul", (0, 1)), ("cos", (2,))), ((2, "="), (3, "="))),
-    "a preference that lacks 1e200": Tangle((1e200,), (1.0,), (("sub", (0, 1)),), ((2, "="), (0, "~"))),
-    "a slope of 1e-160": Tangle((0.0,), (-1e-160,), (("atan2", (0, 1)),), ((2, "="),)),
-    "no slope and a residual of 1e200": Tangle(
-        (0.0,), (1e200,), (("square", (0,)), ("add", (1, 2))), ((3, "="),)
-    ),
-}
-
-
-@pytest.mark.parametrize("name", UNBOUNDED)
-def test_overflow_is_silent_and_soon_over(name: str) -> None:
-    problem = UNBOUNDED[name].problem()
-    with at_most(5.0):
-        assert_honest(problem, solve(problem, Settings(seconds=1.0)))
-
-
-def test_a_frame_that_cancels_stays() -> None:
-    """The root asks for an angle within a child; by moving its frame nothing is gained."""
-    points = (
-        Point((100.0, 100.0), group=1),
-        Point((0.0, 100.0), (6.225, 0.0), 1),
-        Point((0.0, 0.0), group=1),
-    )
-    sketch = Sketch(points, groups=(Group(0),), links=(Link("angle", (0, 1, 1, 2)),))
-    assert coordinates(sketch)[6:].tolist() == [0.0, 0.0]

@@ -41,28 +41,6 @@ def engine() -> Iterator[Guarded]:
     engine.close()
 
 
-def test_what_breaks_takes_nothing_along(engine: Guarded, tmp_path: Path) -> None:
-    crew: Crew[str, str] = Crew(engine)
-    words = ["well", "die", "hang", "raise", "die once", "eat", "stop", "too"]
-    for word in words:
-        crew.give(word, 3.0, obey, word, str(tmp_path))
-    found: dict[str, str | Broke] = {}
-    while crew:
-        found |= dict(crew.came(10))
-    assert [found[word] for word in ("well", "die once", "too")] == ["well 1", "die once 2", "too 1"]
-    limits = {word: each.limit for word, each in found.items() if isinstance(each, Broke)}
-    assert limits == {
-        "die": Limit.DEATH,
-        "hang": Limit.TIME,
-        "raise": None,
-        "eat": Limit.MEMORY,
-        "stop": Limit.TIME,
-    }
-    assert (tmp_path / "die").read_text() == "xxxx"
-    assert (tmp_path / "hang").read_text() == "x"
-    assert crew.given_again == 4
-
-
 def test_what_is_given_up_ends(engine: Guarded, tmp_path: Path) -> None:
     crew: Crew[str, str] = Crew(engine)
     assert crew.has_room
@@ -72,21 +50,6 @@ def test_what_is_given_up_ends(engine: Guarded, tmp_path: Path) -> None:
     crew.cancel()
     crew.give("after", 30.0, obey, "after", str(tmp_path))
     assert dict(crew.came(20)) == {"after": "after 1"}
-
-
-def test_the_process_that_starts_others_may_die(engine: Guarded, tmp_path: Path) -> None:
-    crew: Crew[int, int] = Crew(engine)
-    crew.give(0, 30.0, os.getppid)
-    ((_, server),) = crew.came(20)
-    assert isinstance(server, int)
-    os.kill(server, signal.SIGKILL)
-    calls: Crew[str, str] = Crew(engine)
-    for word in "abcdef":
-        calls.give(word, 30.0, obey, word, str(tmp_path))
-    found: dict[str, str | Broke] = {}
-    while calls:
-        found |= dict(calls.came(20))
-    assert [str(found[word])[0] for word in "abcdef"] == list("abcdef")
 
 
 class Deaf:

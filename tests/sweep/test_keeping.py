@@ -36,15 +36,6 @@ def nothing_read(path: str) -> str:
     raise AssertionError(path)
 
 
-def test_an_outcome_comes_back_as_it_was(tmp_path: Path) -> None:
-    store = Store(tmp_path / "cache")
-    store.put("key", OUTCOME, {})
-    store.close()
-    again = Store(tmp_path / "cache")
-    assert again.get("key", nothing_read) == OUTCOME
-    assert again.get("other", nothing_read) is None
-
-
 def test_it_holds_only_while_the_files_are_as_they_were(tmp_path: Path) -> None:
     store = Store(tmp_path / "cache")
     store.put("key", OUTCOME, {"lib.aidl": "digest"})
@@ -106,19 +97,6 @@ def test_dropping_removes_no_file_outside(tmp_path: Path) -> None:
         store.put(f"{number}", OUTCOME, {})
     assert store.get("key", nothing_read) is None
     assert victim.read_text() == "mine"
-
-
-def test_it_stays_within_its_size(tmp_path: Path) -> None:
-    import random
-
-    store = Store(tmp_path / "cache", size=300_000)
-    for number in range(60):
-        data = random.Random(number).randbytes(20_000)
-        store.put(f"{number}", Outcome("solved", True, files={".dxf": (data,)}), {})
-    taken = sum(path.stat().st_size for path in (tmp_path / "cache").rglob("*.val"))
-    assert taken < 600_000
-    assert store.get("59", nothing_read) is not None
-    assert store.get("0", nothing_read) is None
 
 
 def _fill(folder: str, first: int) -> None:

@@ -169,11 +169,8 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
     """Returns code, headline and hint for a call of a function that other languages have."""
     name, word = node.callee.text, fold(node.callee.text)
     if word in _SOLIDS:
-        return (
-            "E0349",
-            f"there is no `{name}`: AIDL draws in two dimensions",
-            "draw the outline; how thick a part is says `@thickness(10mm)` before its `solid`",
-        )
+        thick = "draw the outline; how thick a part is says `@thickness(10mm)` before its `solid`"
+        return "E0349", f"there is no `{name}`: AIDL draws in two dimensions", thick
     if (form := _INSTEAD.get(word)) is not None:
         return "E0203", f"`{name}` is not called: a structure is written `{form}`", ""
     if (hint := _CALLS.get(word)) is not None:
@@ -230,14 +227,8 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
             fix = _as_template(value.node)
             listed_so = f"`{value.node.kind} {name}() {{ … }}`"
             hint = f"with a parameter list, {listed_so}, it is a template to be called"
-        resolver.report(
-            "E0206",
-            f"`{name}` is {value.kind.with_article} and cannot be called",
-            node.callee,
-            secondary=declared,
-            hints=(hint,),
-            fix=fix,
-        )
+        message = f"`{name}` is {value.kind.with_article} and cannot be called"
+        resolver.report("E0206", message, node.callee, secondary=declared, hints=(hint,), fix=fix)
         return
     if (answer := call_answer(node)) is not None:
         code, headline, hint = answer
@@ -254,13 +245,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
     hint = _RELATIONS if is_condition else "define it with `fn`, `shape` or as a template"
     is_meant = bool(like) and not _is_spelled_right(name, like[0], scope)
     is_safe = is_meant and (is_condition or not _only_holds(scope, like[0]))
-    resolver.report(
-        "E0203",
-        f"there is no function, shape or constraint `{name}`" + did_you_mean(like),
-        node.callee,
-        hints=() if like else (hint,),
-        fix=respell(node.callee, like) if is_safe else None,
-    )
+    message = f"there is no function, shape or constraint `{name}`" + did_you_mean(like)
+    fix = respell(node.callee, like) if is_safe else None
+    resolver.report("E0203", message, node.callee, hints=() if like else (hint,), fix=fix)
 
 
 def _is_spelled_right(name: str, meant: str, scope: SymbolScope) -> bool:
@@ -315,16 +302,9 @@ def called_field(node: ast.Call) -> tuple[str, Fix]:
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:
-    resolver.report(
-        "E0209",
-        f"`{name.text}` is declared twice",
-        name,
-        secondary=(Label(earlier.declarations[0].span, "declared here"),),
-        hints=(
-            "give one of them another name, or give both an index to make an array: "
-            f"`{name.text}[0]`, `{name.text}[1]`",
-        ),
-    )
+    first, array = Label(earlier.declarations[0].span, "declared here"), f"`{name.text}[0]`, `{name.text}[1]`"
+    hint = f"give one of them another name, or give both an index to make an array: {array}"
+    resolver.report("E0209", f"`{name.text}` is declared twice", name, secondary=(first,), hints=(hint,))
 
 
 def check_aliases(resolver: Resolver, scope: SymbolScope) -> None:
@@ -395,17 +375,10 @@ def used_early(
     """Reports a use above the line that makes the thing."""
     assert symbol.node is not None
     inside = node.span.start >= symbol.node.span.start
-    report(
-        "E0205",
-        f"`{symbol.name}` is used in its own definition"
-        if inside
-        else f"`{symbol.name}` is used above the line that makes it",
-        node,
-        label="not there yet",
-        secondary=() if inside else (Label(symbol.declarations[0].span, "made here"),),
-        hints=(hint,),
-        fix=fix,
-    )
+    where = "in its own definition" if inside else "above the line that makes it"
+    made = () if inside else (Label(symbol.declarations[0].span, "made here"),)
+    message = f"`{symbol.name}` is used {where}"
+    report("E0205", message, node, label="not there yet", secondary=made, hints=(hint,), fix=fix)
 
 
 _KINDS = {

@@ -117,7 +117,7 @@ class Declarer:
                 found.append(word.text)
                 continue
             like = nearest(word.text, [*PARAMETER_TYPES, *shapes], 2)
-            message = f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else "")
+            message = f"`{word.text}` is not a type" + complaints.did_you_mean(like)
             hint = "types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes"
             self.resolver.report("E0215", message, word, hints=(hint,), fix=complaints.respell(word, like))
         return found
@@ -160,23 +160,16 @@ class Declarer:
         scope: SymbolScope | None = self.scope
         while scope is not None and isinstance(loop := scope.owner, ast.For):
             written, scope = f"[{loop.variables[0].text}]{written}", scope.parent
-        written = name.text + written
-        self.resolver.report(
-            "E0208",
-            f"`{name.text}` is made in every turn of this `for` and needs an index",
-            name,
-            label="one name for several members",
-            hints=(f"`{written}` gives each turn a member of its own",),
-            fix=Fix(f"write `{written}`", (Edit(name.span, written),), is_sure=True),
-        )
+        member = name.text + written
+        message = f"`{name.text}` is made in every turn of this `for` and needs an index"
+        label, hints = "one name for several members", (f"`{member}` gives each turn a member of its own",)
+        fix = Fix(f"write `{member}`", (Edit(name.span, member),), is_sure=True)
+        self.resolver.report("E0208", message, name, label=label, hints=hints, fix=fix)
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:
         """Enters what a loop declares for the structure around it; `local` are the names of its turns."""
-        local = local | {
-            s.name.text
-            for s in statements
-            if isinstance(s, ast.Let) or (isinstance(s, ast.Assign) and not s.indices)
-        }
+        named = (s for s in statements if isinstance(s, ast.Let | ast.Assign))
+        local = local | {s.name.text for s in named if isinstance(s, ast.Let) or not s.indices}
         for node in statements:
             match node:
                 case ast.Assign(indices=indices) | ast.Structure(indices=indices) if indices:
@@ -244,8 +237,5 @@ def _together(a: Branch, b: Branch) -> bool:
 
 def _mentions(expressions: Sequence[ast.Expression], names: set[str]) -> bool:
     folded = {fold(name) for name in names}
-    return any(
-        isinstance(node, ast.Name) and fold(node.text) in folded
-        for expression in expressions
-        for node in ast.walk(expression)
-    )
+    nodes = (node for expression in expressions for node in ast.walk(expression))
+    return any(isinstance(node, ast.Name) and fold(node.text) in folded for node in nodes)

@@ -68,9 +68,7 @@ def _cuts_in(module: ast.Module) -> frozenset[str]:
 
 @record()
 class _Reader:
-    """A reader of the bodies of a file. `kind` is that of the structure around, `outlines` are the names of
-    which other outlines are made in it.
-    """
+    """A reader of bodies: `kind` is that of the structure around, of `outlines` others are made."""
 
     cuts: frozenset[str]
 
@@ -258,9 +256,7 @@ _OPTIONS = "angle: turn = 0deg, filled: bool = false, rotatable: bool = false"
 
 
 def _definitions(found: OutlineFile) -> Iterator[str]:
-    """Yields the text of the shapes: by the origin of the file, and by the middle of the outlines, with a
-    scale, a width or a height.
-    """
+    """Yields the shapes: about the file's origin and the outlines' middle, by a scale, width or height."""
     for name, trace in ((WHOLE, found.whole), *found.parts.items()):
         inner = _inner(found, trace)
         left, bottom, right, top = trace.box
@@ -289,11 +285,8 @@ def _definitions(found: OutlineFile) -> Iterator[str]:
 def _inner(found: OutlineFile, trace: Trace) -> str:
     """Returns the text of the names within a part: of those that have some of its elements and no others."""
     own = set(trace.elements)
-    names = (
-        name
-        for name, part in found.parts.items()
-        if part is not trace and own.issuperset(part.elements) and name != trace.name
-    )
+    others = ((name, part) for name, part in found.parts.items() if part is not trace)
+    names = (name for name, part in others if own.issuperset(part.elements) and name != trace.name)
     return " ".join(f'let {name} = traced_part(art, "{name}")' for name in names)
 
 
@@ -359,21 +352,13 @@ class _Loader:
         try:
             path = relative_to(written, importer)
         except FileError:
-            self._report(
-                "E0212",
-                f"`{written}` lies outside the project",
-                statement.path,
-                "a program imports only from its own folder and the folders below it",
-            )
+            hint = "a program imports only from its own folder and the folders below it"
+            self._report("E0212", f"`{written}` lies outside the project", statement.path, hint)
             return
         if path in self.open:
             chain = " → ".join([*self.open[self.open.index(path) :], path])
-            self._report(
-                "E0211",
-                f"files import each other in a circle: {chain}",
-                statement.path,
-                "move what both need into a file of its own, which imports neither",
-            )
+            hint = "move what both need into a file of its own, which imports neither"
+            self._report("E0211", f"files import each other in a circle: {chain}", statement.path, hint)
             return
         module = self.known.get(path) or self._read(statement, path)
         if module is not None:
@@ -439,12 +424,10 @@ class _Loader:
             self._unread(statement)
             return None
         if PurePosixPath(path).suffix != SUFFIX:
-            hints = (
-                f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`",
-                "drawings of other programs end in `.svg` or `.dxf`"
-                if PurePosixPath(path).suffix
-                else "the library needs no import",
-            )
+            other = "the library needs no import"
+            if PurePosixPath(path).suffix:
+                other = "drawings of other programs end in `.svg` or `.dxf`"
+            hints = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", other
             message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
             self._report("E0210", message, statement.path, *hints)
             return None

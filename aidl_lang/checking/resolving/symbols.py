@@ -153,20 +153,11 @@ class SymbolScope:
         return names
 
     def called(self, name: str) -> tuple[str, list[Signature]] | None:
-        """Returns the defined name of a callable and all candidates, innermost first, with aliases followed.
-        None if there are none.
-        """
+        """Returns the defined name of a callable and all candidates, innermost first, by way of aliases."""
         key: str | None = name
         if not any(name in s.callables or name in s.aliases for s in self.chain()):
-            key = next(
-                (
-                    k
-                    for s in self.chain()
-                    if (k := s.spelled_alike("callables", name) or s.spelled_alike("aliases", name))
-                    is not None
-                ),
-                None,
-            )
+            alike = (s.spelled_alike(of, name) for s in self.chain() for of in ("callables", "aliases"))
+            key = next((known for known in alike if known is not None), None)
         found: list[Signature] = []
         canonical: str | None = None
         seen: set[str] = set()
@@ -256,9 +247,7 @@ class Resolution:
 
 @lru_cache(maxsize=4)
 def library_scope(library: Library) -> SymbolScope:
-    """Returns the outermost scope: built-in names and those of the library. Nothing declares anything in it,
-    so one serves all programs.
-    """
+    """Returns the outermost scope, of built-in names and the library's, in which nothing is declared."""
     scope = SymbolScope(_NOWHERE)
     scope.callables = _Joined(SIGNATURES, library.callables)
     for name, target in library.aliases.items():

@@ -1,1 +1,0 @@
-"""Problems for the solver in files of their own: see README.md."""
