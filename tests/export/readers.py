@@ -147,7 +147,7 @@ def _of_svg(segment: Any) -> Curve:
 
 def read_dxf(data: bytes) -> dict[str, Body]:
     """Closed polylines, circles and ellipses, and other entities chained by their ends; by the path that each
-    carries.
+    carries. Areas of colour in a solid are left out.
     """
     import ezdxf
 
@@ -155,8 +155,14 @@ def read_dxf(data: bytes) -> dict[str, Body]:
     assert not document.audit().errors
     bodies: dict[str, Body] = defaultdict(Body)
     chains: dict[str, list[Curve]] = defaultdict(list)
-    for entity in document.modelspace():
-        path = "".join(tag.value for tag in entity.get_xdata("AIDL") if tag.code == 1000)
+    pairs = [
+        ("".join(tag.value for tag in entity.get_xdata("AIDL") if tag.code == 1000), entity)
+        for entity in document.modelspace()
+    ]
+    solid = {path for path, entity in pairs if entity.dxf.layer != "drawing"}
+    for path, entity in pairs:
+        if path in solid and entity.dxf.layer == "drawing":
+            continue
         kind = entity.dxftype()
         if kind == "LWPOLYLINE" and entity.closed:
             bodies[path].loops.append(Loop(_chained([_of_dxf(e) for e in entity.virtual_entities()])[0]))

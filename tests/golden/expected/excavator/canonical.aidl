@@ -6,8 +6,8 @@ assembly excavator {
 
     @color("black") @rigid solid tracks {
         belt = slot(length: track, width: 46)
-        @color("dimgray") hubs = linear_array(circle(radius: 11), n: 5, pitch: (track - 46) / 4)
-        @color("gray") shoes = along(rectangle(width: 8, height: 3), belt, pitch: 14)
+        @color("dimgray") hubs = linear_array(circle(radius: 10), n: 5, pitch: (track - 46) / 4)
+        @color("gray") @stroke(3mm) @dash(7, 5) drawing tread { edge = offset(belt, -3) }
     }
     @color(paint) @shade(slope) solid house {
         shell = path(
