@@ -211,7 +211,6 @@ class Model:
         return to_build123d(self._compiled, thickness)
 
     def _repr_svg_(self) -> str | None:
-        """Returns the drawing for notebooks, as far as the solver came."""
         return self.to_svg() if self._compiled.model is not None else None
 
     def _repr_html_(self) -> str | None:
@@ -257,11 +256,19 @@ def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
     return SourceFile(name, text), KeptWorld(disk)
 
 
-def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
-    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`."""
+def check(text: str | Path, settings: Settings | None = None, *, range: bool = False) -> list[Diagnostic]:
+    """Returns the diagnostics of a program, without solving it. What is read is as for `compile`. With
+    `range`, after solving it, and a warning tells where something changes kind over the range of a param.
+    """
     from aidl_lang import pipeline
 
-    return pipeline.check(*_read(text), settings or pipeline.Settings())
+    source, world = _read(text)
+    if not range:
+        return pipeline.check(source, world, settings or pipeline.Settings())
+    from aidl_lang.tools.ranges import turned
+
+    compiled = pipeline.compile(source, world, settings=settings or pipeline.Settings())
+    return [*compiled.diagnostics, *turned(compiled)]
 
 
 def compile(

@@ -37,7 +37,7 @@ def _never(span: Span) -> bool:
     return False
 
 
-_LEFT_BEHIND: dict[str, object] = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None}
+_LEFT_BEHIND = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None, "on_drawing": list}
 
 
 @record()
@@ -81,6 +81,7 @@ class Compiled:
     built: Model | None = field(default=None, repr=False)
     """The structure tree with its expressions, whose solved values `evaluate` gives."""
     evaluate: Evaluator | None = field(default=None, repr=False)
+    on_drawing: Callable[[], list[Diagnostic]] = field(default=list, repr=False)
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
     asked: Asked | None = field(default=None, repr=False)

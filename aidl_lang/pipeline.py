@@ -325,6 +325,7 @@ class _Finish:
             partial(_follows, lowered, self.solution),
             self.built.model,
             self.evaluator,
+            self.drawn.everything,
             self.settings.drawing,
         )
 

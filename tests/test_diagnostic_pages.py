@@ -62,6 +62,7 @@ def test_only_pages_about_use_do_without_programs() -> None:
         "E0602",
         "E0603",
         "E0606",
+        "W0607",
         "N0731",
         "N0741",
         "N0742",

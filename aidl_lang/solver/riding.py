@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
@@ -240,25 +241,18 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
     nodes = _node_keys(problem)
     rows, longest = problem.rows, problem.longest
     own: list[list[object]] = [[] for _ in problem.parent]
-    bounds = [0.0] * len(problem.initial) if longest is None else longest.tolist()
+    bounds = np.zeros(len(problem.initial)) if longest is None else longest
     # Groups that ride along depend on constraints further up, too.
     riding = riding_depths(problem, depths(problem.parent))
     dearness = (problem.standing, problem.spanned, problem.sealed, riding)
-    columns = (problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
-    for index, (group, bound, *entry) in enumerate(
-        zip(problem.group.tolist(), bounds, *(column.tolist() for column in columns), strict=True)
-    ):
-        own[group].append((index, bound, *entry))
+    columns = (bounds, problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
+    for index, (group, *entry) in enumerate(zip(problem.group.tolist(), *map(_keyed, columns), strict=True)):
+        own[group].append((index, *entry))
     holder = problem.holder.tolist()
-    for owner, node, at_most, scale in zip(
-        rows.constraint.tolist(),
-        rows.expression.tolist(),
-        rows.at_most.tolist(),
-        rows.scale.tolist(),
-        strict=True,
-    ):
+    stated = (rows.constraint, rows.expression, rows.at_most, rows.scale)
+    for owner, node, at_most, scale in zip(*map(_keyed, stated), strict=True):
         own[holder[owner]].append((owner, nodes[node], at_most, scale))
-    for owner, weight in enumerate(np.nan_to_num(problem.weight, nan=-1.0).tolist()):
+    for owner, weight in enumerate(_keyed(np.nan_to_num(problem.weight, nan=-1.0))):
         own[holder[owner]].append((owner, weight))
     for owner, unknown in problem.placed.T.tolist():
         own[holder[owner]].append((owner, unknown))
@@ -274,12 +268,18 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
 def _node_keys(problem: Problem) -> list[int]:
     tape = problem.tape
     keys: list[int] = []
-    for op, operands, constant in zip(tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True):
+    for op, operands, constant in zip(tape.op_list, tape.operand_lists, _keyed(tape.constants), strict=True):
         if op <= Op.UNKNOWN:
             keys.append(hash((op, constant, operands)))
         else:
             keys.append(hash((op, *[keys[operand] for operand in operands])))
     return keys
+
+
+def _keyed(column: NDArray[np.generic]) -> list[int]:
+    """Returns the numbers of a column by their bits: -1.0 and -2.0 have the same hash."""
+    found: list[int] = (column.view(np.int64) if column.dtype == np.float64 else column).tolist()
+    return found
 
 
 def ancestors(parent: Ints, depth: Ints, at: int) -> Ints:

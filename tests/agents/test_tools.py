@@ -379,3 +379,13 @@ def test_programs_without_end(program: str, code: str) -> None:
     made = ask("compile", program=program)
     assert made.data["status"] == "wrong"
     assert code in [f["code"] for f in made.data["findings"]["listed"]]
+
+
+def test_check_with_ranges_tells_where_something_changes_kind() -> None:
+    program = PLATE.replace("circle(center: fixed((10, 0))", "circle(center: fixed((width / 4, 3))")
+    made = ask("check", program=program.replace("20..80", "14..80"), ranges=True)
+    (finding,) = made.data["findings"]["listed"]
+    assert (finding["code"], finding["place"]["line"]) == ("W0607", 3)
+    assert "`plate.bore.rim` breaks through its edge" in finding["message"]
+    steady = PLATE.replace("20..80", "35..80")
+    assert "one kind over the range of each param" in ask("check", program=steady, ranges=True).text

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.tools.ends import Sweep
-from aidl_lang.tools.ide.lenses import can_be_tried, end_lenses, tried
+from aidl_lang.tools.ide.lenses import Found, can_be_tried, end_lenses, tried
 from aidl_lang.tools.ide.workspace import SETTINGS, View
 from tests.ide.conftest import seen
 
@@ -24,11 +23,11 @@ solid plate {
 """
 
 
-def titles(view: View, found: Sweep | None = None) -> list[tuple[str, str]]:
+def titles(view: View, found: Found | None = None) -> list[tuple[str, str]]:
     return [(lens.span.text.split()[1], lens.title) for lens in end_lenses(view, found)]
 
 
-def swept(view: View) -> Sweep:
+def swept(view: View) -> Found:
     return tried(view, SETTINGS, lambda done, count: None, 60.0)
 
 
@@ -40,7 +39,7 @@ def test_each_param_tells_what_came_of_it() -> None:
             "at `width = 120mm` the assert in line 10 fails (120 is not < 100); "
             "`width < 100` holds up to 99.99mm",
         ),
-        ("height", "works from 20mm to 200mm"),
+        ("height", "works from 20mm to 200mm, one kind throughout"),
         ("look", 'works with "other" and "third"'),
     ]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.llm import generation
+from aidl_lang.tools.llm.aidl import Aidl
 
 LAMP = """assembly lamp {
     solid foot { plate = rectangle(width: 60, height: 8) }
@@ -39,3 +40,19 @@ def test_the_stage_is_the_first_that_fails() -> None:
     )
     assert stage(apart) == "contacts"
     assert stage(plate.replace("REST", "")) == "done"
+
+
+def test_a_robust_program_is_asked_for_once() -> None:
+    plate = """solid plate {
+    param way = 0 in 0..50
+    body = rectangle(center: fixed((0, 0)), width: 80, height: 50)
+    hole bore { rim = circle(center: fixed((way, 0)), radius: 6) }
+}
+"""
+    assert Aidl().conversation().judge(plate).feedback == ""
+    conversation = Aidl(is_robust=True).conversation()
+    told = conversation.judge(plate).feedback
+    assert "let the range of `way` end at 34" in told
+    assert "Answer with the whole program" in told or "answer with the whole program" in told
+    assert conversation.judge(plate).feedback == ""
+    assert Aidl(is_robust=True).conversation().judge(plate.replace("0..50", "0..30")).feedback == ""

@@ -390,7 +390,7 @@ async def test_ends_of_params_are_tried_and_told_above_them(editor: Editor) -> N
     assert await lenses() == {
         1: "at `width = 120mm` the assert in line 5 fails (120 is not < 100); "
         "`width < 100` holds up to 99.99mm",
-        2: "works from 20mm to 200mm",
+        2: "works from 20mm to 200mm, one kind throughout",
     }
     editor.replace(uri, "width < 100", "width < 100 + 50")
     await editor.status(uri)

@@ -36,6 +36,14 @@ def _way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.mark.usefixtures("_way")
 class TestMemory:
+    def test_numbers_that_hash_alike_are_told_apart(self) -> None:
+        memory = Memory()
+        for high in (-1.0, -2.0):  # hash(-1.0) == hash(-2.0)
+            m = Model()
+            _, y = m.point(0.0, 3.0)
+            m.equal(y - high)
+            assert solve(m.problem(), memory=memory).values[1] == pytest.approx(high)
+
     @given(
         st.lists(st.floats(1.0, 12.0), min_size=5, max_size=5),
         st.lists(st.tuples(st.integers(0, 4), st.floats(1.0, 12.0)), max_size=3),

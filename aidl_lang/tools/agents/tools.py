@@ -62,6 +62,7 @@ Formats: TypeAlias = Annotated[
     Sequence[Format], "What to make: png is a picture, model the solved model as JSON, the others are files."
 ]
 _UNSOLVED = "no mistakes found; nothing was solved: `compile` tells whether the constraints hold"
+_ONE_KIND = "no mistakes found, and one kind over the range of each param, at the values that were tried"
 _WITHOUT_CONFLICT = {
     "wrong": "the program does not get as far as solving",
     "solved": "every constraint holds: there is no conflict",
@@ -72,27 +73,34 @@ _WITHOUT_CONFLICT = {
 class Tools:
     workspace: Workspace = field(default_factory=Workspace)
 
-    def check(self, program: Program, files: Files = None) -> Checked:
+    def check(
+        self, program: Program, files: Files = None, ranges: Annotated[bool, "Walk each param too."] = False
+    ) -> Checked:
         """Find the mistakes in an AIDL program without solving it, each with its place, the reason and, where
         there is one, a fix; also the program with those fixes applied that can mean nothing else. Quick: use
-        it after every edit, before compile.
+        it after every edit, before compile. With ranges it is solved, and tells at which value of a param a
+        solution flips, holes meet or leave their part, or parts begin to overlap.
         """
         source, world = self.workspace.open(program, files)
         settings = self.workspace.limits.settings
         found = world.reader(source).diagnostics(pipeline.check(source, world, settings))
+        if ranges and not has_errors(found):
+            from aidl_lang.tools.ranges import turned
+
+            _, compiled, reader = self._compiled(program, None, files)
+            found = [*compiled.diagnostics, *reader.diagnostics(turned(compiled, seconds=30.0))]
         mended = mend(source, world, settings) if any(d.fix for d in found) else Mended(source, found)
-        is_changed = bool(mended.fixes)
         left_over = world.reader(mended.source).diagnostics(mended.diagnostics)
-        blocks = [compact(found) or _UNSOLVED]
-        if is_changed:
+        blocks = [compact(found) or (_ONE_KIND if ranges else _UNSOLVED)]
+        if mended.fixes:
             left = compact(left_over) or "nothing is left to mend"
             blocks += [f"With these fixes: {', '.join(mended.fixes)}.", mended.source.text, f"Then: {left}"]
         return Checked(
             not has_errors(found),
             findings(found),
             list(mended.fixes),
-            mended.source.text if is_changed else None,
-            findings(left_over) if is_changed else None,
+            mended.source.text if mended.fixes else None,
+            findings(left_over) if mended.fixes else None,
             report=joined(blocks),
         )
 
@@ -221,14 +229,13 @@ class Tools:
         changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
         workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
-        replacement = Replacement(place(edit.span), edit.span.text, edit.replacement)
         changes = _changes(before, after)
         lead = f"line {edit.span.line}: `{edit.span.text}` became `{edit.replacement}`; {after.status}"
         return Edited(
             after.ok,
             drawing.status(after),
             text,
-            replacement,
+            Replacement(place(edit.span), edit.span.text, edit.replacement),
             changes,
             findings(after.diagnostics),
             report=joined([lead, changes, compact(after.diagnostics), text]),

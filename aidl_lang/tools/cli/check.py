@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import Diagnostic, has_errors
@@ -19,38 +20,53 @@ if TYPE_CHECKING:
     from aidl_lang.common.world import World
     from aidl_lang.pipeline import Compiled, Settings
     from aidl_lang.tools.ends import Sweep
+    from aidl_lang.tools.ranges import Ranges
 
 
-# --- The ends of params, for `aidl check --ends`: tried with progress, and reported.
+# --- The ends and ranges of params, for `aidl check --ends` and `--range`: tried with progress, and reported.
 
 
-def swept(source: SourceFile, world: World, settings: Settings, compiled: Compiled) -> Sweep:
-    """Tries a working program at the ends of its params, with progress on a terminal."""
+def _swept(
+    source: SourceFile, world: World, settings: Settings, compiled: Compiled, walks: bool | str
+) -> Sweep | Ranges:
+    """Tries a working program at the ends of its params, or between them, with progress on a terminal."""
     from aidl_lang.tools.ends import SweepJob, sweep
 
     job = SweepJob(source.name, source.text, world, settings)
     try:
-        return sweep(job, compiled.knobs, compiled.diagnostics, _progress)
+        if not walks:
+            return sweep(job, compiled.knobs, compiled.diagnostics, partial(_progress, "ends tried"))
+        from aidl_lang.tools.ranges import ranges
+
+        told = partial(_progress, "params walked")
+        return ranges(job, compiled.knobs, told, in_pairs=walks == "pairs")
     finally:
-        _progress(0, 0)
+        _progress("", 0, 0)
 
 
-def _progress(done: int, count: int) -> None:
+def _progress(what: str, done: int, count: int) -> None:
     """Prints progress over the last line of a terminal; removes it when done."""
     if sys.stderr.isatty():
-        text = f"{done} of {count} ends tried" if count else ""
+        text = f"{done} of {count} {what}" if count else ""
         print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def tell(name: str, sweep: Sweep) -> None:
+def tell(name: str, sweep: Sweep | Ranges) -> None:
     """Prints the faults on standard output; then a summary."""
     from aidl_lang.common.render import escape
-    from aidl_lang.tools.ends import sentence
+    from aidl_lang.tools.ends import Sweep, sentence
 
-    for each in sweep.turned:
-        if text := sentence(each, name):
-            print(f"{name}: {'' if each.ok else 'error '}{escape(text)}")
-    say(f"{name}: {_summary(sweep)}")
+    if isinstance(sweep, Sweep):
+        told = [(each, sentence(each, name)) for each in sweep.turned]
+        lines, last = [f"{'' if each.ok else 'error '}{text}" for each, text in told if text], _summary(sweep)
+    else:
+        from aidl_lang.tools.ranges import sentences, summary, together
+
+        lines, last = [text for walk in sweep.walks for text in sentences(walk)], summary(sweep)
+        lines += [text for pair in sweep.pairs for text in together(pair)]
+    for line in lines:
+        print(f"{name}: {escape(line)}")
+    say(f"{name}: {last}")
 
 
 def _summary(sweep: Sweep) -> str:
@@ -70,10 +86,14 @@ def _summary(sweep: Sweep) -> str:
     return "; ".join(parts)
 
 
-def data(name: str, sweep: Sweep) -> dict[str, Any]:
+def data(name: str, sweep: Sweep | Ranges) -> dict[str, Any]:
     """Returns the results for JSON."""
-    from aidl_lang.tools.ends import described
+    from aidl_lang.tools.ends import Sweep, described
 
+    if not isinstance(sweep, Sweep):
+        from aidl_lang.tools.ranges import described as walked
+
+        return walked(name, sweep)
     return {
         "file": name,
         "ok": sweep.ok,
@@ -97,7 +117,7 @@ class _Checked:
     fixes: tuple[str, ...] = ()
     status: str = ""
     was_read: bool = True
-    sweep: Sweep | None = None
+    sweep: Sweep | Ranges | None = None
 
 
 def register_check(parser: argparse.ArgumentParser) -> None:
@@ -109,6 +129,14 @@ def register_check(parser: argparse.ArgumentParser) -> None:
         how_far,
         "--ends",
         "try both ends of the range of each param as well, one at a time, and tell how far each may go",
+    )
+    flag(how_far, "--range", "walk each param over its range, and tell where something changes kind")
+    how_far.add_argument(
+        "--pairs",
+        dest="range",
+        action="store_const",
+        const="pairs",
+        help="as --range, and two params at a time",
     )
     how_far.add_argument(
         "--no-solve",
@@ -135,7 +163,7 @@ def run_check(arguments: argparse.Namespace) -> int:
             is_well = is_well and checked.sweep.ok
             swept.append(data(name, checked.sweep))
         if not arguments.json:
-            _tell(name, checked, mends=arguments.fix, asks_for_ends=arguments.ends)
+            _tell(name, checked, arguments)
     if arguments.json:
         import json
 
@@ -150,6 +178,7 @@ def run_check(arguments: argparse.Namespace) -> int:
                 for d in found
             ],
             **({"ends": swept} if arguments.ends else {}),
+            **({"range": swept} if arguments.range else {}),
         }
         print(json.dumps(document, indent=2, ensure_ascii=False))
     return exit_code(found) or (0 if is_well else 1)
@@ -188,21 +217,25 @@ def _found(
         return _Checked(pipeline.check(source, world, settings), fixes)
     compiled = pipeline.compile(source, world, settings=settings)
     status = compiled.status if compiled.model is not None else ""
-    sweep = swept(source, world, settings, compiled) if arguments.ends and compiled.ok else None
+    sweep = None
+    if compiled.ok and (arguments.ends or arguments.range):
+        sweep = _swept(source, world, settings, compiled, arguments.range)
     return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
 
 
-def _tell(name: str, checked: _Checked, *, mends: bool, asks_for_ends: bool) -> None:
+def _tell(name: str, checked: _Checked, arguments: argparse.Namespace) -> None:
     from aidl_lang.common.render import summary
 
     for title in checked.fixes:
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
-    for fix in (d.fix for d in checked.diagnostics if mends and d.fix is not None):
+    for fix in (d.fix for d in checked.diagnostics if arguments.fix and d.fix is not None):
         say(f"{name}: not fixed: {fix.title}: {_WHY[fix.is_sure]}")
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
-        untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""
+        what = "the ends of its params were not tried" if arguments.ends else "its params were not walked"
+        is_left = (arguments.ends or arguments.range) and checked.sweep is None
+        untried = f"; {what}" if is_left else ""
         say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}{untried}")
     if checked.sweep is not None:
         tell(name, checked.sweep)

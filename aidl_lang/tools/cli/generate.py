@@ -19,7 +19,7 @@ from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say, show
-from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, provider, sampling, value
+from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, flag, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_lang.tools.llm.generation import Generation, Task
@@ -43,6 +43,7 @@ def register_generate(parser: argparse.ArgumentParser) -> None:
     value(parser, "--image", "FILE", "a picture of what is meant (PNG, JPEG, WebP, GIF)")
     value(parser, "--attempts", "N", "replies to ask for at most (default: 5)", count_to(100), 5)
     value(parser, "--runs", "N", "conversations to have; the best is kept", count_to(100), 1)
+    flag(parser, "--robust", "ask once more with what changes kind over the range of each param")
     value(parser, "--transcript", "FILE", "where to write the conversation (default: beside the program)")
     add_provider(parser)
     parser.set_defaults(run=run_generate)
@@ -110,8 +111,8 @@ def _language(arguments: argparse.Namespace) -> Language:
     from aidl_lang.tools.llm.aidl import Aidl
 
     if not arguments.edit:
-        return Aidl()
-    language = Aidl(world=files.world(arguments.edit))
+        return Aidl(is_robust=arguments.robust)
+    language = Aidl(world=files.world(arguments.edit), is_robust=arguments.robust)
     return language if arguments.edit == files.STANDARD else replace(language, file=Path(arguments.edit).name)
 
 

@@ -19,6 +19,7 @@ from aidl_lang.tools import ends
 from aidl_lang.tools.ends import Sweep, Turned, valued
 from aidl_lang.tools.ide.guesses import Guess, guesses, number_for
 from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ranges import Ranges, Walk, ranges, sentence
 
 # --- Inlay hints: the solved values of first guesses, the chosen meaning of an ambiguous call, and values of
 # `param`s that were set from outside.
@@ -118,7 +119,15 @@ def _shown(value: Scalar) -> str:
             return fixed(value, _DECIMALS)
 
 
-# --- Lenses above params: the results of the program at the ends of their ranges, once tried.
+# --- Lenses above params: the results of the program at the ends of their ranges and between, once tried.
+
+
+@record()
+class Found:
+    """What became of the params of a program at their ends, and on the way there."""
+
+    sweep: Sweep
+    ranges: Ranges
 
 
 def can_be_tried(view: View) -> bool:
@@ -127,15 +136,19 @@ def can_be_tried(view: View) -> bool:
     return outcome is not None and outcome.ok and any(ends.has_range(knob) for knob in outcome.knobs)
 
 
-def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Sweep:
-    """Tries a program at the ends of its params. Raises ValueError if it cannot be tried, and Cancelled."""
+def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Found:
+    """Tries a program at the ends of its params, and walks between them, in half of the time each. Raises
+    ValueError if it cannot be tried, and Cancelled if the request was given up.
+    """
     if view.outcome is None or not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    return ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds)
+    knobs = view.outcome.knobs
+    sweep = ends.sweep(job, knobs, view.outcome.diagnostics, progress, seconds / 2)
+    return Found(sweep, ranges(job, knobs, progress, seconds / 2))
 
 
-def end_lenses(view: View, found: Sweep | None) -> list[Lens]:
+def end_lenses(view: View, found: Found | None) -> list[Lens]:
     """Returns one lens above each param that was tried; before, one that offers to try."""
     if not can_be_tried(view):
         return []
@@ -156,24 +169,29 @@ def _is_own(view: View, knob: Knob) -> bool:
     return knob.span is not None and knob.span.source is view.source
 
 
-def _told_at_ends(view: View, found: Sweep) -> Iterator[Lens]:
+def _told_at_ends(view: View, found: Found) -> Iterator[Lens]:
     by_place: dict[Span, dict[str, list[Turned]]] = {}
-    for each in found.turned:
+    walks = {walk.knob.path: walk for walk in found.ranges.walks}
+    for each in found.sweep.turned:
         if each.knob.span is not None and _is_own(view, each.knob):
             by_place.setdefault(each.knob.span, {}).setdefault(each.knob.path, []).append(each)
     for span, by_path in by_place.items():
-        texts = dict.fromkeys(_title(turned, view.source.name) for turned in by_path.values())
+        name = view.source.name
+        texts = dict.fromkeys(_title(turned, walks.get(p), name) for p, turned in by_path.items())
         yield Lens(span, " · ".join(texts), tuple(by_path))
 
 
-def _title(turned: Sequence[Turned], name: str) -> str:
+def _title(turned: Sequence[Turned], walk: Walk | None, name: str) -> str:
     said = [text for each in turned if (text := ends.sentence(each, name))]
+    between = [t for t in walk.turns if any(c.kind != "error" for c in t.changes)] if walk else []
+    said += [sentence(walk, turn) for turn in between if walk is not None]
     if said:
-        return " · ".join(said)
+        return first_few(said, _NAMED, " · …", " · ")
     knob = turned[0].knob
     if knob.low is None or knob.high is None or isinstance(knob.value, bool):
         return f"works with {' and '.join(valued(knob, each.value) for each in turned)}"
-    return f"works from {valued(knob, knob.low)} to {valued(knob, knob.high)}"
+    throughout = ", one kind throughout" if walk is not None and walk.ok else ""
+    return f"works from {valued(knob, knob.low)} to {valued(knob, knob.high)}{throughout}"
 
 
 # --- Lenses above structures: whether each solves, and its remaining motions.

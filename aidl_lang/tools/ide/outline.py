@@ -314,7 +314,6 @@ def _of_mention(view: View, mention: Mention) -> Colored:
 
 
 def _lines(colored: Colored) -> Iterator[Colored]:
-    """Yields a piece for each line, as editors want it."""
     start = colored.span.start
     for line in colored.span.text.split("\n"):
         if text := line.rstrip("\r"):

@@ -82,7 +82,6 @@ def _mentions_of(view: View, node: ast.Node) -> Iterator[Mention]:
 
 
 def _as_written(view: View, call: ast.Call, symbol: Symbol) -> Symbol:
-    """Returns the alias that a call uses, else the symbol itself."""
     if fold(call.callee.text) == fold(symbol.name):
         return symbol
     for scope in scope_at(view, call.span.start).chain():
@@ -366,7 +365,6 @@ def _meanings(view: View) -> dict[int, tuple[Place | None, str]]:
 
 
 def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
-    """Returns a place after the edits."""
     path, offset = place
     grown = sum(
         len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset

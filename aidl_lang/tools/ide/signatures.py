@@ -332,7 +332,6 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
 
 
 def _open_call(automaton: Automaton) -> Token | None:
-    """Returns the innermost open call in the innermost open block."""
     for token in reversed(automaton.open_brackets()):
         if token.kind == "{":
             return None

@@ -143,7 +143,6 @@ def _word_end(token: Token) -> int:
 
 
 def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:
-    """Returns the string or number that an offset lies in."""
     is_string = token.text[:1] in ("'", '"')
     if is_string and (offset < token.end or (token.kind == UNKNOWN and offset == token.end)):
         end = token.end - (token.kind == "STRING")

@@ -13,6 +13,7 @@ from aidl_lang import parser, pipeline
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.records import record
+from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.export import Options
@@ -181,6 +182,10 @@ _VALID = (
     "The program is valid. What is said above is worth another look: answer with the whole program, changed "
     "or, where it is meant so, as it is, in one ```aidl block."
 )
+_TURNED = (
+    "Somebody will turn the params. Where the drawing changes its kind on the way, say which meaning is "
+    "wanted, place parts so that it cannot happen, or let the range end before:"
+)
 _PLANNED = (
     "Go on: fill in what is empty or says `todo`, within these boxes or better ones. Answer with the whole "
     "program in one ```aidl block."
@@ -202,6 +207,8 @@ class Aidl:
     """What a program lost of earlier ones is asked for, and put back in the end."""
     plans: bool = True
     """A program with empty structures is a plan, to be continued; else it is taken as it is."""
+    is_robust: bool = False
+    """What changes kind over the ranges of its params is told once it is valid."""
 
     @property
     def name(self) -> str:
@@ -311,6 +318,12 @@ class AidlConversation:
             assert compiled.model is not None
             return "\n\n".join(filter(None, (generation.plan(compiled.model), remarks, asked, _PLANNED)))
         said = "\n\n".join(filter(None, (remarks, asked)))
+        if not said and self.language.is_robust and _TURNED not in self.told:
+            from aidl_lang.tools.ranges import turned
+
+            self.told.add(_TURNED)
+            if found := compact(turned(compiled)):
+                said = f"{_TURNED}\n\n{found}"
         return f"{said}\n\n{_VALID}" if said else ""
 
     def _to_ask_for(self) -> tuple[Loss, ...]:

@@ -216,8 +216,6 @@ def generate(
 
 
 class _Run:
-    """One conversation under way."""
-
     def __init__(
         self,
         task: Task,

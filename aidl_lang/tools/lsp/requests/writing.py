@@ -14,11 +14,20 @@ from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcIn
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.running import Cancelled
-from aidl_lang.tools.ends import Sweep, described
+from aidl_lang.tools.ends import described
 from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.lenses import Inlay, InlayKind, can_be_tried, end_lenses, inlays, lenses, tried
+from aidl_lang.tools.ide.lenses import (
+    Found,
+    Inlay,
+    InlayKind,
+    can_be_tried,
+    end_lenses,
+    inlays,
+    lenses,
+    tried,
+)
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.tools.ide.workspace import Positions
@@ -27,8 +36,7 @@ from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import EntryRequest, read
 from aidl_lang.tools.lsp.running import FAILED, LIMITS
 from aidl_lang.tools.lsp.server import Asked, Server
-
-# --- The command that tries the ends of params, and its results for the lenses above them.
+from aidl_lang.tools.ranges import described as walked
 
 CHECK_ENDS = "aidl.checkEnds"
 _LONGEST = 120.0
@@ -36,7 +44,7 @@ _LONGEST = 120.0
 _PAUSE = 0.2
 """Seconds between checks whether the text has changed."""
 _NOTHING = "there is nothing to try: the program must work as written, and have a param with a range"
-_TITLE = "Trying the ends of the params"
+_TITLE = "Trying the ends of the params, and what lies between"
 
 
 class Ends:
@@ -44,10 +52,10 @@ class Ends:
 
     def __init__(self, server: Server) -> None:
         self._server = server
-        self._found: dict[str, tuple[int, Sweep]] = {}
+        self._found: dict[str, tuple[int, Found]] = {}
         server.on_closed.append(lambda document: self._forget(document.uri))
 
-    def of(self, asked: Asked) -> Sweep | None:
+    def of(self, asked: Asked) -> Found | None:
         version, found = self._found.get(asked.uri, (None, None))
         return found if version == asked.known.version else None
 
@@ -68,9 +76,11 @@ class Ends:
         found = await self._swept(document, known)
         self._found[document.uri] = known.version, found
         self._server.refresh_hints()
-        return {"ok": found.ok, "tried": described(found), "left": found.left, "seconds": found.seconds}
+        sweep, between = found.sweep, walked(document.uri, found.ranges)
+        told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": between}
+        return told | {"ok": sweep.ok and found.ranges.ok}
 
-    async def _swept(self, document: Document, known: VersionedView) -> Sweep:
+    async def _swept(self, document: Document, known: VersionedView) -> Found:
         """Returns the results. Raises JsonRpcContentModified if the text changes before."""
         loop = asyncio.get_running_loop()
         told = await self._progress()
