@@ -16,7 +16,7 @@ from aidl_lang.tools.cli.generate import register_eval
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.aidl import Aidl
 
-THINGS = ("storm lantern", "city tram")
+THINGS = ("storm lantern", "excavator", "city tram")
 _FILLING = {"a", "an", "and", "of", "old", "school", "pair", "with", "the"}
 
 
@@ -29,7 +29,8 @@ def programs(name: str) -> list[str]:
 @pytest.mark.parametrize("name", VARIANTS)
 def test_each_guide_has_the_same_two_things(name: str) -> None:
     found = programs(name)
-    assert [next(t for t in THINGS if t in program) for program in found] == list(THINGS)
+    first = "excavator" if name == "full" else "storm lantern"
+    assert [next(t for t in THINGS if t in program) for program in found] == [first, "city tram"]
     for program in found:
         assert 30 <= len(program.splitlines()) <= 115
 
