@@ -89,7 +89,7 @@ def summary(found: Ranges) -> str:
     counts = [walk.knob.path for walk in found.walks if walk.declared]
     if counts:
         does = "changes" if len(counts) == 1 else "change"
-        parts.append(f"{first_few([f'`{path}`' for path in counts], 6)} {does} of what parts there are")
+        parts.append(f"{first_few([f'`{path}`' for path in counts], 6)} {does} which parts there are")
     if found.left:
         parts.append(f"{counted(len(found.left), 'param')} not walked: they take too long")
     if found.pairs or found.untried:
