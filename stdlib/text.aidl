@@ -48,12 +48,13 @@ shape text(
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
 }
-/// By the baseline of its first line.
+/// From its `start`, which is on the baseline of its first line unless another `level` is said.
 shape text(
     text,
     start: point,
     height: length,
     angle: turn = 0deg,
+    level: text = "baseline",
     align: text = "left",
     line_spacing = 1.6,
     bold: bool = false,
@@ -63,14 +64,17 @@ shape text(
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
+    let ink = ink(str(text), side, line_spacing, bold, font)
+    let base = start - turned(
+        (0, level_of(ink, level, str(text), line_spacing, bold, font) * height), angle
+    )
     letters = glyphs(
-        str(text), start, height, angle, side, line_spacing, outline, bold, font, stencil
+        str(text), base, height, angle, side, line_spacing, outline, bold, font, stencil
     )
     let glyph = letters.glyph
-    let ink = ink(str(text), side, line_spacing, bold, font)
-    let center = start + turned(middle_of(ink, height, (ink.bottom + ink.top) / 2), angle)
+    let center = base + turned(middle_of(ink, height, (ink.bottom + ink.top) / 2), angle)
     let width = (ink.right - ink.left) * height
-    let baseline = baseline_of(ink, start, height, angle)
+    let baseline = baseline_of(ink, base, height, angle)
 }
 /// As wide as said.
 shape text(
