@@ -50,6 +50,8 @@ STAGES = {
     f"aidl_lang.{name}"
     for name in ("syntax", "checking", "building", "solver", "geometry", "export", "parser", "pipeline")
 }
+MOST_LOADED = 150
+"""Modules of this package that the way from a text to its picture takes."""
 WEB = {"email", "http", "socket", "ssl", "urllib.request"}
 
 
@@ -76,6 +78,7 @@ def test_a_program_that_is_right_loads_nothing_that_explains(folder: Path) -> No
     told = {f"explaining.{name}" for name in explaining}
     told |= {"common.render", "geometry.dimensions", "geometry.freedom", "geometry.survey", "syntax.errors"}
     assert {f"aidl_lang.{name}" for name in told} & loaded == set()
+    assert sum(name.startswith("aidl_lang") for name in loaded) <= MOST_LOADED
     parts = {"numpy.ma", "numpy.random", "svgwrite.data.svgparser"}
     assert (WEB | parts | {"PIL", "difflib", "scipy"}) & loaded == set()
 
