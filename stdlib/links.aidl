@@ -76,7 +76,7 @@ fn ram(
 /// A bar with round ends and eyes from `start` to `end`, `width` across: a link, a coupling rod or a strut between two parts.
 ///
 /// `eyes` are spread evenly from end to end, each `bore` wide; 0 leaves them out. `start` and `end` may be points of any structure
-/// above, which it follows.
+/// above, which it follows. Lies with eyes half as wide.
 ///
 /// ```aidl
 /// assembly crank_drive {

@@ -371,7 +371,7 @@ def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attri
         hint = "make it a `hole`: what it encloses is taken away down to that depth"
     elif name == "stroke" and of.kind == "drawing" and values == [NO_OUTLINE]:
         wrong = "of a drawing takes a width: it is nothing but strokes"
-        hint = f"give a width, as in `@stroke(0.3mm)`, or leave `{written}` out"
+        hint = "give a width, as in `@stroke(0.3mm)`; areas without outline, as a glow, are a `solid`"
     if wrong:
         it.report("E0517", f"`@{attribute.name.text}` {wrong}", attribute, hints=[hint])
     return not wrong

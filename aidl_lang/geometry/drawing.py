@@ -16,6 +16,7 @@ from aidl_lang.common.running import Later
 from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
+    CoveredHoles,
     IdleHole,
     InnerLoop,
     LooseCurves,
@@ -61,7 +62,7 @@ from aidl_lang.geometry.notes import (
 )
 from aidl_lang.geometry.pieces import LETTERING, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
-from aidl_lang.geometry.sections import Section, Traced, fill, intersection, trace, trace_all
+from aidl_lang.geometry.sections import Section, Traced, difference, fill, intersection, trace, trace_all
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
@@ -241,7 +242,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            is_seen = isinstance(f, InnerLoop) and (
+            is_seen = isinstance(f, InnerLoop | CoveredHoles) and (
                 styles[f.structure.path].has_seams or any(map(is_filled, f.face.geometries))
             )
             if not is_seen:
@@ -479,7 +480,7 @@ def _areas(
     """Yields the paths and areas of geometry with a look of its own: what it encloses of its body."""
     for structure in root.walk():
         of = material.get(structure.path, fill([], "NonZero"))
-        for shape in shapes[structure.path] if structure.kind != "hole" else ():
+        for k, shape in enumerate(shapes[structure.path] if structure.kind != "hole" else (), 1):
             if not is_filled(shape.geometry):
                 continue
             loose: tuple[Piece, ...] = ()
@@ -491,6 +492,9 @@ def _areas(
                 section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
                 section = intersection(union_of(own_faces(network, [shape]).faces), of)
+                later = [s for s in shapes[structure.path][k:] if not is_filled(s.geometry)]
+                if later and (over := own_faces(network, later).faces):  # in the colour of the body again
+                    section = difference(section, union_of(over))
                 region = trace(network, section).region
             if region:
                 yield shape.geometry.path, _Area(section, region, loose)

@@ -221,7 +221,7 @@ def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[
         Diagnostic(
             "W0727",
             f"{' and '.join(ticked([w for w in FILLING if w in g.attributes], '@'))} of `{g.path}` "
-            f"counts for nothing: it encloses no part of `{s.path}`",
+            f"counts for nothing: it encloses no part of `{s.path}`, or is covered by what is written later",
             g.span,
             hints=("put it where there is material, or into a `drawing`",),
         )
