@@ -508,12 +508,8 @@ def _lying_areas(
         places = _places(structure, at)
         for g in structure.drawn:
             if (area := areas.get(g.path)) is not None:
-                look, box, place = (
-                    styled(styles[structure.path], g),
-                    region_bounds(area.region),
-                    places[g.path],
-                )
-                yield Solid(g.path, area.region, area.section, box, place, look.color, look.is_clear)
+                look, box = styled(styles[structure.path], g), region_bounds(area.region)
+                yield Solid(g.path, area.region, area.section, box, places[g.path], look.color, look.is_clear)
 
 
 def _places(structure: SolvedStructure, at: float) -> dict[str, float]:

@@ -228,6 +228,32 @@ def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
 
 # --- Letters -----------------------------------------------------------------------------------------
 
+LATER = """
+solid a {
+    face = rectangle(center: fixed((0, 0)), width: 100, height: 100)
+    drawing lines { level = line(fixed((-50, 20)), fixed((50, 20))) }
+    @color("red") over = circle(center: fixed((0, 20)), radius: 10)
+    @color("lime") under = circle(center: fixed((0, -20)), radius: 10)
+    bare = rectangle(center: fixed((0, -20)), width: 8, height: 8)
+    @color("blue") solid inner { dot = circle(center: fixed((30, -20)), radius: 5) }
+}
+"""
+
+
+def test_what_is_written_later_lies_on_top() -> None:
+    for suffix in (".png", ".pdf"):
+        data = written(suffix, LATER, pixels=1060).data if suffix == ".png" else written(suffix, LATER).data
+        image = (
+            Image.open(io.BytesIO(data)).convert("RGB")
+            if suffix == ".png"
+            else PdfDocument(data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+        )
+        assert near(image.getpixel((530, 330)), (255, 0, 0))  # the area hides the line before it
+        assert near(image.getpixel((530 + 80, 730)), (0, 255, 0))
+        assert near(image.getpixel((530, 730)), image.getpixel((530 - 300, 730)))
+        assert near(image.getpixel((830, 730)), (0, 0, 255))
+
+
 LETTERS = """
 assembly a {
     @color("yellow") solid plate { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
