@@ -27,7 +27,7 @@ from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, all_bounds, unio
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
-from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.tools.sweeping.bundle import Fault, fault
 
 OF_KIND = frozenset(
@@ -118,20 +118,24 @@ def look(compiled: Compiled, value: float, written: Look | None = None) -> Look:
     found.places = tuple(place for place, _ in spots)
     found.spots = np.array([number for _, number in spots]) / found.size
     found.readings = tuple((r.span.line, r.span.one_line, r.text) for r in model.readings)
-    found.names = frozenset(
-        (*(s.path for s in model.root.walk()), *(g.path for g in model.root.walk_geometry()))
-    )
+    structures = list(model.root.walk())
+    found.names = frozenset(s.path for s in structures)
+    found.names |= {path for s in structures for g in s.geometry for path in _stated(g)}
     found.ways = dict(_ways(model))
-    found.bodies = {
-        b.path: (len(b.region.faces), sum(len(face.holes) for face in b.region.faces), b.box)
-        for b in drawing.bodies
-    }
+    regions = [(b, b.region.faces) for b in drawing.bodies]
+    found.bodies = {b.path: (len(faces), sum(len(f.holes) for f in faces), b.box) for b, faces in regions}
     found.cutters = dict(_cutters(model, drawing))
     _see_contacts(found, model, drawing)
     if written is None and found.overlaps:
         found.is_picture = True
         _see_contacts(found, model, drawing)
     return found
+
+
+def _stated(g: SolvedGeometry) -> Iterator[str]:
+    """Yields the paths of geometry and its parts, without the pieces of an outline that is worked out."""
+    yield g.path
+    yield from (path for part in g.parts if g.recipe is None for path in _stated(part))
 
 
 def _spots(model: SolvedModel) -> Iterator[tuple[str, float]]:

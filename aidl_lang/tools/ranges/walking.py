@@ -115,12 +115,8 @@ class Ranges:
 
 def has_way(knob: Knob) -> bool:
     """True for a param with a way to walk: a number with a range."""
-    return (
-        knob.range is not None
-        and not isinstance(knob.value, bool | str)
-        and not knob.choices
-        and knob.low != knob.high
-    )
+    is_number = not isinstance(knob.value, bool | str) and not knob.choices
+    return is_number and knob.range is not None and knob.low != knob.high
 
 
 class OutOfSteps(Exception):  # noqa: N818 (it ends a walk, and is no error)
