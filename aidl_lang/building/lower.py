@@ -283,7 +283,7 @@ class _Lowering:
         for the root.
         """
         around = chain(s)
-        depths = (len(around) - 1 - n for n, each in enumerate(around) if _is_rigid(each))
+        depths = (len(around) - 1 - n for n, each in enumerate(around) if _is_said_rigid(each))
         return next((depth or -1 for depth in depths), 0)
 
     def _is_rigid(self, s: Structure) -> bool:
@@ -475,7 +475,7 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
     return without if len(without) < len(children) else ()
 
 
-def _is_rigid(structure: Structure) -> bool:
+def _is_said_rigid(structure: Structure) -> bool:
     return structure.attributes.get("rigid", (False,)) != (False,)
 
 

@@ -300,20 +300,17 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    covered: list[SolvedStructure] = []
-    for structure in (*stacked(model.root), None):
-        while covered and (structure is None or not structure.path.startswith(f"{covered[-1].path}.")):
-            done = covered.pop()
-            around = next(s for s in model.root.walk() if done in s.structures)
-            yield Group(f"{done.path}{_OVER}", tuple(of[f"{done.path}{_OVER}"]), _identity(around, drawing))
-        if structure is None:
-            return
+    holder = {child.path: s for s in model.root.walk() for child in s.structures}
+    for structure in stacked(model.root):
         identity = _identity(structure, drawing)
         yield Group(structure.path, tuple(of[structure.path]), identity)
         if drawn := of.get(f"{structure.path}{_DRAWN}"):
             yield Group(f"{structure.path}{_DRAWN}", tuple(drawn), {**identity, "data-kind": "drawing"})
-        if f"{structure.path}{_OVER}" in of:
-            covered.append(structure)
+        if over := of.get(f"{structure.path}{_OVER}"):
+            solid = holder[structure.path]
+            while solid.kind == "drawing":
+                solid = holder[solid.path]
+            yield Group(f"{structure.path}{_OVER}", tuple(over), _identity(solid, drawing))
 
 
 def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:

@@ -518,8 +518,7 @@ def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
     after = {s.path: at + k for k, s in enumerate(stacked(structure))} if structure.structures else {}
     for k, g in enumerate(structure.drawn, 1):
         below = drawing_below(structure, g) if after else None
-        place = at if below is None else max(after[s.path] for s in below.walk())
-        places[g.path] = place + k / count
+        places[g.path] = (at if below is None else after[below.path]) + k / count
     return places
 
 

@@ -264,14 +264,15 @@ def stacked(root: SolvedStructure) -> Iterator[SolvedStructure]:
 
 
 def drawing_below(structure: SolvedStructure, geometry: SolvedGeometry) -> SolvedStructure | None:
-    """Returns the last drawing in a structure that is written before a geometry of it, and so lies below."""
+    """Returns the last drawing in a structure that is written before a geometry of it, and so lies below: of
+    one with drawings in it the last of these.
+    """
     at = geometry.span
     if at is None or structure.kind == "drawing":
         return None
-    drawings = (s for s in reversed(structure.structures) if s.kind == "drawing")
-    return next(
-        (s for s in drawings if s.span and s.span.source is at.source and s.span.start < at.start), None
-    )
+    drawings = [s for s in structure.structures if s.kind == "drawing" and s.span is not None]
+    before = [s for s in drawings if s.span and s.span.source is at.source and s.span.start < at.start]
+    return list(stacked(before[-1]))[-1] if before else None
 
 
 def idle_orders(root: SolvedStructure, bodies: Collection[str]) -> list[Diagnostic]:

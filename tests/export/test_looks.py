@@ -241,13 +241,9 @@ solid a {
 
 
 def test_what_is_written_later_lies_on_top() -> None:
-    for suffix in (".png", ".pdf"):
-        data = written(suffix, LATER, pixels=1060).data if suffix == ".png" else written(suffix, LATER).data
-        image = (
-            Image.open(io.BytesIO(data)).convert("RGB")
-            if suffix == ".png"
-            else PdfDocument(data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
-        )
+    picture = Image.open(io.BytesIO(written(".png", LATER, pixels=1060).data)).convert("RGB")
+    page = PdfDocument(written(".pdf", LATER).data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+    for image in (picture, page):
         assert near(image.getpixel((530, 330)), (255, 0, 0))  # the area hides the line before it
         assert near(image.getpixel((530 + 80, 730)), (0, 255, 0))
         assert near(image.getpixel((530, 730)), image.getpixel((530 - 300, 730)))
