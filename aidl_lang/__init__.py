@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from aidl_lang.building.model import Knob
     from aidl_lang.common.world import World
-    from aidl_lang.export import Options
     from aidl_lang.export.comparison import Comparison
+    from aidl_lang.export.job import Options
     from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
     from aidl_lang.geometry.survey import Part
     from aidl_lang.pipeline import Compiled, Settings
@@ -141,13 +141,13 @@ class Model:
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
         """Returns the drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
-        from aidl_lang.export import Options
+        from aidl_lang.export.job import Options
 
         return self._compiled.export(".svg", Options(show)).decode()
 
     def to_json(self, *, timings: bool = False) -> str:
         """Returns the solved model as JSON (docs/json.md)."""
-        from aidl_lang.export import Options
+        from aidl_lang.export.job import Options
 
         options = Options(timings=self.timings if timings else None)
         return self._compiled.export(".json", options).decode()

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from aidl_lang.checking.allowing import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
-    from aidl_lang.export import Exported, Exporter, Options, Progress
+    from aidl_lang.export import Exporter
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.export.cut_list import Item
     from aidl_lang.export.drafting import Draft
+    from aidl_lang.export.job import Exported, Options, Progress
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
@@ -119,16 +120,17 @@ class Compiled:
 
     def exporting(self, options: Options | None = None, progress: Progress | None = None) -> Exporting:
         """Returns `exported` for several formats with the same options; what they share is made once."""
-        from aidl_lang.export import Exporter, Job, Options
+        from aidl_lang.export import Exporter
+        from aidl_lang.export.job import Job, Options
 
-        made = Options(self.show) if options is None else options
-        job = Job(*self._finished, lambda: self.diagnostics, made)
+        job = Job(*self._finished, lambda: self.diagnostics, options or Options(self.show))
         return Exporting(Exporter(job) if progress is None else Exporter(job, progress), self)
 
     def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
         """Returns the drawing sheets in each of some formats of pictures. Raises as `exported` does."""
-        from aidl_lang.export import Job, rendered
+        from aidl_lang.export import rendered
         from aidl_lang.export.drafting import drafted
+        from aidl_lang.export.job import Job
 
         job = Job(*self._finished, options=options)
         with within(self.limit, "drawing"):
@@ -147,18 +149,16 @@ class Compiled:
         """
         from aidl_lang.geometry.survey import survey
 
-        model, drawing = self._finished
         with within(self.limit, "measuring"):
-            found = survey(model, drawing, paths, densities)
+            found = survey(*self._finished, paths, densities)
         return replace(found, notes=self.audible(found.notes))
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """Measures the part at a path, or the whole. Raises as `surveyed` does."""
         from aidl_lang.geometry.survey import measured
 
-        model, drawing = self._finished
         with within(self.limit, "measuring"):
-            return measured(model, drawing, path, densities)
+            return measured(*self._finished, path, densities)
 
     def compared(self, after: Compiled) -> Comparison:
         """Compares with a later version. Raises TooLongError, and AidlError if there is no drawing."""
@@ -202,7 +202,7 @@ class Exporting:
         return [(item, self._audible(exported)) for item, exported in made]
 
     def _limited(self, suffix: str, write: Callable[[str], T]) -> T:
-        from aidl_lang.export import ExportError
+        from aidl_lang.export.job import ExportError
 
         limit = self._compiled.limit
         try:

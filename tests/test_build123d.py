@@ -37,7 +37,7 @@ assembly things {
 
 def test_without_build123d_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "build123d", None)
-    monkeypatch.setattr("aidl_lang.export.find_spec", lambda name: None)
+    monkeypatch.setattr("aidl_lang.export.job.find_spec", lambda name: None)
     with pytest.raises(aidl_lang.AidlError) as told:
         aidl_lang.compile(PLATE).to_build123d()
     assert told.value.diagnostics[0].code == "E0913"

@@ -9,7 +9,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.solved import Dimension, Length
 

@@ -13,7 +13,7 @@ from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.parser import DEFAULT_LIMITS, parse
 from aidl_lang.syntax import tables
 from tests.compiled import EXAMPLES, example

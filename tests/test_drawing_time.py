@@ -14,7 +14,7 @@ from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.export import ExportError
+from aidl_lang.export.job import ExportError
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools

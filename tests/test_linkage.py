@@ -16,7 +16,7 @@ import trimesh
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 
 FILE = Path(__file__).parents[1] / "examples" / "workshop" / "linkage.aidl"
 CRANK, COUPLER, ROCKER, BASE = 40.0, 110.0, 80.0, 100.0

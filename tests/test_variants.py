@@ -22,7 +22,7 @@ from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, MemoryWorld
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solver.settings import Stages
+from aidl_lang.solver import Stages
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.pages import guide

@@ -16,6 +16,7 @@ from aidl_lang.building.curves import defining, view, xy
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
+from aidl_lang.checking.types import BoxType
 from aidl_lang.common.records import record
 
 SIDES = ("left", "right", "top", "bottom")
@@ -32,6 +33,8 @@ Source = Geometry | Structure | PointVal
 @record(eq=False)
 class Box:
     """The common box of its sources, as `here` sees them."""
+
+    value_type = BoxType()
 
     sources: tuple[Source, ...]
     here: Structure

@@ -35,6 +35,7 @@ from aidl_lang.building.state import (
     NameBinding,
     Reach,
     Scope,
+    own_names,
 )
 from aidl_lang.building.values import (
     NOTHING,
@@ -145,7 +146,8 @@ class Copier:
         copy.scope = scope = Scope(names.parent, copy)
         for name, binding in names.values.items():
             new = self._renamed(name, names)
-            if name == "angle" and self._swaps_sides and self._is_boxed(names) and isinstance(binding, Num):
+            has_sides = names.values.keys() >= _SIDES
+            if name == "angle" and self._swaps_sides and has_sides and isinstance(binding, Num):
                 # With left and right exchanged, the direction from left to right stays.
                 turned = self._number(name, binding, source.owner)
                 scope.values[new] = replace(turned, expression=opposite(turned.expression))
@@ -174,10 +176,6 @@ class Copier:
         words = [_OPPOSITE[w] if w in sides else w for w in stem.split("_")]
         new = "_".join(words)
         return new + bracket + index if new in names.values else name
-
-    @staticmethod
-    def _is_boxed(names: Scope) -> bool:
-        return names.values.keys() >= _SIDES
 
     # --- Values --------------------------------------------------------------------------------
 
@@ -293,8 +291,6 @@ class Copier:
         return Frame(x, y, frame.rotation, frame.mirrored)
 
     def _members(self, source: Structure, copy: Structure) -> None:
-        from aidl_lang.building.structures import own_names  # they instantiate what is copied
-
         names = source.scope
         assert isinstance(names, Scope)
         copy.scope = scope = Scope(_around(names.parent, source, copy), copy, labels=names.labels)

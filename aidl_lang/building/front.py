@@ -18,8 +18,8 @@ from aidl_lang.common.world import World
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.parser import DEFAULT_LIMITS as DEFAULT_TEXT_LIMITS
 from aidl_lang.parser import Parsed, TextLimits, parse
-from aidl_lang.solver.settings import Settings as SolverSettings
-from aidl_lang.solver.settings import Stages
+from aidl_lang.solver import Settings as SolverSettings
+from aidl_lang.solver import Stages
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 

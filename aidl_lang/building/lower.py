@@ -200,7 +200,7 @@ class _Lowering:
         problem = Problem(
             tape=self.tape.finish(),
             initial=np.array([u.guess for u in found], dtype=np.float64),
-            scale=np.array([self._scale(u) for u in found], dtype=np.float64),
+            scale=np.array([_RADIAN / self.size if u.angular else 1.0 for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
             group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.intp),
             frame_of=np.array([self._frame_of(u) for u in found], dtype=np.intp),
@@ -261,10 +261,6 @@ class _Lowering:
     def _frame_of(self, unknown: Unknown) -> int:
         moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
         return self.groups[moved] if moved is not None else -1
-
-    def _scale(self, unknown: Unknown) -> float:
-        """Returns one millimetre, or the turn that moves a point at the size of the model by as much."""
-        return _RADIAN / self.size if unknown.angular else 1.0
 
     def _stands(self, unknown: Unknown) -> bool:
         """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact

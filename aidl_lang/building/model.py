@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
-from aidl_lang.checking.types import fields_of
+from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
 from aidl_lang.common.font_files import Curve
 from aidl_lang.common.lettering import Glyph, silhouette
@@ -134,6 +134,10 @@ class Geometry:
         return silhouette(self.glyphs) if self.trace is None else self.trace.silhouette
 
     @property
+    def value_type(self) -> Type:
+        return geometry_type(self.type)
+
+    @property
     def bound_to(self) -> Structure:
         """The structure whose unknowns it depends on, which alone (and those around it) may constrain it."""
         return self.reach or self.owner
@@ -246,6 +250,7 @@ class Structure:
     ground      the solid on whose material alone all in a drawing is drawn
     """
 
+    value_type = StructureType()
     kind: str
     name: str
     parent: Structure | None
@@ -441,6 +446,8 @@ class Comparison:
 @record(eq=False)
 class Condition:
     """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
+
+    value_type = TruthType()
 
     operator: str
     parts: tuple[Condition | Comparison | bool, ...]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NoReturn, TypeAlias
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
-from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, TextVal, Value
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, RecordVal, TextVal, Value, point
 from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
@@ -501,3 +501,14 @@ class Interpreter:
 Arguments = Mapping[str, Value]
 Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 """A function that is built in: (interpreter, arguments by parameter, call, environment)."""
+
+
+def own_names(scope: Scope, structure: Structure) -> None:
+    """Adds `self`, `origin` and the axes, which every structure has."""
+    exact = [point(ex.constant(x), ex.constant(y), Exactness.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
+    scope.values["self"] = structure
+    scope.values["origin"] = exact[0]
+    for name, end in zip(("x_axis", "y_axis"), exact[1:], strict=True):
+        axis = Geometry("line", structure, structure.span, {"start": exact[0], "end": end})
+        axis.name, axis.container, axis.construction = name, structure, True
+        scope.values[name] = axis

@@ -16,7 +16,7 @@ from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.impose import read_constraint
 from aidl_lang.building.members import passed
-from aidl_lang.building.model import Frame, Geometry, Structure
+from aidl_lang.building.model import Frame, Structure
 from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.state import (
     Candidate,
@@ -28,6 +28,7 @@ from aidl_lang.building.state import (
     Reach,
     Scope,
     indexed,
+    own_names,
 )
 from aidl_lang.building.values import (
     NOTHING,
@@ -38,7 +39,6 @@ from aidl_lang.building.values import (
     Num,
     PointVal,
     number,
-    point,
     type_of,
 )
 from aidl_lang.checking import rules
@@ -208,17 +208,6 @@ def _around(scope: Scope, name: str, structure: Structure) -> Scope:
     around = Scope(scope)
     around.values[name] = structure
     return around
-
-
-def own_names(scope: Scope, structure: Structure) -> None:
-    """Adds `self`, `origin` and the axes, which every structure has."""
-    exact = [point(ex.constant(x), ex.constant(y), Exactness.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
-    scope.values["self"] = structure
-    scope.values["origin"] = exact[0]
-    for name, end in zip(("x_axis", "y_axis"), exact[1:], strict=True):
-        axis = Geometry("line", structure, structure.span, {"start": exact[0], "end": end})
-        axis.name, axis.container, axis.construction = name, structure, True
-        scope.values[name] = axis
 
 
 def _place(

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
-from functools import cache
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression
 from aidl_lang.checking.types import (
     ANY,
-    BoxType,
     ListType,
     ModuleType,
     PointType,
@@ -22,7 +20,6 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
     Type,
-    geometry_type,
     number_type,
     with_article,
 )
@@ -65,10 +62,16 @@ class Num:
         value = self.expression.value  # maybe not a number
         return self.dimension in (None, PLAIN) and abs(value) < 1e15 and value == int(value)
 
+    @property
+    def value_type(self) -> Type:
+        return number_type(self.dimension, self.is_whole)
+
 
 @record(slots=True)
 class PointVal:
     """A point: coordinates in the frame of the structure that asks."""
+
+    value_type = PointType()
 
     x: Num
     y: Num
@@ -76,12 +79,14 @@ class PointVal:
 
 @record(slots=True)
 class TextVal:
+    value_type = TextType()
     value: str
     is_param: bool = False
 
 
 @record(slots=True)
 class RangeVal:
+    value_type = RangeType()
     start: Num
     end: Num
     exclusive: bool
@@ -122,10 +127,16 @@ class ListVal(_Holding):
     def __post_init__(self) -> None:
         self._weigh(self.items)
 
+    @property
+    def value_type(self) -> Type:
+        return self.kind or self.is_of(_list_type(self.items))
+
 
 @record(slots=True)
 class RecordVal(_Holding):
     """Values under names of their own: `record(clearance: 3.4, tap: 2.5)`."""
+
+    value_type = RecordType()
 
     fields: Mapping[str, Value]
 
@@ -136,6 +147,8 @@ class RecordVal(_Holding):
 @record(eq=False)
 class Instantiation:
     """A call of a template, waiting for the name it is assigned to. `scope` is the one that its body sees."""
+
+    value_type = StructureType()
 
     signature: Signature
     scope: object
@@ -165,6 +178,10 @@ class Array:
         row = self.row(index)
         assert row is not None
         return row
+
+    @property
+    def value_type(self) -> Type:
+        return _list_type(self.items())
 
     def row(self, index: int) -> Array | None:
         """Returns the members of a many-index array whose first index is `index`."""
@@ -200,11 +217,14 @@ class StructureCopy:
 class Namespace:
     """The names that `import "p" as name` brings."""
 
+    value_type = ModuleType()
+
     def __init__(self, values: Mapping[str, object]) -> None:
         self.values = values
 
 
 NOTHING = Nothing()
+_TRUTH = TruthType()
 
 if TYPE_CHECKING:
     Value: TypeAlias = (
@@ -276,33 +296,9 @@ def holds(value: Value, kind: type) -> bool:
 
 
 def type_of(value: Value) -> Type:
-    """Returns the type by which overloads are chosen."""
-    make = _types().get(type(value))
-    return make(value) if make is not None else ANY
-
-
-@cache
-def _types() -> Mapping[type, Callable[[Any], Type]]:
-    from aidl_lang.building.boxes import Box
-    from aidl_lang.building.model import Condition, Geometry, Structure
-
-    def always(kind: Type) -> Callable[[Any], Type]:
-        return lambda _: kind
-
-    return {
-        Num: lambda v: number_type(v.dimension, v.is_whole),
-        PointVal: always(PointType()),
-        Geometry: lambda v: geometry_type(v.type),
-        **dict.fromkeys((Structure, Instantiation), always(StructureType())),
-        Box: always(BoxType()),
-        TextVal: always(TextType()),
-        **dict.fromkeys((bool, Condition), always(TruthType())),
-        RangeVal: always(RangeType()),
-        RecordVal: always(RecordType()),
-        Namespace: always(ModuleType()),
-        ListVal: lambda v: v.kind or v.is_of(_list_type(v.items)),
-        **dict.fromkeys((Array, Pattern), lambda v: _list_type(v.items())),
-    }
+    """Returns the type by which overloads are chosen; ANY for what has none yet."""
+    kind: Type = _TRUTH if isinstance(value, bool) else getattr(value, "value_type", ANY)
+    return kind
 
 
 def _list_type(items: Sequence[Value]) -> Type:

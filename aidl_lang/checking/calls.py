@@ -213,20 +213,13 @@ def check_square(check: Inference, node: ast.Expression) -> None:
         fix = Fix("make it the shape", (Edit(_before(value), "size: "),))
         check.report("E0344", message, node, label="say which", hints=[hint], fix=fix)
     elif isinstance(kind, PointType) or (isinstance(kind, ListType) and kind.length == 2):
+        from aidl_lang.checking.misfits import two_sizes
+
         two_sizes(check, node, node.arguments[0])
 
 
 def _before(node: ast.Node) -> Span:
     return Span(node.span.source, node.span.start, node.span.start)
-
-
-def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
-    start = argument.span.start
-    name = Span(node.span.source, start, argument.value.span.start)
-    message = f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`"
-    edits = Edit(node.callee.span, "rectangle"), Edit(name, "size: ")
-    fix = Fix("make it a rectangle", edits, is_sure=True)
-    check.report("E0345", message, argument.value, label="two sizes", fix=fix)
 
 
 _SAME_AS_ARGUMENT = frozenset({"fixed", "guess", "written", "abs", "min", "max"})

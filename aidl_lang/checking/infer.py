@@ -6,12 +6,16 @@ everywhere, and after an error the type is ANY too, so that one mistake is repor
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import reduce
+from functools import lru_cache, reduce
+from typing import Any, TypeVar
 
 from aidl_lang.checking import calls, facts, members, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
+from aidl_lang.checking.library import Library
+from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import Resolution, Symbol
 from aidl_lang.checking.rules import TypeMisfit, shown
 from aidl_lang.checking.types import (
@@ -32,6 +36,8 @@ from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
+
+T = TypeVar("T")
 
 _DEEPEST = 120
 """Levels of expressions and of the names in them that are followed: within Python's usual limit on frames."""
@@ -81,6 +87,13 @@ class Inference:
 
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
+
+    def of_standard(self, ask: Callable[..., T], definition: ast.Node, *more: str) -> T:
+        """Returns the answer of a question of `facts` on a definition of the library. It sees nothing of a
+        program, so each is found once.
+        """
+        answer: T = _of_standard(self.resolution.library, ask, definition, *more)
+        return answer
 
     def called(self, node: ast.Call) -> str:
         """Returns the name that a call calls, with aliases resolved."""
@@ -338,3 +351,18 @@ def _loose(kind: Type) -> Type:
 
 def _at(node: ast.Node) -> Span:
     return Span(node.span.source, node.span.start, node.span.start)
+
+
+_EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))
+_ONE_AT_A_TIME = threading.Lock()  # an inference serves one thread
+
+
+@lru_cache(maxsize=8192)
+def _of_standard(library: Library, ask: Callable[..., Any], definition: ast.Node, *more: str) -> Any:
+    with _ONE_AT_A_TIME:
+        return ask(_alone(library, definition), definition, *more)
+
+
+@lru_cache(maxsize=1024)
+def _alone(library: Library, definition: ast.Node) -> Inference:
+    return Inference(resolve(_EMPTY, None, library), standard=())

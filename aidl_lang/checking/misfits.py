@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
-from aidl_lang.checking.calls import two_sizes
 from aidl_lang.checking.facts import body_of, is_number, is_point
 from aidl_lang.checking.resolving.complaints import called_field, did_you_mean, respell
 from aidl_lang.checking.rules import shown
@@ -343,3 +342,12 @@ _ANSWERS = (
     _unknown_parameter,
     _not_together,
 )
+
+
+def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
+    start = argument.span.start
+    name = Span(node.span.source, start, argument.value.span.start)
+    message = f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`"
+    edits = Edit(node.callee.span, "rectangle"), Edit(name, "size: ")
+    fix = Fix("make it a rectangle", edits, is_sure=True)
+    check.report("E0345", message, argument.value, label="two sizes", fix=fix)

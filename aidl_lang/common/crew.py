@@ -10,11 +10,11 @@ from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.identity import package
 from aidl_lang.common.names import nearest
 from aidl_lang.common.processes import Engine, Guarded, Limit, LimitError, limit_met
 from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.records import record
+from aidl_lang.common.resources import package
 
 # --- Many calls at a time on one engine: those that are done are handed over as they come, and one whose
 # process dies, or of which nothing is heard, is given once more when there is nothing else to do.

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path, PurePath
 
-from aidl_lang.common import drawings, font_files
+from aidl_lang.common import font_files
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 
 # --- Reads regular files of bounded size, and remembers which: what was read is not to be overwritten.
@@ -131,7 +131,8 @@ def _harmless(cell: object) -> object:
 # --- The kinds of files that a program may read beside itself, by their suffixes.
 
 PROGRAM = ".aidl"
-DATA = (*font_files.SUFFIXES, *drawings.SUFFIXES)
+DRAWINGS = (".svg", ".dxf")
+DATA = (*font_files.SUFFIXES, *DRAWINGS)
 """What is read as bytes: no message quotes it."""
 
 
@@ -143,3 +144,8 @@ def is_data(path: str | PurePath) -> bool:
 def may_be_read(path: str | PurePath) -> bool:
     """Tells whether a program may read a file of this name."""
     return PurePath(path).suffix == PROGRAM or is_data(path)
+
+
+def is_drawing(path: str) -> bool:
+    """Tells by its name whether a file is read as a drawing."""
+    return PurePath(path).suffix.lower() in DRAWINGS

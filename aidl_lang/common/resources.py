@@ -1,15 +1,18 @@
-"""The places of the files that ship with the package, and its pages on diagnostics."""
+"""The places of the files that ship with the package, its pages on diagnostics, and which package it is."""
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
+import platform
 import re
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
 from aidl_lang.common.files import replace
+from aidl_lang.version import __version__
 
 # --- The places of the files that ship with the package: grammar, standard library, pages on diagnostics.
 #
@@ -55,8 +58,6 @@ def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], 
 
 def _kept(name: str, inputs: Iterable[Path]) -> Path:
     """Returns the file of a checkout whose name holds a digest of everything its content depends on."""
-    import hashlib
-
     digest = hashlib.sha256()
     for path in inputs:
         data = path.read_bytes()
@@ -108,3 +109,36 @@ def near(code: str) -> list[str]:
 def _pages() -> dict[str, Path]:
     paths = [p for p in resource("docs/diagnostics").glob("*.md") if re.fullmatch(r"[EWN]\d{4}", p.stem)]
     return {path.stem: path for path in sorted(paths, key=lambda p: ("EWN".index(p.stem[0]), p.stem))}
+
+
+_NUMBERS = ("numpy", "scipy", "manifold3d", "ezdxf", "fonttools", "reportlab", "resvg-py", "svgwrite")
+"""Packages whose versions may change a digit or a byte of a result."""
+
+
+@cache
+def package() -> str:
+    """Returns `0.9.0+3f2a…`: the version, and a digest of code, grammar and standard library."""
+    code = Path(__file__).resolve().parents[1]
+    digest = hashlib.sha256()
+    shipped = [(path, path.relative_to(code)) for path in code.rglob("*.py") if "_data" not in path.parts]
+    for name in ("stdlib", "grammar"):
+        shipped += [(path, Path(name, path.name)) for path in resource(name).iterdir() if path.is_file()]
+    for path, place in sorted(shipped, key=lambda each: each[1].as_posix()):
+        data = path.read_bytes()
+        digest.update(f"{place.as_posix()} {len(data)}\n".encode())
+        digest.update(data)
+    return f"{__version__}+{digest.hexdigest()[:16]}"
+
+
+@cache
+def surroundings() -> str:
+    """Returns `package` with the versions of what computes and writes beside it."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    known = [f"python {platform.python_version()} {platform.machine()}"]
+    for name in _NUMBERS:
+        try:
+            known.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            known.append(f"{name} –")
+    return ", ".join([package(), *known])

@@ -20,9 +20,8 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, RemedySearch, dear, left_out, remedies, wished
-from aidl_lang.explaining.trials import Trials
+from aidl_lang.explaining.trials import Dial, Trials, exact_numbers, written_numbers
 from aidl_lang.solver.problem import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
 

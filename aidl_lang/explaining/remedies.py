@@ -18,8 +18,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
-from aidl_lang.explaining.trials import Trials, mends
+from aidl_lang.explaining.trials import Dial, Trials, exact_numbers, mends, written_numbers
 from aidl_lang.solver import Solution
 from aidl_lang.solver.problem import Failure, GroupFailure, Member
 

@@ -25,7 +25,7 @@ from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Failure
-from aidl_lang.solver.refuting import nearby_solution
+from aidl_lang.solver.questions import nearby_solution
 from aidl_lang.syntax import ast
 
 _MOST = 64

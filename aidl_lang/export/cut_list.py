@@ -14,8 +14,8 @@ from aidl_lang.common.files import csv_text
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, first_few, fixed, listed, ticked
 from aidl_lang.common.records import record
-from aidl_lang.export import ON_SHEETS, Exported, ExportError, Job, file_names
 from aidl_lang.export.cuts import outlines
+from aidl_lang.export.job import ON_SHEETS, Exported, ExportError, Job, file_names
 from aidl_lang.export.marks import Group, Picture
 from aidl_lang.export.profiles import CUTS, PLAIN
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size

@@ -15,8 +15,8 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
-from aidl_lang.export import UNITS, Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
+from aidl_lang.export.job import UNITS, Exported, Job
 from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile

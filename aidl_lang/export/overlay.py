@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import Job, themes
+from aidl_lang.export import themes
+from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing

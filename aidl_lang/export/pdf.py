@@ -18,7 +18,7 @@ from aidl_lang.common.lettering import unknown_characters
 from aidl_lang.common.prose import first_few, size_text
 from aidl_lang.common.resources import resource
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import ExportError
+from aidl_lang.export.job import ExportError
 from aidl_lang.export.marks import (
     Area,
     Curves,

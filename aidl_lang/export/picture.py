@@ -13,7 +13,8 @@ import numpy as np
 from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import ExportError, Job, themes
+from aidl_lang.export import themes
+from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of

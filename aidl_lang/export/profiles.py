@@ -11,7 +11,7 @@ from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, listed, ticked
 from aidl_lang.common.records import record
-from aidl_lang.export import ExportError
+from aidl_lang.export.job import ExportError
 
 if TYPE_CHECKING:
     from aidl_lang.export.cuts import Outline

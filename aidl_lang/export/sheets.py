@@ -8,8 +8,8 @@ from itertools import groupby
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import counted, fixed, listed, named, size_text
-from aidl_lang.export import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.cuts import Outline, outlines
+from aidl_lang.export.job import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
 from aidl_lang.export.profiles import CUTS, FILL, Profile
 from aidl_lang.export.unsaid import twice_compensated
@@ -30,20 +30,18 @@ def followed_groups(model: SolvedModel, drawing: Drawing, profile: Profile) -> I
     kinds = {s.path: s.kind for s in model.root.walk()}
     found = [outline for outline in outlines(model, drawing, profile) if outline.operation]
     used: dict[str, int] = {}
-    for (path, operation, layer), run in groupby(
-        found, key=lambda o: (o.path, o.operation, _layer(o, profile))
-    ):
+
+    def look(outline: Outline) -> tuple[str, str, str | None]:
+        own = outline.style.layer
+        return outline.path, outline.operation, profile.look(own, outline.operation).layer or own
+
+    for (path, operation, layer), run in groupby(found, key=look):
         name = f"{path}:{operation}"
         used[name] = count = used.get(name, 0) + 1
         attributes = {"data-kind": kinds[path], "data-path": path, "data-operation": operation}
         if layer is not None:
             attributes["data-layer"] = layer
         yield Group(name if count == 1 else f"{name}-{count}", tuple(_marks(list(run), profile)), attributes)
-
-
-def _layer(outline: Outline, profile: Profile) -> str | None:
-    """Returns the layer of an outline, where the profile or the program says one."""
-    return profile.look(outline.style.layer, outline.operation).layer or outline.style.layer
 
 
 def _marks(run: Sequence[Outline], profile: Profile) -> Iterator[Mark]:

@@ -44,7 +44,7 @@ from OCP.XSControl import XSControl_WorkSession
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import Exported, ExportError, Job
+from aidl_lang.export.job import Exported, ExportError, Job
 from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
 from aidl_lang.geometry.boolean import jointed
 from aidl_lang.geometry.curves import (

@@ -19,7 +19,8 @@ import numpy as np
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import UNITS, themes
+from aidl_lang.export import themes
+from aidl_lang.export.job import UNITS
 from aidl_lang.export.marks import (
     HALO,
     Area,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import singledispatch
 
@@ -114,15 +113,12 @@ def themed(picture: Picture, name: str) -> Picture:
     left, bottom, right, top = picture.box
     sheet = polygon((left, bottom), (right, bottom), (right, top), (left, top))
     paper = Group("paper", (Area(sheet, theme.paper, None, "paper"),))
-    groups = (replace(g, marks=tuple(_all_reduced(g.marks, theme))) for g in picture.groups)
-    return replace(picture, groups=(paper, *groups))
-
-
-def _all_reduced(marks: Iterable[Mark], theme: Theme) -> Iterator[Mark]:
-    for mark in marks:
-        reduced = _reduced(mark, theme)
-        if not isinstance(reduced, Area) or reduced.fill or reduced.ink:
-            yield reduced
+    groups = [paper]
+    for group in picture.groups:
+        marks = [_reduced(mark, theme) for mark in group.marks]
+        kept = (m for m in marks if not isinstance(m, Area) or m.fill or m.ink)
+        groups.append(replace(group, marks=tuple(kept)))
+    return replace(picture, groups=tuple(groups))
 
 
 @singledispatch

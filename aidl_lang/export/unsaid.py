@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import fixed, listed, named, ticked
-from aidl_lang.export import Job
+from aidl_lang.export.job import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_filled, is_unlined
 

@@ -150,14 +150,12 @@ class _Attempt:
                 return verdict
             if not verdict.satisfied and not crossed:
                 # No solution with these branches; where the search ended others may be active.
-                crossed = self._active() != branches
+                rows = [self.task.rows[i].expression for i in self.considered]
+                crossed = self.freezer.freeze(rows).branches != branches
             if not crossed or branches in seen or len(seen) >= self.settings.branches:
                 return verdict
             seen.add(branches)
             base = self._current()
-
-    def _active(self) -> tuple[Branch, ...]:
-        return self.freezer.freeze([self.task.rows[i].expression for i in self.considered]).branches
 
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]

@@ -14,18 +14,20 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.branches import violation_of
 from aidl_lang.solver.gradients import FLAT, gradients
-from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock, End, perturbation
-from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.problem import Concession, Failure, GroupFailure, Member, Problem, Relation, Settings
+from aidl_lang.solver.problem import Failure, GroupFailure, Member, Relation
 from aidl_lang.solver.refuting import MOST_ACCUSED, Relaxation, needed, suspects
 from aidl_lang.solver.tiers import Scope
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.hierarchy import Hierarchy
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
@@ -149,7 +151,8 @@ class _ConflictSearch:
         is_curved = bool(moving) and self._curved(conflict)
         reason = Failure.NOT_CONVERGED
         failed = minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)
-        if is_proven or (failed and (not is_curved or self._agree(nearest.violation))):
+        near = sum(off <= ALIKE * nearest.violation for off in self.ended)  # searches that ended there
+        if is_proven or (failed and (not is_curved or near >= STARTS / 2)):
             excess = equations > len(moving) > 0 and is_curved
             reason = Failure.OVERDETERMINED if excess else Failure.CONTRADICTORY
         hierarchy.values.assign(self.before.items())
@@ -198,10 +201,6 @@ class _ConflictSearch:
                 self.ended.append(found.violation)
                 best = min(best, found, key=lambda trial: trial.violation)
         return best
-
-    def _agree(self, least: float) -> bool:
-        """Tells whether as many searches ended near the least violation as would be half of one round."""
-        return sum(off <= ALIKE * least for off in self.ended) >= STARTS / 2
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
         """Yields places about the first guesses: directions anywhere, sizes from a third to three times."""
@@ -395,60 +394,3 @@ class _ConflictSearch:
         reached = hierarchy.save(self.scope.free)
         hierarchy.values.assign(self.before.items())
         return _SearchResult(verdict.end, reached, verdict.violation)
-
-
-@record()
-class Reason:
-    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, none asks for
-    it without the others; there are none if the unknowns need not have given way.
-    """
-
-    unknowns: frozenset[int]
-    constraints: tuple[int, ...]
-    minimal: bool
-
-
-def reasons(problem: Problem, settings: Settings, concession: Concession, solved: Floats) -> Iterator[Reason]:
-    """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution. Sizes
-    that could have given way instead are held as well.
-    """
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.reached[:] = concession.values
-    hierarchy.values.assign(enumerate(concession.values.tolist()))
-    left = concession.unknowns
-    moving = frozenset(u for u in concession.free if u in left or not hierarchy.is_kept[u])
-    while left:
-        scope = Scope(moving - left, concession.constraints)
-        before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
-        found, minimal = conflict(hierarchy, scope, before)
-        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
-        share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
-        rest, more, is_known = concession.constraints, found, len(share) > 1
-        while more and is_known:  # several that go together may be asked for more than once
-            rest = tuple(index for index in rest if index not in more)
-            more, is_known = conflict(hierarchy, Scope(moving - share, rest), before)
-            found, minimal = found + more * is_known, minimal and not more
-        yield Reason(share, tuple(found), minimal and bool(found))
-        left -= share
-
-
-def _bound(
-    hierarchy: Hierarchy,
-    constraints: list[int],
-    unknowns: frozenset[int],
-    concession: Concession,
-    solved: Floats,
-) -> frozenset[int]:
-    """Returns the unknowns that the constraints hold at the solution: put back, each breaks one."""
-    if len(unknowns) < 2:
-        return unknowns
-    kept = hierarchy.save(range(len(solved)))
-    hierarchy.values.assign(enumerate(solved.tolist()))
-    found = set()
-    for unknown in unknowns:
-        hierarchy.values.assign([(unknown, float(concession.values[unknown]))])
-        if hierarchy.unmet(constraints):
-            found.add(unknown)
-        hierarchy.values.assign([(unknown, float(solved[unknown]))])
-    hierarchy.values.assign(kept.items())
-    return frozenset(found)

@@ -23,7 +23,8 @@ import numpy as np
 from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.gradients import DOUBT, LARGE, RANK, Sorted, Sparse, connected, linearise
+from aidl_lang.solver.gradients import LARGE, Sorted, connected, linearise
+from aidl_lang.solver.matrix import DOUBT, RANK, Sparse
 from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Problem
 

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import ArrayFreezing, Schedule
 from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.matrix import Sparse, starts_of
 from aidl_lang.solver.operations import PARTIALS, Bools, Floats, Ints, Op
 from aidl_lang.solver.valuation import Valuation
 
@@ -34,77 +32,8 @@ NARROW = 50
 """Nodes to a level up to which dictionaries are quicker, as in chains of things that hang on each other."""
 FLAT = 1e-9
 """Slopes below this count as zero: coordinates that cancel, as in the width of a box."""
-RANK = 1e-6
-"""Singular values of unit rows above this count towards the rank."""
-DOUBT = 1e-8
-"""Singular values below this count as zero; between the two the rank is undecided."""
 LARGE = 300
 """Rows or columns of a part from which on sparse elimination is quicker."""
-
-
-@record()
-class Sparse:
-    """A matrix by its entries, row by row.
-
-    starts  (r + 1,) where each row begins
-    columns (e,)
-    entries (e,)
-    """
-
-    starts: Ints
-    columns: Ints
-    entries: Floats
-
-    def __len__(self) -> int:
-        return len(self.starts) - 1
-
-    @cached_property
-    def rows(self) -> Ints:
-        """The row (e,) of each entry."""
-        return np.repeat(np.arange(len(self)), np.diff(self.starts))
-
-    def lengths(self) -> Floats:
-        """Returns the Euclidean lengths (r,) of the rows."""
-        squares = np.bincount(self.rows, self.entries * self.entries, len(self))
-        return np.asarray(np.sqrt(squares), dtype=np.float64)
-
-    def scaled(self, rows: Floats, columns: Floats) -> Sparse:
-        """Returns the matrix with every entry multiplied by the factors of its row and its column."""
-        return Sparse(self.starts, self.columns, self.entries * rows[self.rows] * columns[self.columns])
-
-    def take(self, rows: Ints) -> Sparse:
-        """Returns the given rows, in their order."""
-        counts = self.starts[rows + 1] - self.starts[rows]
-        starts = _starts(counts)
-        picked = np.arange(starts[-1]) + np.repeat(self.starts[rows] - starts[:-1], counts)
-        return Sparse(starts, self.columns[picked], self.entries[picked])
-
-    def only(self, entries: NDArray[np.bool_]) -> Sparse:
-        """Returns the matrix without the entries that are marked False."""
-        starts = _starts(np.bincount(self.rows[entries], minlength=len(self)))
-        return Sparse(starts, self.columns[entries], self.entries[entries])
-
-    def above(self, other: Sparse) -> Sparse:
-        """Returns these rows with those of another matrix below them."""
-        starts = np.concatenate((self.starts, self.starts[-1] + other.starts[1:]))
-        columns = np.concatenate((self.columns, other.columns))
-        return Sparse(starts, columns, np.concatenate((self.entries, other.entries)))
-
-    @property
-    def links(self) -> tuple[Ints, Ints]:
-        """Pairs of columns that share a row, enough of them to connect all that do."""
-        firsts = self.columns[np.minimum(self.starts[:-1], max(len(self.columns) - 1, 0))[self.rows]]
-        return firsts, self.columns
-
-    def dense(self, columns: Ints) -> Floats:
-        """Returns the given columns as a dense matrix; they are ascending and hold every entry."""
-        matrix = np.zeros((len(self), len(columns)))
-        matrix[self.rows, np.searchsorted(columns, self.columns)] = self.entries
-        return matrix
-
-
-def _starts(counts: NDArray[np.intp]) -> Ints:
-    return np.concatenate((np.zeros(1, dtype=np.intp), np.cumsum(counts, dtype=np.intp)))
 
 
 def gradients(
@@ -134,7 +63,8 @@ def gradients(
             continue
         terms = sloping.get(node)
         if terms is None:  # the branches that are not taken are not looked at
-            slopes = zip(args, _slopes(op, args, nodes, node), strict=False)
+            padded = args if len(args) > 1 else args * 2
+            slopes = zip(args, PARTIALS[op](*[nodes[a] for a in padded], nodes[node]), strict=False)
             terms = sloping[node] = [(a, slope) for a, slope in slopes if slope != 0.0]
         if missing := [a for a, _ in terms if a not in found]:
             stack += missing
@@ -181,11 +111,6 @@ def _sparse(rows: Sequence[Gradient]) -> Sparse:
     return Sparse(starts, columns, np.array([slope for row in rows for slope in row.values()]))
 
 
-def _slopes(op: int, args: tuple[int, ...], values: Sequence[float], node: int) -> tuple[float, ...]:
-    padded = args if len(args) > 1 else args * 2
-    return PARTIALS[op](*[values[a] for a in padded], values[node])
-
-
 def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tuple[Floats, Sparse]:
     """Returns the values (r,) of `roots` and their partial derivatives, on arrays."""
     schedule = Schedule(tape)
@@ -196,7 +121,7 @@ def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tu
     varying = np.flatnonzero(freezing.varies(roots))
     program = freezing.program(roots[varying])
     counts[varying] = np.diff(program.indptr)
-    return values[roots], Sparse(_starts(counts), program.columns[program.indices], program.entries())
+    return values[roots], Sparse(starts_of(counts), program.columns[program.indices], program.entries())
 
 
 # -- connected parts

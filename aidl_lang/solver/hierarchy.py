@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.solver import Settings, Stages
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
@@ -30,7 +31,6 @@ from aidl_lang.solver.problem import (
     violations,
 )
 from aidl_lang.solver.riding import Memory, Recollection, riding_depths
-from aidl_lang.solver.settings import Settings, Stages
 from aidl_lang.solver.tiers import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 

@@ -308,7 +308,9 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
     verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
-    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), expected):
+    now = _moved(hierarchy, before)  # unknowns in curved rows: about as far as the slopes promised?
+    off = sum((now.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
+    if not verdict.satisfied or off > ASTRAY**2 * sum(step * step for step in expected.values()):
         hierarchy.values.assign(reached.items())
 
 
@@ -335,12 +337,6 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
             scope = narrow
         else:
             hierarchy.values.assign(reached.items())
-
-
-def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
-    """Tells whether unknowns in curved rows moved about as far as the slopes promised."""
-    off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
-    return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 
 
 def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:

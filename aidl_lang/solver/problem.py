@@ -6,14 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import TypedDict
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
+from aidl_lang.solver import Settings as Settings
 from aidl_lang.solver.expression import Tape
-from aidl_lang.solver.settings import Settings as Settings
 
 # --- The input of the solver: unknowns, expressions and constraints over a tree of groups, as plain arrays.
 #
@@ -193,18 +193,7 @@ def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.intp]:
     return np.array(found, dtype=np.intp).reshape(-1, 2).T
 
 
-class ConstraintArrays(TypedDict):
-    """The fields of `Problem` that hold its constraints."""
-
-    rows: Rows
-    holder: NDArray[np.intp]
-    weight: Floats
-    placed: NDArray[np.intp]
-    whole: NDArray[np.intp]
-    inside: NDArray[np.intp]
-
-
-def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
+def constraint_arrays(constraints: Sequence[Constraint]) -> dict[str, Any]:
     """Returns constraints as the arrays of a `Problem`."""
     rows = [(row, index) for index, constraint in enumerate(constraints) for row in constraint.rows]
     return {

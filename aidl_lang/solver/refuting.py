@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.gradients import gradients
-from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.linear import nearest, plainly_hold
-from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
-from aidl_lang.solver.problem import Problem, Relation, Row, Settings
-from aidl_lang.solver.tiers import Scope
+from aidl_lang.solver.problem import Relation, Row
 from aidl_lang.solver.valuation import Affine, Form, Valuation, add_terms, applied, branched, combined, scaled
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.hierarchy import Hierarchy
 
 # --- Proofs that rows never hold together, wherever the free unknowns are and whichever branches they take.
 #
@@ -240,8 +241,9 @@ def _contradiction(jacobian: Floats, constant: Floats, inequality: Bools, allowe
     elif flat.all():
         return None
     else:
-        find = _multipliers if len(constant) <= FEW else _many_multipliers
-        found = find(jacobian, constant, inequality)
+        is_small = len(constant) <= FEW
+        few = nearest(jacobian, -constant, inequality).contradiction if is_small else None
+        found = few if is_small else _many_multipliers(jacobian, constant, inequality)
         if found is None:
             return None
         factors = np.where(np.abs(found) > CANCELLED * np.abs(found).max(initial=0.0), found, 0.0)
@@ -252,10 +254,6 @@ def _contradiction(jacobian: Floats, constant: Floats, inequality: Bools, allowe
     rounding = 1e-12 * float(np.abs(factors) @ np.abs(constant))
     proven = float(factors @ constant) > DECIDED * float(np.abs(factors) @ allowed) + rounding
     return factors if is_sum and proven and (factors[inequality] >= 0.0).all() else None
-
-
-def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
-    return nearest(jacobian, -constant, inequality).contradiction
 
 
 def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
@@ -307,10 +305,6 @@ MOST_ACCUSED = 12
 """Members of a set above which halves of it are tried before single ones."""
 FAR = 100.0
 """The longest step that counts as mending rows, in sizes of the rows."""
-RESTARTS = 3
-"""Perturbed starts."""
-FEW_ROWS = 40
-"""Rows up to which all of `within` is searched for together."""
 
 
 class Linearised:
@@ -401,58 +395,3 @@ def _halved(
     from_second = _halved(background + first, True, second, holds)
     from_first = _halved(background + from_second, bool(from_second), first, holds)
     return from_first + from_second
-
-
-def shortfall(
-    problem: Problem,
-    settings: Settings,
-    constraints: Collection[int],
-    within: Collection[int],
-    start: Mapping[int, float],
-) -> float:
-    """Returns the violation that constraints keep with the unknowns of `start` free; 0 if a search from there
-    satisfies them. If all of `within` are affine, but for choices, and are proved to contradict each other,
-    it is measured on all of them: in units of its own, it then changes linearly with a number among them.
-    """
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.refresh(within)
-    rows, free = hierarchy.rows(within), frozenset(start)
-    relaxation = Relaxation(hierarchy.values, rows, free, settings.tolerance)
-    if not relaxation.bends and (off := relaxation.lack()) > 0.0:
-        return off
-    first, least = hierarchy.save(free), np.inf
-    searched = within if len(rows) <= FEW_ROWS else constraints
-    for place in (start, first):
-        hierarchy.values.assign(place.items())
-        verdict = hierarchy.attempt(Scope(free, tuple(sorted(searched))), RESTARTS)
-        least = min(least, 0.0 if verdict.satisfied else verdict.violation)
-    return least
-
-
-def nearby_solution(
-    problem: Problem, settings: Settings, constraints: Collection[int], start: Mapping[int, float]
-) -> dict[int, float] | None:
-    """Returns values near `start` at which constraints hold with its unknowns free; None if not found."""
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.values.assign(start.items())
-    verdict = hierarchy.attempt(Scope(frozenset(start), tuple(sorted(constraints))), RESTARTS)
-    return hierarchy.save(start) if verdict.satisfied else None
-
-
-def equations(
-    problem: Problem, settings: Settings, constraints: Sequence[int], place: Mapping[int, float]
-) -> list[Floats]:
-    """Returns the unit slopes (r, k) of the equations of each constraint at `place`, over its unknowns."""
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.values.assign(place.items())
-    there = Linearised(hierarchy, constraints, place)
-    return [there.jacobian[(there.owner == index) & ~there.inequality] for index in constraints]
-
-
-def residual(problem: Problem, settings: Settings, constraint: int, place: Mapping[int, float]) -> float:
-    """Returns the value of the row of a constraint that is furthest from zero at `place`, with its sign."""
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.values.assign(place.items())
-    hierarchy.refresh([constraint])
-    rows = hierarchy.rows([constraint])
-    return max((hierarchy.values.nodes[row.expression] for row in rows), key=abs)

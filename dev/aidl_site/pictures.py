@@ -12,7 +12,7 @@ from pathlib import Path
 from aidl_lang import pipeline
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 
 FOLDERS = ("docs", "docs/start", "docs/howto")
 """Folders whose pages are looked through."""

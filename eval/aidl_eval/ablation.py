@@ -18,10 +18,9 @@ from aidl_lang.building.lower import Lowered, lower, seen
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.common.world import World
 from aidl_lang.interp import interpret
-from aidl_lang.solver import Problem, solve
+from aidl_lang.solver import Problem, Stages, solve
 from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.problem import violations
-from aidl_lang.solver.settings import Stages
 from aidl_lang.typecheck import Program
 
 FULL = "full"

@@ -13,7 +13,7 @@ from aidl_eval.rendering import RenderedLanguage, as_written
 from aidl_eval.requirements import Prompt, Result, examine, examine_regions
 from aidl_eval.whole import pieces
 from aidl_lang import SourceFile
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.tools.llm.aidl import counted
 from aidl_lang.tools.llm.messages import Language
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from aidl_eval.regions import Regions
 from aidl_eval.shapes import PIXELS
-from aidl_lang.export import Options, themes
 from aidl_lang.export import render as render_picture
+from aidl_lang.export import themes
+from aidl_lang.export.job import Options
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
 from aidl_lang.export.picture import MARGIN, OUTLINE_WIDTH
 from aidl_lang.geometry.curves import bounds, union_bounds

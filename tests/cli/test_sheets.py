@@ -257,7 +257,7 @@ def test_nesting_is_of_sheets_and_needs_its_package(
         aidl("compile", "box.aidl", "-o", "box.svg", "--sheet", "210x110", "--nest", "1", "--quiet").code == 0
     )
     assert sizes(box / "box.svg") == [(60, 60)]
-    monkeypatch.setattr("aidl_lang.export.find_spec", lambda _: None)
+    monkeypatch.setattr("aidl_lang.export.job.find_spec", lambda _: None)
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--sheet", "210x110", "--nest"))[:2] == [
         "error[E0913]: `--nest` needs a package that is not installed",
         "  = hint: pip install 'aidl-lang[nest]'",

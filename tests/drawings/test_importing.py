@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, MemoryWorld
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.discretion import Programs
 from aidl_lang.tools.ide.completion import complete

@@ -10,7 +10,7 @@ import shapely
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import ExportError, Options
+from aidl_lang.export.job import ExportError, Options
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
@@ -59,7 +59,7 @@ PROGRAMS |= {"plate": PLATE, "turned": TURNED, "narrow": NARROW}
 
 
 def drawn(text: str, **options: object) -> Picture:
-    from aidl_lang.export import Job
+    from aidl_lang.export.job import Job
 
     part = compiled(text)
     assert part.model is not None

@@ -11,10 +11,10 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
-from aidl_lang.export import ExportError, Job
 from aidl_lang.export.dimension_marks import DIGIT, Block
 from aidl_lang.export.drafting import Draft, drafted
 from aidl_lang.export.drafting.tables import SCALES, STANDARDS, papers
+from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.geometry.curves import Circle, bounds
 from tests.documents import ROOT

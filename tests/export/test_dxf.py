@@ -22,7 +22,8 @@ import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import Job, Options
 from aidl_lang.geometry.curves import Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure

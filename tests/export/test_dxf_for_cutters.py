@@ -17,7 +17,8 @@ from shapely import LinearRing, Polygon
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Exporter, Job, Options
+from aidl_lang.export import Exporter
+from aidl_lang.export.job import Job, Options
 from tests.documents import ROOT
 from tests.export.readers import read_dxf
 

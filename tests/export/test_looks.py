@@ -11,7 +11,8 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import Exported, Job, Options, export, themes
+from aidl_lang.export import export, themes
+from aidl_lang.export.job import Exported, Job, Options
 from tests.compiled import compiled
 from tests.export.colours import near
 

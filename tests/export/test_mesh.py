@@ -9,11 +9,11 @@ import math
 import pytest
 import trimesh
 
-from aidl_lang import export as export_module
 from aidl_lang import pipeline
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Exported, ExportError, Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import Exported, ExportError, Job, Options
 from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel
@@ -148,7 +148,7 @@ def test_a_plate_with_many_holes() -> None:
 
 
 def test_a_package_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(export_module, "find_spec", lambda name: None)
+    monkeypatch.setattr("aidl_lang.export.job.find_spec", lambda name: None)
     with pytest.raises(ExportError) as reason:
         written(RING, ".3mf")
     assert render(reason.value.diagnostic) == (

@@ -15,7 +15,7 @@ from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from aidl_lang import Model
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT

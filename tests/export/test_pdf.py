@@ -9,7 +9,8 @@ import sys
 import pytest
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import ExportError, Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Picture, Text
 from aidl_lang.export.pdf import to_pdf
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, EllipseArc, Line

@@ -7,7 +7,8 @@ import io
 import pytest
 from PIL import Image
 
-from aidl_lang.export import Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import Job, Options
 from aidl_lang.export.marks import Group, Picture, Text
 from aidl_lang.export.pdf import to_png
 from aidl_lang.geometry.drawing import draw

@@ -17,7 +17,7 @@ from svgelements import Path as SvgPath
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import ExportError, Options
+from aidl_lang.export.job import ExportError, Options
 from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile, parsed
 
 PLATE = """\

@@ -16,7 +16,7 @@ from shapely.geometry import shape
 from shapely.ops import unary_union
 
 from aidl_lang import Model
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from tests import compiled
 from tests.amount import TRIES_ALL
 from tests.export import readers

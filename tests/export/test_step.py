@@ -16,7 +16,8 @@ from OCP.Message import Message, Message_PrinterOStream
 from aidl_lang import pipeline
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import ExportError, Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop, Region, area
@@ -233,7 +234,7 @@ def test_settings_of_the_process_are_as_before() -> None:
 
 
 def test_the_extra_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("aidl_lang.export.find_spec", lambda name: None)
+    monkeypatch.setattr("aidl_lang.export.job.find_spec", lambda name: None)
     with pytest.raises(ExportError) as reason:
         written(BITTEN)
     assert render(reason.value.diagnostic) == (

@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from aidl_lang.export import SHOW, Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import SHOW, Job, Options
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import Box, SolvedModel, SolvedStructure

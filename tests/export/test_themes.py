@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.export.themes import REDUCED, THEMES
 from tests.compiled import compiled
 

@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from svgelements import SVG, Path
 
-from aidl_lang.export import ExportError, Job, Options, export
+from aidl_lang.export import export
+from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.picture import tiled
 from aidl_lang.geometry.curves import Circle, Line, Vec, point

@@ -8,7 +8,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Exported, Options
+from aidl_lang.export.job import Exported, Options
 from aidl_lang.export.profiles import PROFILES
 
 PLATE = """\

@@ -23,7 +23,7 @@ from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.diagnostics import Diagnostic, has_errors
 from aidl_lang.common.render.terminal import render
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import ExportError, Options
+from aidl_lang.export.job import ExportError, Options
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast

@@ -30,7 +30,8 @@ from pygls.exceptions import JsonRpcInternalError
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawings.drawing import DrawingError, outlines
+from aidl_lang.common.drawings import outlines
+from aidl_lang.common.drawings.drawing import DrawingError
 from aidl_lang.common.files import Reads
 from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to

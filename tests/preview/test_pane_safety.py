@@ -11,7 +11,7 @@ from playwright.sync_api import expect
 
 from aidl_lang.common.colors import COLOR_NAMES
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.pipeline import compile
 from tests.preview.conftest import Pane
 from tests.preview.messages import SVG, URI, handle, knob, place, problem

@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.running import Cancelled, OutOfTime, cancelled_when, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
-from aidl_lang.export import SHOW, Options
+from aidl_lang.export.job import SHOW, Options
 from tests.property.programs import Sketch, sketches
 
 EVERY = Options(frozenset(SHOW), dimension=True)

@@ -27,7 +27,7 @@ from svgelements import Path as SvgPath
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.amount import tries
 

@@ -139,7 +139,7 @@ def test_folders_that_are_no_cache_are_left_alone(tmp_path: Path) -> None:
 
 
 def test_the_key_has_all_that_an_outcome_depends_on() -> None:
-    from aidl_lang.export import Options
+    from aidl_lang.export.job import Options
 
     def made(text: str = "a", making: Making = MAKING, **params: float | str | bool) -> str:
         return keeping.key(Bundle("p.aidl", text, {}), params, making)

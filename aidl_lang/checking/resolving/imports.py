@@ -14,9 +14,9 @@ from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.drawings import WHOLE, is_drawing
-from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace, outlines
-from aidl_lang.common.files import PROGRAM
+from aidl_lang.common.drawings import WHOLE, outlines
+from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace
+from aidl_lang.common.files import PROGRAM, is_drawing
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record

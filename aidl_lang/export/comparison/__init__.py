@@ -259,11 +259,11 @@ Changed = dict[str, tuple[Value, Value]]
 
 def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) -> Changed:
     """Returns the values that differ, in order of writing after; points moved by `move` are equal."""
+    pairs = {name: (a.get(name), b.get(name)) for name in dict.fromkeys([*b, *a])}
     return {
-        name: (a.get(name), b.get(name))
-        for name in dict.fromkeys([*b, *a])
-        if not _went(a.get(name), b.get(name), move, tolerance)
-        and not is_same(a.get(name), b.get(name), name)
+        name: (x, y)
+        for name, (x, y) in pairs.items()
+        if not ((_is_point(x) and _is_point(y) and math.dist(move(x), y) <= tolerance) or is_same(x, y, name))
     }
 
 
@@ -275,10 +275,6 @@ def is_same(a: Value, b: Value, name: str = "") -> bool:
         difference = math.remainder(a - b, 360) if "angle" in name else a - b
         return abs(difference) <= RELATIVE * max(abs(a), abs(b)) + ABSOLUTE
     return type(a) is type(b) and a == b
-
-
-def _went(a: Value, b: Value, move: Move, tolerance: float) -> bool:
-    return _is_point(a) and _is_point(b) and math.dist(move(a), b) <= tolerance
 
 
 def _is_number(value: Value) -> TypeGuard[float]:

@@ -9,7 +9,6 @@ from itertools import chain, groupby
 
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
-from aidl_lang.export import ExportError, Job
 from aidl_lang.export.dimension_marks import HEIGHT, Pen
 from aidl_lang.export.dimensioning import Callout, dimensioned_to_scale
 from aidl_lang.export.drafting.contents import Content, View, contents
@@ -34,6 +33,7 @@ from aidl_lang.export.drafting.tables import (
     width_of,
     written,
 )
+from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, widened
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions.completing import mirror_levels

@@ -60,7 +60,7 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
     for structure in model.root.walk():
         is_part = structure.path in bodies
         said = [] if is_part else [*_texts(structure.attributes, "note")]
-        depth = _depth(structure)
+        depth = [fixed(float(d), 2) for d in structure.attributes.get("depth", ()) if not isinstance(d, str)]
         rest = [*said, *([f"{depth[0]} deep"] if depth else [])]
         is_bored = not is_part and around[structure.path].kind == "hole"
         for geometry in structure.geometry:
@@ -88,13 +88,6 @@ def _of_circle(circle: Circle, thread: str, depth: Sequence[str], *, is_bored: b
     if len(depth) > 1:
         return f"{size} × {depth[1]}° countersunk"
     return f"{size}{' counterbored' if is_bored else ''}, {depth[0]} deep" if depth else size
-
-
-def _depth(hole: SolvedStructure) -> list[str]:
-    """Returns how deep a hole is that ends in its solid, and the angle of a cone."""
-    return [
-        fixed(float(value), 2) for value in hole.attributes.get("depth", ()) if not isinstance(value, str)
-    ]
 
 
 def _texts(attributes: Attributes, name: str) -> Iterator[str]:
@@ -196,7 +189,10 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
         view = _view(model, drawing)
         lines = (*general(root, subject), *view.lines)
         return [Content(root, style, (view,), count=style.quantity, lines=lines)]
-    items = _items(drawing.bodies)
+    items = tuple(
+        Item(number, tuple(group), group[0].path.rpartition(".")[2].partition("[")[0])
+        for number, group in enumerate(gathered(drawing.bodies, shape_of), 1)
+    )
     parts = []
     on, _ = engraved(drawing.bodies, drawing.strokes)
     for item in items:
@@ -269,13 +265,6 @@ def _overview(
         balloons = tuple((item.number, b) for item in items for b in item.bodies[:1] if b in bodies)
         wanted = [*overall(part), *(between if orientation == next(iter(seen)) else ())]
         yield View(label, part, tuple((d,) for d in wanted), balloons)
-
-
-def _items(bodies: Sequence[Body]) -> tuple[Item, ...]:
-    return tuple(
-        Item(number, tuple(group), group[0].path.rpartition(".")[2].partition("[")[0])
-        for number, group in enumerate(gathered(bodies, shape_of), 1)
-    )
 
 
 def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:

@@ -17,7 +17,8 @@ from aidl_lang.common.arrays import each_once, scattered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
 from aidl_lang.solver.analysis import Motions, Part
-from aidl_lang.solver.gradients import Sparse, linearise
+from aidl_lang.solver.gradients import linearise
+from aidl_lang.solver.matrix import Sparse
 from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import Valuation
 
@@ -114,8 +115,7 @@ class Bending:
 
     def _second_differences(self, rows: Ints, columns: Ints, step: Floats) -> tuple[Floats, Floats]:
         """(r,) the second difference of each row over a step either way; and how much may be rounding."""
-        roots = self.roots[rows].tolist()
-        valuation = self.valuation
+        valuation, roots = self.valuation, self.roots[rows].tolist()
         cone = valuation.cone(roots)
         values = []
         for sign in (1.0, -1.0, 0.0):

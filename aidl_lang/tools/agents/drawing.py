@@ -332,7 +332,7 @@ class _Making:
         return Export(name, "text" if is_text else "base64", text)
 
     def _made(self, name: str) -> bytes | None:
-        from aidl_lang.export import ExportError, Options
+        from aidl_lang.export.job import ExportError, Options
 
         options = Options(dimension=self.dimensioned, pixels=self.limits.pixels)
         try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from aidl_lang.export import Job, Options, require
+from aidl_lang.export.job import Job, Options, require
 
 if TYPE_CHECKING:
     from build123d import Compound, Location

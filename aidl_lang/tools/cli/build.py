@@ -6,16 +6,15 @@ import argparse
 import re
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.drawing_time import TooLongError
 from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.materials import PAPERS
-from aidl_lang.common.prose import counted, did_you_mean, first_few, listed, ticked
+from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
@@ -29,13 +28,14 @@ from aidl_lang.tools.cli.options import (
     add_variant,
     choice,
     flag,
+    options,
+    profile,
     value,
 )
 
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
-    from aidl_lang.export import Options
-    from aidl_lang.export.profiles import Profile
+    from aidl_lang.export.job import Options
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.problem import StageReport
     from aidl_lang.solver.riding import Memory
@@ -114,7 +114,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     start = time.perf_counter()
     source = files.read(arguments.file)
     outputs = targets(arguments)
-    _profile(arguments.profile)  # a wrong one is told before any work is done
+    profile(arguments.profile)  # a wrong one is told before any work is done
     disk = files.world(arguments.file)
     world = NotedWorld(disk)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
@@ -126,33 +126,6 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
         written, notes = _write(compiled, outputs, options(arguments, compiled))
     return BuildResult(compiled, written, notes, time.perf_counter() - start, read)
-
-
-def _profile(name: str | None) -> Profile | None:
-    if name is None:
-        return None
-    from aidl_lang.export.profiles import PROFILES, parsed
-
-    if name in PROFILES:
-        return PROFILES[name]
-    if not (name.endswith(".toml") or Path(name).is_file()):
-        from aidl_lang.common.names import nearest
-
-        near = did_you_mean(nearest(name, PROFILES))
-        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
-        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
-    return parsed(files.read(name).text, Path(name).name)
-
-
-def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
-    """Returns the options of an export as the command line says them; timings are those of a compile."""
-    from aidl_lang.export import Options
-
-    said: dict[str, Any] = {
-        each.name: getattr(arguments, each.name) for each in fields(Options) if each.name != "timings"
-    }
-    said["profile"] = _profile(arguments.profile)
-    return Options(timings=compiled.timings if compiled and arguments.timings else None, **said)
 
 
 def _write(
@@ -260,7 +233,9 @@ def run_compile(arguments: argparse.Namespace) -> int:
     if arguments.trace_solve:
         _show_stages(outcome.compiled.stages)
     if arguments.timings:
-        _show_timings(outcome.compiled.timings)
+        timings = outcome.compiled.timings
+        for stage, seconds in [*timings.items(), ("total", sum(timings.values()))]:
+            say(f"{stage:<12}{1000 * seconds:>9.1f} ms")
     if not arguments.quiet:
         say(outcome.line(arguments.file))
         for sentence in outcome.motions(_MOST_MOTIONS):
@@ -277,11 +252,6 @@ def _show_stages(stages: Sequence[tuple[str, StageReport]]) -> None:
         say(f"{path:<{width}}  {stage.stage:<16}{stage.unknowns:>9}{stage.rows:>6}  {result}")
     if not stages:
         say("nothing to solve: every constraint holds as written")
-
-
-def _show_timings(timings: Mapping[str, float]) -> None:
-    for stage, seconds in [*timings.items(), ("total", sum(timings.values()))]:
-        say(f"{stage:<12}{1000 * seconds:>9.1f} ms")
 
 
 def register_watch(parser: argparse.ArgumentParser) -> None:
@@ -361,8 +331,8 @@ def register_sheet(parser: argparse.ArgumentParser) -> None:
 
 def run_sheet(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import Options, file_names
     from aidl_lang.export.drafting import Draft
+    from aidl_lang.export.job import Options, file_names
 
     start = time.perf_counter()
     source = files.read(arguments.file)

@@ -330,8 +330,9 @@ def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -
     if not outputs:
         return
     from aidl_lang.common.drawing_time import within
-    from aidl_lang.export import Options, render
+    from aidl_lang.export import render
     from aidl_lang.export.comparison.picture import overlay
+    from aidl_lang.export.job import Options
 
     with within(LONGEST, "drawing the differences in"):
         picture = overlay(comparison)

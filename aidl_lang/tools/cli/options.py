@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aidl_lang.common.names import nearest
-from aidl_lang.common.prose import did_you_mean, ticked
+from aidl_lang.common.prose import did_you_mean, listed, ticked
+from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.checking.subset import Variant
     from aidl_lang.compiled import Compiled
-    from aidl_lang.export import Options
+    from aidl_lang.export.job import Options
+    from aidl_lang.export.profiles import Profile
     from aidl_lang.tools.llm.messages import Sampling
     from aidl_lang.tools.llm.providers import Closable, Price
 
@@ -303,7 +306,7 @@ def _tolerance(text: str) -> float:
 
 
 def _layers(text: str) -> frozenset[str]:
-    from aidl_lang.export import ON_SHEETS, SHOW
+    from aidl_lang.export.job import ON_SHEETS, SHOW
 
     known = dict.fromkeys((*SHOW, *ON_SHEETS))
     layers = [layer.strip() for layer in text.split(",") if layer.strip()]
@@ -383,8 +386,6 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
 
     Raises AidlError for an unknown option and for a value that it does not take.
     """
-    from aidl_lang.tools.cli.build import options
-
     parser, defaults = _parser()
     known = sorted(defaults)
     words = [
@@ -460,3 +461,30 @@ def _text(name: str, value: object) -> str:
             _text(name, each) for each in items
         )
     raise UseError("E0925", f"`{name}` takes numbers and texts, not `{type(value).__name__}`")
+
+
+def options(arguments: argparse.Namespace, compiled: Compiled | None = None) -> Options:
+    """Returns the options of an export as the command line says them; timings are those of a compile."""
+    from aidl_lang.export.job import Options
+
+    said: dict[str, Any] = {
+        each.name: getattr(arguments, each.name) for each in fields(Options) if each.name != "timings"
+    }
+    said["profile"] = profile(arguments.profile)
+    return Options(timings=compiled.timings if compiled and arguments.timings else None, **said)
+
+
+def profile(name: str | None) -> Profile | None:
+    if name is None:
+        return None
+    from aidl_lang.export.profiles import PROFILES, parsed
+
+    if name in PROFILES:
+        return PROFILES[name]
+    if not (name.endswith(".toml") or Path(name).is_file()):
+        from aidl_lang.common.names import nearest
+
+        near = did_you_mean(nearest(name, PROFILES))
+        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
+        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
+    return parsed(files.read(name).text, Path(name).name)

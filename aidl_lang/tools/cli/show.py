@@ -51,7 +51,8 @@ def register_show(parser: argparse.ArgumentParser) -> None:
 
 def run_show(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.export import Job, Options, require_sheets
+    from aidl_lang.export import require_sheets
+    from aidl_lang.export.job import Job, Options
     from aidl_lang.export.picture import picture
 
     options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
@@ -138,6 +139,7 @@ def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
 
 
 def _png(picture: Picture, pixels: int) -> bytes:
-    from aidl_lang.export import Options, render
+    from aidl_lang.export import render
+    from aidl_lang.export.job import Options
 
     return render(picture, ".png", Options(pixels=pixels))

@@ -275,8 +275,7 @@ def _require_sheets(wanted: Outputs, words: Sequence[str]) -> None:
 
 def _job(arguments: argparse.Namespace, source: Any) -> Job:
     from aidl_lang import pipeline
-    from aidl_lang.tools.cli.build import options
-    from aidl_lang.tools.cli.options import said
+    from aidl_lang.tools.cli.options import options, said
     from aidl_lang.tools.sweeping.outputs import outputs
     from aidl_lang.tools.sweeping.session import Job, opened, reproducing
     from aidl_lang.tools.sweeping.working import Making

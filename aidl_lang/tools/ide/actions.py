@@ -19,7 +19,7 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.export import ExportError
+from aidl_lang.export.job import ExportError
 from aidl_lang.geometry.curves import Vec, bounds, union_bounds
 from aidl_lang.geometry.solved import Box, Motion, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.syntax import ast

@@ -16,7 +16,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Compiled

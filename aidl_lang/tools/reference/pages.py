@@ -64,7 +64,7 @@ def picture_of(name: str, program: str, theme: str = "colour") -> bytes:
     from aidl_lang import pipeline  # a page in the terminal needs no solver
     from aidl_lang.common.render import render
     from aidl_lang.common.source import SourceFile
-    from aidl_lang.export import Options
+    from aidl_lang.export.job import Options
 
     compiled = pipeline.compile(SourceFile(name, program))
     if not compiled.ok:

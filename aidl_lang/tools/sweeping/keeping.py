@@ -20,7 +20,7 @@ from typing import Any
 import diskcache
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.identity import surroundings
+from aidl_lang.common.resources import surroundings
 from aidl_lang.tools.sweeping.bundle import Bundle, Outcome, from_data, to_data
 from aidl_lang.tools.sweeping.plan import Value
 from aidl_lang.tools.sweeping.working import Making

@@ -16,7 +16,8 @@ from aidl_lang.common.files import Reads, csv_text, replace
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
-from aidl_lang.export import FORMATS, file_names, require, suffix_of
+from aidl_lang.export import FORMATS, suffix_of
+from aidl_lang.export.job import file_names, require
 from aidl_lang.tools.sweeping.bundle import MEASURES, Fault, Measures, Outcome
 from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, refused, shown
 

@@ -51,7 +51,7 @@ from aidl_lang.tools.sweeping.working import Making, variant
 if TYPE_CHECKING:
     import pyarrow
 
-    from aidl_lang.export import Options
+    from aidl_lang.export.job import Options
 
 
 # --- How a sweep begins on the command line and in Python: the program, and the engine by name.
@@ -278,7 +278,7 @@ class Session:
                 while not is_over and self._crew.has_room:
                     if (each := next(waiting, None)) is None:
                         is_over = True
-                    elif (kept := self._kept(each)) is not None:
+                    elif kept := self._store and self._store.get(self._key(each), self._digest):
                         yield each, kept, True
                     else:
                         self._give(each)
@@ -292,9 +292,6 @@ class Session:
                         yield done
         finally:
             self._crew.cancel()
-
-    def _kept(self, each: Variant) -> Outcome | None:
-        return None if self._store is None else self._store.get(self._key(each), self._digest)
 
     def _key(self, each: Variant) -> str:
         return keeping.key(self._bundle, each.params(self.job.plan.knobs), self._making)
@@ -476,7 +473,7 @@ class Sweep:
 
     def to_pandas(self) -> Any:
         """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
-        from aidl_lang.export import require
+        from aidl_lang.export.job import require
 
         require("pandas", "a data frame", "parquet")
         return self.to_arrow().to_pandas()

@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
 from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.export import Options
+from aidl_lang.export.job import Options
 from aidl_lang.geometry.survey import NothingThereError, Part
 from aidl_lang.pipeline import Front
 from aidl_lang.solver.riding import Memory

@@ -14,7 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawing_time import TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import Job, Options
+from aidl_lang.export.job import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.picture import picture
 from aidl_lang.export.svg import face_path, open_path, to_svg

@@ -25,7 +25,8 @@ from aidl_lang.checking import units
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled
-from aidl_lang.export import FORMATS, OFFERED, Exported, ExportError, Format, Options, file_names
+from aidl_lang.export import FORMATS, OFFERED, Format
+from aidl_lang.export.job import Exported, ExportError, Options, file_names
 from aidl_lang.export.profiles import PROFILES
 from aidl_lang.export.themes import THEMES
 from aidl_lang.tools.ide.dragging import Handle, drag
@@ -81,10 +82,6 @@ def _nested(options: Options, given: str) -> Options:
     return replace(options, nest=_NESTING if given == "outlines" else None)
 
 
-def _profiled(options: Options, given: str) -> Options:
-    return replace(options, profile=PROFILES[given])
-
-
 def _is_picture(made: Format) -> bool:
     return made.tiles
 
@@ -94,7 +91,9 @@ OPTIONS = (
     Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=units.length(given))),
     Option("nest", "Packed by", "boxes", _nested, ("boxes", "outlines")),
     Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=units.length(given))),
-    Option("profile", "Profile", "plain", _profiled, tuple(PROFILES)),
+    Option(
+        "profile", "Profile", "plain", lambda o, given: replace(o, profile=PROFILES[given]), tuple(PROFILES)
+    ),
     Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, _is_picture),
     Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), fits=_is_picture),
 )
