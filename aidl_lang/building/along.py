@@ -98,12 +98,12 @@ class Cubic:
         return sum((t1 - t0) * w * self._speed_guessed(t0 + (t1 - t0) * u) for u, w in gauss(nodes))
 
     def _speed_guessed(self, t: float) -> float:
-        (ax, ay), (bx, by), (cx, cy) = self._guessed
+        (ax, ay), (bx, by), (cx, cy) = self._guesses
         u, v, w = (1 - t) ** 2, 2 * t * (1 - t), t * t
         return 3 * math.hypot(u * ax + v * bx + w * cx, u * ay + v * by + w * cy)
 
     @cached_property
-    def _guessed(self) -> tuple[tuple[float, float], ...]:
+    def _guesses(self) -> tuple[tuple[float, float], ...]:
         return tuple((x.value, y.value) for x, y in self._ways)
 
     @property
@@ -429,18 +429,14 @@ def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
 def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[Stretch | Cubic]:
     """Returns a stretch and those that go on from it, which are taken out of the rest."""
     walked = [stretch]
-    while (found := _next(rest, walked[-1].end, near)) is not None:
+    while True:
+        ways = (
+            (pair, s) for pair in rest for s in pair if math.dist(_value(s.start), walked[-1].end) <= near
+        )
+        if (found := next(ways, None)) is None:
+            return walked
         rest.remove(found[0])
         walked.append(found[1])
-    return walked
-
-
-def _next(rest: list[_Pair], at: tuple[float, float], near: float) -> tuple[_Pair, Stretch | Cubic] | None:
-    for pair in rest:
-        for stretch in pair:
-            if math.dist(_value(stretch.start), at) <= near:
-                return pair, stretch
-    return None
 
 
 def _circle(curve: Geometry, here: Structure) -> Stretch:

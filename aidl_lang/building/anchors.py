@@ -193,7 +193,9 @@ class _Senses:
             if not unknown.kept and unknown not in self.every:
                 nudged = unknown.guess + _NUDGE * (1 + crc32(unknown.path.encode()) / 2**32)
                 self.every[unknown] = nudged
-                if _placer(unknown) is self.holder:
+                # It is placed at this structure's turn; an empty one's box counts as its frame.
+                owner = unknown.owner
+                if (owner.parent or owner if unknown.outline else owner) is self.holder:
                     self.own[unknown] = nudged
         return found
 
@@ -207,11 +209,6 @@ class _Senses:
             return own
         below = unknowns - sizes - own
         return below if below and (below == unknowns or _felt(comparison, self._of_every)) else sizes
-
-
-def _placer(unknown: Unknown) -> Structure | None:
-    """Returns the structure at whose turn an unknown is placed; an empty one's box counts as its frame."""
-    return unknown.owner.parent or unknown.owner if unknown.outline else unknown.owner
 
 
 def _felt(comparison: Comparison, evaluate: ex.Evaluator) -> bool:

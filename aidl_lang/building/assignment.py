@@ -202,7 +202,9 @@ class Assignment:
         own: list[Frame] = []
 
         def framed(frame: Frame) -> Frame:
-            own.append(_as_written(frame) if copy.is_laid else frame)
+            if copy.is_laid:  # where it is written
+                frame = replace(frame, x=ex.constant(frame.x.value), y=ex.constant(frame.y.value))
+            own.append(frame)
             return motion.frame(own[0])
 
         made = instantiate(self.it, self.node, template, self.scope, self.here, indices, framed)
@@ -236,8 +238,3 @@ def _framed(source: Structure, here: Structure) -> Frame:
     while around is not None and around is not here:
         frame, around = of_frame(around.frame).frame(frame), around.parent
     return frame
-
-
-def _as_written(frame: Frame) -> Frame:
-    x, y = ex.constant(frame.x.value), ex.constant(frame.y.value)
-    return Frame(x, y, frame.rotation, frame.mirrored)

@@ -241,7 +241,8 @@ def _report_cycle(
 _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
 
 
-_MATERIAL_LOOKS = ("color", "opacity", "shade")
+FILLING = ("color", "shade")
+_MATERIAL_LOOKS = (*FILLING, "opacity")
 _LINE_LOOKS = ("color", "stroke", "dash", "opacity", "shade")
 OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATERIAL_LOOKS}
 """Attributes that a geometry may have for itself, by the kind of its structure."""
@@ -265,8 +266,11 @@ def read_own_attributes(
     """Reads the attributes of a geometry; reports those for structures only."""
     things = list(each_of(value, Geometry))
     here = container if isinstance(container, Structure) else container.owner
-    for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
-        is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
+    said = list(_read(it, node.attributes, Env(scope, here, Reach.OWN)))
+    is_area = any(name in FILLING for name, _, _ in said)
+    for name, values, attribute in said:
+        is_unlined = is_area and here.kind in OWN_LOOKS and name == "stroke" and values == [NO_OUTLINE]
+        is_own = here is container and (is_unlined or name in OWN_LOOKS.get(here.kind, ()))
         if not things or not (name == "note" or is_own):
             _misplaced(it, node, name, attribute, value, container)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
@@ -332,7 +336,7 @@ MOST = 1000
 EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "fade", "none")
 NO_OUTLINE = TextVal("none")
-"""What `@stroke` says of solids without outline; a width of 0 says the same."""
+"""What `@stroke` says of solids and areas without outline; a width of 0 says the same."""
 _WORDS = {
     "orientation": ORIENTATIONS,
     "edges": EDGES,
@@ -369,9 +373,6 @@ def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attri
     elif name == "depth" and of.kind != "hole":
         wrong = f"is said of holes, and `{of.name}` is {with_article(of.kind)}"
         hint = "make it a `hole`: what it encloses is taken away down to that depth"
-    elif name == "stroke" and of.kind == "drawing" and values == [NO_OUTLINE]:
-        wrong = "of a drawing takes a width: it is nothing but strokes"
-        hint = "give a width, as in `@stroke(0.3mm)`; areas without outline, as a glow, are a `solid`"
     if wrong:
         it.report("E0517", f"`@{attribute.name.text}` {wrong}", attribute, hints=[hint])
     return not wrong

@@ -53,6 +53,7 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    point,
 )
 from aidl_lang.checking.builtins import EVERYWHERE
 from aidl_lang.checking.units import LENGTH
@@ -276,7 +277,9 @@ class Copier:
             grown = (ex.mul(self.motion.scale, e) for e in (width, height))
             copy.plan = (*self.motion.place(x, y), *grown)  # type: ignore[assignment]
         for child in source.children:
-            self.structure(child, copy, child.name, self._inner(child.frame))
+            frame = child.frame
+            inner = Frame(*self.motion.place(frame.x, frame.y), frame.rotation, frame.mirrored)
+            self.structure(child, copy, child.name, inner)
         self._members(source, copy)
         for child in source.children:
             if child.clip and all(g.owner is source for g in child.clip):
@@ -285,10 +288,6 @@ class Copier:
                 self.structures[child].ground = copy
         copy.is_complete = source.is_complete
         return copy
-
-    def _inner(self, frame: Frame) -> Frame:
-        x, y = self.motion.place(frame.x, frame.y)
-        return Frame(x, y, frame.rotation, frame.mirrored)
 
     def _members(self, source: Structure, copy: Structure) -> None:
         names = source.scope
@@ -426,10 +425,6 @@ def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -
     return found if isinstance(found, PointVal) else None
 
 
-def _at(x: ex.Expression, y: ex.Expression) -> PointVal:
-    return PointVal(Num(x), Num(y))
-
-
 def _mirror(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     motion = _reflection(it, a["about"], node, env)
     return copied(it, a["x"], motion, node, env) if motion is not None else NOTHING
@@ -439,7 +434,7 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
     match about:
         case TextVal(word) if word in _AXES:
             x, y = _AXES[word]
-            return mirrored_at_line(_at(*NOWHERE), _at(ex.constant(x), ex.constant(y)))
+            return mirrored_at_line(point(*NOWHERE), point(ex.constant(x), ex.constant(y)))
         case PointVal():
             return mirrored_at_point(xy(about))
         case Geometry(type="point"):
@@ -473,8 +468,11 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
     if motion is None:
         return NOTHING
-    is_loose = any(g.name is None for g in _geometry_in(a["x"])) or isinstance(a["x"], Instantiation)
-    is_seen = any(_is_seen(g, env.here) for g in _geometry_in(a["x"])) or not list(_geometry_in(a["x"]))
+    copied_things = list(_geometry_in(a["x"]))
+    is_loose = any(g.name is None for g in copied_things) or isinstance(a["x"], Instantiation)
+    # A part of an imported drawing is taken to another structure to be what that one is.
+    drawn = [g for g in copied_things if not g.is_guide and (g.trace is None or g.owner is env.here)]
+    is_seen = bool(drawn) or not copied_things
     # In a loop a copy that is given a motion may lie still in one turn only.
     never_moves = not env.scope.labels or a.keys() == {"x"}
     if motion.is_still and is_seen and not is_loose and never_moves:
@@ -482,13 +480,6 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         stays = "it stays so: a constraint on it is one on what it is a copy of"
         it.report("W0510", "this copy lies exactly on what it is a copy of", node, hints=[where, stays])
     return copied(it, a["x"], motion, node, env)
-
-
-def _is_seen(g: Geometry, here: Structure) -> bool:
-    """Tells whether a copy would lie on something that is drawn. A guide is not, and a part of an imported
-    drawing is taken to another structure to be what that one is.
-    """
-    return not (g.trace is not None and g.owner is not here) and not g.is_guide
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -8,6 +8,7 @@ from itertools import pairwise, product
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.along import FREE_KINDS, KINDS, Way, reading_way, way_along, within
+from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
@@ -132,6 +133,21 @@ class _Call:
         is_nameless = isinstance(self.thing, Geometry) and self.thing.name is None
         return is_nameless and not any(c.value for c in centre)
 
+    def check_alone(self, place: Place) -> None:
+        """Warns of a place that is added to that of a thing without a name, written away from the origin."""
+        box = box_of(self.thing, self.env.here)
+        if box is None or not isinstance(self.thing, Geometry) or self.thing.name is not None:
+            return
+        spans = [[box.side(side).value for side in sides] for sides in (("left", "right"), ("bottom", "top"))]
+        if any(at.value and low * high > 0 for at, (low, high) in zip(place, spans, strict=True)):
+            x, y = (f"{(low + high) / 2:g}" for low, high in spans)
+            self.it.report(
+                "W0511",
+                f"what is repeated stands at ({x}, {y}) already, which is added to the place of the row",
+                self.node,
+                hints=["write it around the origin; or give no place: the row begins where it stands"],
+            )
+
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
@@ -191,15 +207,16 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
         return call.wrong(what, "leave one of them out")
     span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
     back = _total([(ex.constant(-1.0), span)])
-    goes_on = call.has_place and "center" not in call.a and "start" not in call.a
+    placed = next((name for name in ("start", "center") if name in call.a), None)
+    goes_on = call.has_place and placed is None
     about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
     first = back if goes_on and call.is_without_place(about) else NOWHERE
     if goes_on:
         start = _total([(ex.ONE, about), (ex.ONE, first)])
-    elif "start" in call.a:
-        start = call.position("start")
     else:
-        start = _total([(ex.ONE, call.position("center")), (ex.ONE, back)])
+        place = call.position(placed or "center")
+        start = place if placed == "start" else _total([(ex.ONE, place), (ex.ONE, back)])
+        call.check_alone(place)
     call.settings.fields.setdefault("start", point(*start))
     call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
 

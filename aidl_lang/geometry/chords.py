@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -186,11 +187,7 @@ def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
 
 def _turned(piece: Piece) -> Piece:
     """Returns a whole curve run through clockwise: an ellipse mirrored in its long axis is itself."""
-    return (
-        Ellipse(piece.center, piece.rx, -piece.ry, piece.angle)
-        if isinstance(piece, Ellipse)
-        else reverse(piece)
-    )
+    return replace(piece, ry=-piece.ry) if isinstance(piece, Ellipse) else reverse(piece)
 
 
 def _error(piece: Piece) -> float:

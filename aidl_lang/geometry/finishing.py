@@ -156,7 +156,9 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     for work in works:
         made = solve(work)
         if made is None:
-            result.failures.append(_misfit(work))
+            # `largest` is done with the function when it returns.
+            fits = largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes))  # noqa: B023
+            result.failures.append(TooLarge(work, fits))
         else:
             done.append(made)
     lost: dict[tuple[int, bool], Finished] = {}
@@ -174,10 +176,6 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
                 curves[number], lost.get((number, True)), lost.get((number, False)), number
             )
     return result
-
-
-def _misfit(work: Work) -> TooLarge:
-    return TooLarge(work, largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes)))
 
 
 def sized(work: Work, size: float) -> Work:

@@ -8,6 +8,7 @@ from dataclasses import field, replace
 from functools import cached_property, partial
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.attributes import FILLING
 from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import FLOATS, Lowered, Placing
@@ -42,7 +43,6 @@ from aidl_lang.geometry.solved import (
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
-from aidl_lang.geometry.styles import FILLING
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast

@@ -7,6 +7,7 @@ from dataclasses import replace
 from heapq import heapify, heappop, heappush
 from typing import TypeAlias
 
+from aidl_lang.building.attributes import FILLING
 from aidl_lang.checking.builtins import BEHIND, IN_FRONT, STACKING
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
@@ -22,7 +23,6 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-FILLING = ("color", "shade")
 _OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
 """Looks and numbers that a body has as a whole."""
 
@@ -150,11 +150,12 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
 def is_filled(geometry: SolvedGeometry) -> bool:
     """Tells whether a geometry is an area with a look of its own: a line has a width or dashes."""
     stated = geometry.attributes
-    return any(look in stated for look in FILLING) and not ("stroke" in stated or "dash" in stated)
+    is_line = "dash" in stated or ("stroke" in stated and not is_unlined(stated))
+    return any(look in stated for look in FILLING) and not is_line
 
 
 def is_unlined(stated: Attributes) -> bool:
-    """Tells whether attributes ask for solids without outline."""
+    """Tells whether attributes ask for solids and areas without outline."""
     return stated.get("stroke") == ("none",)
 
 
@@ -217,7 +218,11 @@ def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
 
 def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[str]) -> list[Diagnostic]:
     """Returns warnings about looks of geometry that encloses nothing of its body, but what is `loose`."""
-    return [
+    lined = [(s, g) for s in root.walk() if s.kind == "drawing" for g in s.drawn if g.path not in areas]
+    unlined = {h.path: h for pair in lined for h in pair if is_unlined(h.attributes)}
+    hints = ("give a width, as in `@stroke(0.3mm)`; a closed geometry with a `@color` is an area",)
+    message = "`@stroke(none)` of `{}` counts for nothing where lines are drawn: they have a width"
+    return [Diagnostic("W0727", message.format(p), h.span, hints=hints) for p, h in unlined.items()] + [
         Diagnostic(
             "W0727",
             f"{' and '.join(ticked([w for w in FILLING if w in g.attributes], '@'))} of `{g.path}` "
