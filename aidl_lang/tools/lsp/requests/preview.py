@@ -332,7 +332,7 @@ class _Requests:
     async def preview(self, given: Show) -> Json | None:
         """Shows a document from now on."""
         document = self._document(given)
-        self._outdate_tries(given)
+        self._asked[given.uri, given.viewer] += 1
         self.pictures.show(document, given)
         self.server.runner.active = document
         await document.until_solved(document.serial, _LONGEST_WAIT)
@@ -413,9 +413,6 @@ class _Requests:
             raise JsonRpcInvalidParams("this document is not open")
         return document
 
-    def _outdate_tries(self, given: OfDocument) -> None:
-        self._asked[given.uri, given.viewer] += 1
-
     async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
         """Returns the outcome of a version. Raises JsonRpcContentModified if that is gone."""
         document = self._document(given)
@@ -445,7 +442,7 @@ class _Requests:
 
     async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
-        self._outdate_tries(given)
+        self._asked[given.uri, given.viewer] += 1
         async with self._document(given).editing:
             asked, document = await self._solved(given, given.version)
             key = ("edit", given.uri)
