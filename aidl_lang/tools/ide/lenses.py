@@ -137,10 +137,11 @@ def can_be_tried(view: View) -> bool:
 
 
 def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Found:
-    """Tries a program that `can_be_tried` at the ends of its params, and walks between them, in half of the
-    time each. Raises Cancelled if the request was given up.
+    """Tries a program at the ends of its params, and walks between them, in half of the time each. Raises
+    ValueError if it cannot be tried, and Cancelled if the request was given up.
     """
-    assert view.outcome is not None
+    if view.outcome is None or not can_be_tried(view):
+        raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
     sweep = ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds / 2)
     return Found(sweep, between(view, settings, progress, seconds / 2))

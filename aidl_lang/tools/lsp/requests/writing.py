@@ -97,11 +97,12 @@ class Ends:
         loop = asyncio.get_running_loop()
         told = await self._progress()
 
-        def progress(done: int, count: int) -> None:
+        def tell(done: int, count: int) -> None:
             loop.call_soon_threadsafe(told, done, count)
 
-        work = partial(function, known.view, LIMITS, progress, _LONGEST)
-        task = loop.create_task(self._server.sweeps.ask(work))
+        task = loop.create_task(
+            self._server.sweeps.ask(partial(function, known.view, LIMITS, tell, _LONGEST))
+        )
         try:
             while not task.done():
                 await asyncio.wait([task], timeout=_PAUSE)
@@ -131,9 +132,8 @@ class Ends:
             if is_over := not count:
                 server.work_done_progress.end(token, types.WorkDoneProgressEnd())
                 return
-            report = types.WorkDoneProgressReport(
-                message=f"{done} of {count}", percentage=100 * done // count
-            )
+            share = 100 * done // count
+            report = types.WorkDoneProgressReport(message=f"{done} of {count}", percentage=share)
             server.work_done_progress.report(token, report)
 
         return told
