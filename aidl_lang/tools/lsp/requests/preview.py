@@ -183,7 +183,7 @@ class Pictures:
         self.server = server
         self._shown: dict[Document, _Shown] = {}
         server.on_solved.append(self._solved)
-        server.on_closed.append(self._forget)
+        server.on_closed.append(lambda document: self._shown.pop(document, None))
 
     def show(self, document: Document, wanted: Show) -> None:
         shown = self._shown.setdefault(document, _Shown())
@@ -193,10 +193,7 @@ class Pictures:
         """Stops telling a viewer of a document."""
         shown = self._shown.get(document)
         if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
-            self._forget(document)
-
-    def _forget(self, document: Document) -> None:
-        self._shown.pop(document, None)
+            self._shown.pop(document)
 
     def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
         """Returns the message for a view of another text. To be called in the solving thread."""

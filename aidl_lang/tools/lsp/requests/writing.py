@@ -100,9 +100,8 @@ class Ends:
         def tell(done: int, count: int) -> None:
             loop.call_soon_threadsafe(told, done, count)
 
-        task = loop.create_task(
-            self._server.sweeps.ask(partial(function, known.view, LIMITS, tell, _LONGEST))
-        )
+        work = partial(function, known.view, LIMITS, tell, _LONGEST)
+        task = loop.create_task(self._server.sweeps.ask(work))
         try:
             while not task.done():
                 await asyncio.wait([task], timeout=_PAUSE)
