@@ -3,8 +3,8 @@
     .peers/bin/python -m benchmarks.ranges_peers      in the environment that `solver/install_peers.py` makes
 
 Each sketch is solved at equal steps over the range of its param: from the guesses as drawn, and from the
-solution of the step before. It flips if what is drawn lies on one side at some values and on the other at others,
-though the solver says each time that all is well.
+solution of the step before. It flips if what is drawn lies on one side at some values, and on the other at
+others, though the solver says each time that all is well.
 """
 
 from __future__ import annotations
