@@ -23,6 +23,7 @@ from aidl_lang.common.world import DiskWorld
 from aidl_lang.tools.ends import SweepJob
 from aidl_lang.tools.ranges import Turn, Walk, has_way, sentences
 from aidl_lang.tools.ranges.walking import walked
+from benchmarks.ranges_peers import BALLS, BARS, LEANS, SPOTS, WHEELS
 
 
 @record()
@@ -39,7 +40,7 @@ class Planted:
 def flips() -> Iterator[Planted]:
     """Yields programs in which another solution is taken: a guess comes to lie on the other side."""
     kinds = frozenset({"jump", "reading"})
-    for place, long in ((12.3, 40), (30, 35), (33.7, 50), (41, 44), (8.9, 61)):
+    for place, long in BARS:
         yield Planted(
             "two bars",
             kinds,
@@ -52,7 +53,7 @@ def flips() -> Iterator[Planted]:
 }}""",
             place,
         )
-    for place in (0, 11, -17.5, 24):
+    for place in LEANS:
         yield Planted(
             "angle",
             kinds,
@@ -64,7 +65,7 @@ def flips() -> Iterator[Planted]:
 }}""",
             place,
         )
-    for place, radius in ((14.0, 9), (22.2, 15), (37.5, 4), (5.5, 3)):
+    for place, radius in WHEELS:
         yield Planted(
             "circle at a line",
             kinds,
@@ -76,7 +77,7 @@ def flips() -> Iterator[Planted]:
 }}""",
             place,
         )
-    for place, radius in ((30, 6), (41.7, 10), (25, 4), (36, 15)):
+    for place, radius in BALLS:
         yield Planted(
             "circle at a circle",
             kinds,
@@ -88,7 +89,7 @@ def flips() -> Iterator[Planted]:
 }}""",
             place,
         )
-    for place, far in ((19, 12), (28.4, 5), (7.7, 9)):
+    for place, far in SPOTS:
         yield Planted(
             "distance from a line",
             kinds,

@@ -134,6 +134,29 @@ def test_dragging_shows_and_writes_the_same(file: Path) -> None:
         )
 
 
+def test_a_walk_of_the_params_holds_up_nothing_and_ends_when_the_text_changes(file: Path) -> None:
+    text = """solid plate {
+    param way = 0 in 0..40
+    body = rectangle(width: 60, height: 50)
+    hole bore { rim = circle(center: (way, 0), radius: 5) }
+}
+"""
+    file.write_text(text, "utf-8")
+    with serving(file) as client, talking(client, file) as page:
+        page.preview()
+        found = page.answer("aidl/ranges")
+        (walk,) = found["walked"]
+        assert (walk["param"], walk["turns"][0]["value"]) == ("way", pytest.approx(25, abs=0.05))
+        assert "`plate.bore.rim` breaks through its edge" in walk["turns"][0]["message"]
+        assert found["summary"].startswith("1 param walked from end to end, ")
+        number = page.ask("aidl/ranges")
+        again = page.ask("aidl/ranges")
+        assert "asks for more than can be done at once" in page.answered(again)["error"]["message"]
+        assert page.answer("aidl/try", knobs={"way": 3})["tried"]
+        assert page.answer("aidl/setKnob", path="way", value=4) == {"applied": True}
+        assert page.answered(number)["error"]["message"] == "the text has changed"
+
+
 def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
     file.write_text(
         "assembly two { @thickness(3mm) solid a { r = square(size: 50) }\n"

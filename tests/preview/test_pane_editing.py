@@ -53,6 +53,40 @@ def drags(pane: Pane) -> list[tuple[list[float], bool]]:
 # Sliders
 
 
+def test_the_places_where_the_kind_changes_are_marked_until_the_text_changes(pane: Pane) -> None:
+    button = pane.page.get_by_role("button", name="Mark where the kind changes")
+    marks = pane.find("#knobs-list .turn")
+    settled = pane.page.evaluate("JSON.parse(document.body.dataset.shown)[1]")
+    button.click()
+    expect(button).to_be_disabled()
+    fixes = [{"title": "let the range of `width` end at 149mm"}]
+    turns = [{"value": 150, "message": "at `width = 150mm` it breaks", "fixes": fixes}]
+    answer = {"summary": "1 param walked", "walked": [{"param": "width", "turns": turns}]}
+    pane.host.answer("aidl/ranges", answer)
+    expect(marks).to_have_count(1)
+    expect(marks).to_have_attribute(
+        "title", "at width = 150mm it breaks\nlet the range of width end at 149mm"
+    )
+    expect(pane.find("#walked")).to_have_text("1 param walked")
+    assert pane.middle("#knobs-list .turn")[0] == pytest.approx(along(pane, 150)[0], abs=1)
+    pane.shows(tried=True, version=settled, knobs=[knob(value=120)])
+    expect(marks).to_have_count(1)
+    pane.shows()
+    expect(marks).to_have_count(0)
+    expect(pane.find("#walked")).to_be_hidden()
+    button.click()
+    pane.shows()
+    pane.host.answer("aidl/ranges", answer)
+    expect(button).to_be_enabled()
+    expect(marks).to_have_count(0)  # they are of a text before
+    button.click()
+    pane.host.answer("aidl/ranges", error="the text has changed", code=-32801)
+    expect(button).to_be_enabled()
+    expect(pane.find(".toast")).to_have_count(0)
+    pane.shows(knobs=[knob(low=None, high=None)])
+    expect(button).to_be_hidden()
+
+
 def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pane) -> None:
     pane.page.mouse.move(*along(pane, 100))
     pane.page.mouse.down()

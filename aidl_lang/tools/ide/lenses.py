@@ -143,9 +143,15 @@ def tried(view: View, settings: Settings, progress: Callable[[int, int], None], 
     if view.outcome is None or not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    knobs = view.outcome.knobs
-    sweep = ends.sweep(job, knobs, view.outcome.diagnostics, progress, seconds / 2)
-    return Found(sweep, ranges(job, knobs, progress, seconds / 2))
+    sweep = ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds / 2)
+    return Found(sweep, between(view, settings, progress, seconds / 2))
+
+
+def between(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Ranges:
+    """Walks the params of a program that `can_be_tried`. Raises Cancelled as `tried` does."""
+    assert view.outcome is not None
+    job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
+    return ranges(job, view.outcome.knobs, progress, seconds)
 
 
 def end_lenses(view: View, found: Found | None) -> list[Lens]:

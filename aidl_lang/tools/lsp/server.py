@@ -180,7 +180,7 @@ class Server(LanguageServer):
         self.searches = Answers("searching")
         self.sweeps = Answers("sweeping")
         self.on_solved: list[Callable[[Document], None]] = []
-        self.on_closed: list[Callable[[Document], None]] = []
+        self.on_closed: list[Callable[[Document], object]] = []
         self.runner: Runner
         self._has_told_of_crash = False
         self._background: set[asyncio.Task[None]] = set()

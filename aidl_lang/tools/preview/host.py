@@ -59,6 +59,7 @@ class Page:
         self.attempt: Request | None = None
         """what is tried next"""
         self.is_trying = False
+        self.is_walking = False
         self._is_held_up = False
         self._waiting: list[tuple[bool, str]] = []
         self._news = asyncio.Event()
@@ -156,7 +157,8 @@ BUSY_AFTER = 0.15
 
 _ATTEMPT = "aidl/try"
 _EDITS = frozenset({"aidl/setKnob", "aidl/drag", "aidl/fix"})
-_METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export", "aidl/exports"}
+_WALK = "aidl/ranges"
+_METHODS = _EDITS | {_ATTEMPT, _WALK, "aidl/preview", "aidl/export", "aidl/exports"}
 """Requests that a page may send to the server."""
 _TYPING = "aidl/type"
 OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
@@ -196,7 +198,7 @@ class Host:
         self._loop = asyncio.get_running_loop()
         self.server.start()
         self.server.protocol.set_writer(self, include_headers=False)
-        self._ask("initialize", {"processId": None, "rootUri": None, "capabilities": _CLIENT}, _ignore)
+        self._ask("initialize", {"processId": None, "rootUri": None, "capabilities": _CLIENT})
         self._say("initialized", {})
         await self.noticed()
 
@@ -303,7 +305,7 @@ class Host:
         page.orders.clear()
         page.attempt = None
         self._go_on(self._gone)
-        self._ask("aidl/previewClose", {"uri": self.uri, "viewer": page.name}, _ignore)
+        self._ask("aidl/previewClose", {"uri": self.uri, "viewer": page.name})
 
     def hear(self, page: Page, text: str) -> None:
         """Takes a message; the answer comes when there is one. Skips what is no request."""
@@ -323,7 +325,10 @@ class Host:
                 page.refuse(page.attempt, LSPErrorCodes.RequestCancelled, "there is something newer")
             page.attempt = request
             self._try(page)
-        elif len(page.orders) == MOST_ORDERS:
+        elif request.method == _WALK and not page.is_walking:
+            page.is_walking = True  # it takes seconds, in which orders and attempts go on
+            self._forward(page, request, partial(setattr, page, "is_walking", False))
+        elif request.method == _WALK or len(page.orders) == MOST_ORDERS:
             page.refuse(request, LSPErrorCodes.RequestFailed, TOO_MUCH)
         else:
             page.orders.append(request)
@@ -401,7 +406,7 @@ class Host:
 
     # --- The server
 
-    def _ask(self, method: str, params: Json, answered: Callable[[Json], None]) -> None:
+    def _ask(self, method: str, params: Json, answered: Callable[[Json], None] = lambda _: None) -> None:
         number = next(self._numbers)
         self._asked[number] = answered
         self._receive({"id": number, "method": method, "params": params})
@@ -425,9 +430,8 @@ class Host:
             self._spawn(self._reply(message["id"], params if method == "workspace/applyEdit" else None))
         elif method == "aidl/previewChanged":
             self._rested()
-            for page in self.pages:
-                if page.name == params["viewer"]:
-                    page.post(message, is_picture=True)
+            for page in (each for each in self.pages if each.name == params["viewer"]):
+                page.post(message, is_picture=True)
         elif method == "aidl/status":
             self._rested()
         elif method == "window/showMessage":
@@ -484,7 +488,3 @@ def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:
         Edit(Span(source, offset(e["range"]["start"]), offset(e["range"]["end"])), e["newText"])
         for e in edits
     ]
-
-
-def _ignore(message: Json) -> None:
-    """Ignores an answer that nobody waits for."""

@@ -204,7 +204,8 @@ class _Thing:
         (first, at), others = moving[0], moving[1:]
         yield self._arrow(at, first)
         for velocity, place in others:
-            if _dot(velocity, first) < -0.5 * math.hypot(*velocity) * math.hypot(*first) < 0:
+            along = velocity[0] * first[0] + velocity[1] * first[1]
+            if along < -0.5 * math.hypot(*velocity) * math.hypot(*first) < 0:
                 yield self._arrow(place, velocity)
                 return
 
@@ -249,10 +250,6 @@ def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]
 
 def _mean(vectors: Sequence[Vec]) -> Vec:
     return sum(v[0] for v in vectors) / len(vectors), sum(v[1] for v in vectors) / len(vectors)
-
-
-def _dot(a: Vec, b: Vec) -> float:
-    return a[0] * b[0] + a[1] * b[1]
 
 
 # --- The picture as SVG whose shapes say which element they are: `data-element`, a number of `elements`.

@@ -342,7 +342,8 @@ class _Reading:
 
     def _structure(self, structure: SolvedStructure, around: Span | None) -> Iterator[DrawnElement]:
         span = self.places.now(structure.span) or around
-        element = Element(structure.path, "structure", structure.kind, span, _of_structure(structure))
+        about = ", ".join(filter(None, (structure.kind, _extent(structure))))
+        element = Element(structure.path, "structure", structure.kind, span, about)
         yield DrawnElement(element, structure, structure)
         for geometry in structure.drawn:
             yield from self._geometry(geometry, structure, span)
@@ -401,10 +402,6 @@ def box_of(thing: SolvedStructure | SolvedGeometry) -> Bounds | None:
         boxes = [bounds(curve) for curve in curves_of(thing)]
         box = union_bounds(boxes) if boxes else None
     return box if box is not None and all(map(math.isfinite, box)) else None
-
-
-def _of_structure(structure: SolvedStructure) -> str:
-    return ", ".join(filter(None, (structure.kind, _extent(structure))))
 
 
 def _of_geometry(geometry: SolvedGeometry) -> str:

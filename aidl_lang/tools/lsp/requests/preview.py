@@ -183,7 +183,7 @@ class Pictures:
         self.server = server
         self._shown: dict[Document, _Shown] = {}
         server.on_solved.append(self._solved)
-        server.on_closed.append(self._forget)
+        server.on_closed.append(lambda document: self._shown.pop(document, None))
 
     def show(self, document: Document, wanted: Show) -> None:
         shown = self._shown.setdefault(document, _Shown())
@@ -193,10 +193,7 @@ class Pictures:
         """Stops telling a viewer of a document."""
         shown = self._shown.get(document)
         if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
-            self._forget(document)
-
-    def _forget(self, document: Document) -> None:
-        self._shown.pop(document, None)
+            self._shown.pop(document)
 
     def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
         """Returns the message for a view of another text. To be called in the solving thread."""
@@ -332,7 +329,7 @@ class _Requests:
     async def preview(self, given: Show) -> Json | None:
         """Shows a document from now on."""
         document = self._document(given)
-        self._outdate_tries(given)
+        self._asked[given.uri, given.viewer] += 1
         self.pictures.show(document, given)
         self.server.runner.active = document
         await document.until_solved(document.serial, _LONGEST_WAIT)
@@ -413,9 +410,6 @@ class _Requests:
             raise JsonRpcInvalidParams("this document is not open")
         return document
 
-    def _outdate_tries(self, given: OfDocument) -> None:
-        self._asked[given.uri, given.viewer] += 1
-
     async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
         """Returns the outcome of a version. Raises JsonRpcContentModified if that is gone."""
         document = self._document(given)
@@ -445,7 +439,7 @@ class _Requests:
 
     async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
-        self._outdate_tries(given)
+        self._asked[given.uri, given.viewer] += 1
         async with self._document(given).editing:
             asked, document = await self._solved(given, given.version)
             key = ("edit", given.uri)

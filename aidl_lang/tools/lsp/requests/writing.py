@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 from uuid import uuid4
 
 from lsprotocol import types
@@ -22,6 +22,7 @@ from aidl_lang.tools.ide.lenses import (
     Found,
     Inlay,
     InlayKind,
+    between,
     can_be_tried,
     end_lenses,
     inlays,
@@ -33,11 +34,13 @@ from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.tools.ide.workspace import Positions
 from aidl_lang.tools.lsp import params as asking
 from aidl_lang.tools.lsp.documents import Document, VersionedView
-from aidl_lang.tools.lsp.params import EntryRequest, read
+from aidl_lang.tools.lsp.params import EntryRequest, OfDocument, read
 from aidl_lang.tools.lsp.running import FAILED, LIMITS
 from aidl_lang.tools.lsp.server import Asked, Server
 from aidl_lang.tools.ranges import described as walked
+from aidl_lang.tools.ranges import summary
 
+T = TypeVar("T")
 CHECK_ENDS = "aidl.checkEnds"
 _LONGEST = 120.0
 """Most seconds for all ends."""
@@ -53,17 +56,31 @@ class Ends:
     def __init__(self, server: Server) -> None:
         self._server = server
         self._found: dict[str, tuple[int, Found]] = {}
-        server.on_closed.append(lambda document: self._forget(document.uri))
+        server.on_closed.append(lambda document: self._found.pop(document.uri, None))
 
-    def of(self, asked: Asked) -> Found | None:
-        version, found = self._found.get(asked.uri, (None, None))
-        return found if version == asked.known.version else None
-
-    def _forget(self, uri: str) -> None:
-        self._found.pop(uri, None)
+    def of(self, uri: str, known: VersionedView) -> Found | None:
+        version, found = self._found.get(uri, (None, None))
+        return found if version == known.version else None
 
     async def check(self, uri: object) -> dict[str, Any]:
         """Tries each param of a document at its ends; the document may not change meanwhile."""
+        document, known = await self._workable(uri)
+        found = await self._asked(document, known, tried)
+        self._found[document.uri] = known.version, found
+        self._server.refresh_hints()
+        sweep, walks = found.sweep, walked(document.uri, found.ranges)
+        told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": walks}
+        return told | {"ok": sweep.ok and found.ranges.ok}
+
+    async def walk(self, given: OfDocument) -> dict[str, Any]:
+        """Walks each param of a document, unless that was done for the lenses."""
+        document, known = await self._workable(given.uri)
+        found = self.of(document.uri, known)
+        walks = found.ranges if found is not None else await self._asked(document, known, between)
+        return walked(document.uri, walks) | {"summary": summary(walks)}
+
+    async def _workable(self, uri: object) -> tuple[Document, VersionedView]:
+        """Returns a document as it was run, if its params can be tried."""
         document = self._server.documents.get(uri) if isinstance(uri, str) else None
         if document is None:
             raise JsonRpcInvalidParams("this document is not open")
@@ -73,22 +90,17 @@ class Ends:
             raise JsonRpcContentModified("the text has changed")
         if not can_be_tried(known.view):
             raise JsonRpcException(_NOTHING, FAILED)
-        found = await self._swept(document, known)
-        self._found[document.uri] = known.version, found
-        self._server.refresh_hints()
-        sweep, between = found.sweep, walked(document.uri, found.ranges)
-        told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": between}
-        return told | {"ok": sweep.ok and found.ranges.ok}
+        return document, known
 
-    async def _swept(self, document: Document, known: VersionedView) -> Found:
-        """Returns the results. Raises JsonRpcContentModified if the text changes before."""
+    async def _asked(self, document: Document, known: VersionedView, function: Callable[..., T]) -> T:
+        """Returns what comes of trying. Raises JsonRpcContentModified if the text changes before."""
         loop = asyncio.get_running_loop()
         told = await self._progress()
 
-        def progress(done: int, count: int) -> None:
+        def tell(done: int, count: int) -> None:
             loop.call_soon_threadsafe(told, done, count)
 
-        work = partial(tried, known.view, LIMITS, progress, _LONGEST)
+        work = partial(function, known.view, LIMITS, tell, _LONGEST)
         task = loop.create_task(self._server.sweeps.ask(work))
         try:
             while not task.done():
@@ -110,19 +122,17 @@ class Ends:
         token = str(uuid4())
         await server.work_done_progress.create_async(token)
         server.work_done_progress.begin(token, types.WorkDoneProgressBegin(_TITLE, percentage=0))
-
         is_over = False
 
         def told(done: int, count: int) -> None:
             nonlocal is_over
             if is_over:
                 return
-            if not count:
-                is_over = True
+            if is_over := not count:
                 server.work_done_progress.end(token, types.WorkDoneProgressEnd())
                 return
-            message, share = f"{done} of {count}", 100 * done // count
-            report = types.WorkDoneProgressReport(message=message, percentage=share)
+            share = 100 * done // count
+            report = types.WorkDoneProgressReport(message=f"{done} of {count}", percentage=share)
             server.work_done_progress.report(token, report)
 
         return told
@@ -144,6 +154,10 @@ def register_hints(server: Server) -> None:
         """Try the ends of all params of a document, which is the argument."""
         return await ends.check(arguments[0] if arguments else None)
 
+    @server.feature("aidl/ranges")
+    async def walk(params: Any) -> dict[str, Any]:
+        return await ends.walk(read(params, OfDocument))
+
     @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
     def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
         answered.note(asked)
@@ -153,7 +167,7 @@ def register_hints(server: Server) -> None:
         for each in lenses(asked.view):
             command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
             made.append(types.CodeLens(asked.convert.range(each.span), command))
-        for each in end_lenses(asked.view, ends.of(asked)):
+        for each in end_lenses(asked.view, ends.of(asked.uri, asked.known)):
             command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
             made.append(types.CodeLens(asked.convert.range(each.span), command))
         return made
@@ -161,8 +175,9 @@ def register_hints(server: Server) -> None:
     @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
     def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
         answered.note(asked)
+        others, shown = asked.settings.solved_values, {InlayKind.READING: asked.settings.readings}
         found = inlays(asked.view, asked.convert.span(params.range))
-        return [_hint(each, asked) for each in found if _is_wanted(each, asked)]
+        return [_hint(each, asked) for each in found if shown.get(each.kind, others)]
 
 
 class _Answered:
@@ -173,7 +188,7 @@ class _Answered:
         self._told: dict[str, tuple[int, int | None]] = {}
         """By document, the version that was told of, and the serial of its outcome."""
         server.on_solved.append(self._solved)
-        server.on_closed.append(self._closed)
+        server.on_closed.append(lambda document: self._told.pop(document.uri, None))
 
     def note(self, asked: Asked) -> None:
         known = asked.known
@@ -183,14 +198,6 @@ class _Answered:
         told, ran = self._told.get(document.uri), document.ran
         if told is not None and ran is not None and told[0] == ran.version and told[1] != ran.serial:
             self._server.refresh_hints()
-
-    def _closed(self, document: Document) -> None:
-        self._told.pop(document.uri, None)
-
-
-def _is_wanted(inlay: Inlay, asked: Asked) -> bool:
-    settings = asked.settings
-    return settings.readings if inlay.kind is InlayKind.READING else settings.solved_values
 
 
 def _hint(inlay: Inlay, asked: Asked) -> types.InlayHint:
@@ -343,7 +350,7 @@ def register_writing(server: Server) -> None:
     triggers = [".", "@", "(", '"']
     options = types.CompletionOptions(trigger_characters=triggers, resolve_provider=True)
     server.answers_to(types.TEXT_DOCUMENT_COMPLETION, options)(lists.complete)
-    server.on_closed.append(lists.forget)
+    server.on_closed.append(lambda document: lists.last.pop(document.uri, None))
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     async def resolve(item: types.CompletionItem) -> types.CompletionItem:
@@ -364,13 +371,13 @@ class _Lists:
     """The last list of each document: the documentation of an entry is made on demand."""
 
     def __init__(self) -> None:
-        self._last: dict[str, tuple[int, list[Completion]]] = {}
+        self.last: dict[str, tuple[int, list[Completion]]] = {}
 
     def complete(self, asked: Asked, params: types.CompletionParams) -> types.CompletionList:
         offset = asked.convert.offset(params.position)
         found = complete(asked.view, offset, asked.project.workspace.programs)
-        number = self._last.get(asked.uri, (0, []))[0] + 1
-        self._last[asked.uri] = number, found
+        number = self.last.get(asked.uri, (0, []))[0] + 1
+        self.last[asked.uri] = number, found
         snippets = asked.can("text_document.completion.completion_item.snippet_support")
         return types.CompletionList(
             is_incomplete=len(found) >= MOST,
@@ -381,11 +388,8 @@ class _Lists:
         )
 
     def find(self, uri: str, number: int, entry: int) -> Completion | None:
-        known, found = self._last.get(uri, (0, []))
+        known, found = self.last.get(uri, (0, []))
         return found[entry] if known == number and 0 <= entry < len(found) else None
-
-    def forget(self, document: Document) -> None:
-        self._last.pop(document.uri, None)
 
 
 def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object]) -> types.CompletionItem:

@@ -1,8 +1,8 @@
 /** The sliders and fields for the params of a program.
- * @import { Knob, Preview, Value } from "./protocol.js"
+ * @import { Knob, KindChange, Preview, Value, Walked } from "./protocol.js"
  */
 
-import { el, icon, quoted, set } from "./dom.js";
+import { el, icon, part, quoted, set } from "./dom.js";
 import { shown } from "./numbers.js";
 import { Scale } from "./scales.js";
 
@@ -20,11 +20,15 @@ import { Scale } from "./scales.js";
  * @typedef {object} Control
  * @property {Element[]} elements
  * @property {(value: Value) => void} show
+ * @property {(turns: readonly KindChange[]) => void} [mark] shows where the kind changes
  */
 
 export class Knobs {
   /** @type {Map<string, Row>} */
   #rows = new Map();
+  /** Of the text that was walked, whose marks are shown; null without any. */
+  #walked = /** @type {number | null} */ (null);
+  #summary = part("walked", HTMLElement);
 
   /**
    * @param {HTMLElement} list
@@ -43,7 +47,8 @@ export class Knobs {
   }
 
   /** @param {Preview} preview */
-  show({ knobs, tried }) {
+  show({ knobs, tried, version }) {
+    if (this.#walked !== null && this.#walked !== version) this.mark(null, { summary: "", walked: [] });
     /** @type {Map<string, Row>} */
     const rows = new Map();
     for (const knob of knobs) {
@@ -58,6 +63,24 @@ export class Knobs {
     if (wanted.length !== this.list.children.length || wanted.some((row, k) => row !== this.list.children[k])) {
       this.list.replaceChildren(...wanted); // only when they changed, since it takes the focus away
     }
+  }
+
+  /**
+   * Shows where the kind changes on the way of each param, until the text is another.
+   * @param {number | null} version of the text that was walked; null for none
+   * @param {Walked} found
+   */
+  mark(version, { summary, walked }) {
+    this.#walked = version;
+    this.#summary.textContent = summary;
+    this.#summary.hidden = !summary;
+    const turns = new Map(walked.map((walk) => [walk.param, walk.turns]));
+    for (const [path, row] of this.#rows) row.control.mark?.(turns.get(path) ?? []);
+  }
+
+  /** Whether a slider has both ends, between which its param can be walked. */
+  get canBeWalked() {
+    return [...this.#rows.values()].some(({ knob }) => knob.kind === "number" && knob.low !== null && knob.high !== null);
   }
 
   /** The values in the text again. */
@@ -330,9 +353,22 @@ function number(row, id) {
     isTyping = false;
     if (!row.isAsking && !row.isRefused) show(row.value); // what was typed is the value, otherwise written
   });
+  const marks = el("div", { class: "turns", hidden: true });
+
+  /** @param {readonly KindChange[]} turns */
+  function mark(turns) {
+    marks.hidden = turns.length === 0;
+    marks.replaceChildren(...turns.map(({ value, message, fixes }) => {
+      const words = [message, ...fixes.map((fix) => fix.title)].join("\n").replaceAll("`", "");
+      const one = el("span", { class: "turn", role: "img", title: words, "aria-label": words });
+      one.style.setProperty("--at", String((value - scale.start) / (scale.end - scale.start)));
+      return one;
+    }));
+  }
+
   show(knob.value);
   const measure = el("span", { class: knob.unit ? "measure with-unit" : "measure" }, field, unit);
-  return { elements: [slider, measure], show };
+  return { elements: [el("div", { class: "track" }, slider, marks), measure], show, mark };
 }
 
 /**

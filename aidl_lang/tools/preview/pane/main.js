@@ -150,6 +150,7 @@ class Pane {
         this.place();
       },
     );
+    part("walk", HTMLButtonElement).addEventListener("click", () => void this.walk());
     toggle("handles-toggle", (isOn) => this.handles.showAll(isOn));
     toggle("freedom-toggle", (isOn) => {
       this.#isFreedomWanted = isOn;
@@ -277,6 +278,17 @@ class Pane {
     if (file) download(file.name, file.data);
     for (const note of file?.notes ?? []) this.status.toast(note, "warning");
     return why;
+  }
+
+  /** Ask where the params change kind, which takes seconds; the answer of a text that was changed since is of no use. */
+  async walk() {
+    const button = part("walk", HTMLButtonElement);
+    await this.source.flush();
+    button.disabled = true;
+    const version = this.settled?.version ?? 0;
+    const found = await this.ask("aidl/ranges", { uri: this.uri });
+    button.disabled = false;
+    if (found && version === this.settled?.version) this.knobs.mark(version, found);
   }
 
   /** @param {number | null} element */
@@ -413,6 +425,8 @@ class Pane {
     part("knobs", HTMLElement).hidden = !hasKnobs;
     part("freedom", HTMLElement).hidden = !hasFreedom;
     part("side", HTMLElement).hidden = !hasKnobs && !hasFreedom;
+    const isAlone = typeof dialAidl === "function"; // a page without a server has no processes that could walk
+    part("walk", HTMLElement).hidden = isAlone || !this.knobs.canBeWalked;
     part("knobs-count", HTMLElement).textContent = String(preview?.knobs.length ?? "");
     part("freedom-count", HTMLElement).textContent = String(preview?.motions.length ?? "");
   }

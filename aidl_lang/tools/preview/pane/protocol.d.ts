@@ -103,6 +103,10 @@ export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan"
 export interface ExportOption { name: string; label: string; hint: string; choices: string[]; formats: string[] }
 export interface Exports { formats: { name: string; label: string }[]; options: ExportOption[] }
 
+/** Where a param changes kind on its way from end to end: the first `value` of another one, and edits that keep it. */
+export interface KindChange { value: number; message: string; fixes: { title: string }[] }
+export interface Walked { summary: string; walked: { param: string; turns: KindChange[] }[] }
+
 /** Values to solve with that are not in the text. */
 export type Attempt = { knobs: Record<string, Value> } | { drag: { id: string; to: Vec } };
 
@@ -123,6 +127,7 @@ export interface Requests {
   "aidl/fix": { params: { version: number; problem: number; fix: number }; result: Applied };
   "aidl/export": { params: ExportWish & { show?: readonly string[] }; result: Exported | null };
   "aidl/exports": { params: object; result: Exports };
+  "aidl/ranges": { params: object; result: Walked };
 }
 export interface ExportWish { format: string; options?: Record<string, string> }
 

@@ -22,7 +22,7 @@ export interface Editor {
 export const BUSY_AFTER = 150;
 
 /** What a pane may ask of the server. */
-const ASKED = new Set<string>(["aidl/preview", "aidl/try", "aidl/setKnob", "aidl/drag", "aidl/fix", "aidl/exports"]);
+const ASKED = new Set<string>(["aidl/preview", "aidl/try", "aidl/setKnob", "aidl/drag", "aidl/fix", "aidl/exports", "aidl/ranges"]);
 const METHOD_NOT_FOUND = -32601;
 const FAILED = -32803;
 
