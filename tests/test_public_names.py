@@ -1,5 +1,5 @@
-"""All that a public name needs: one test tells everything that is missing, with the command that makes it or
-the file in which it is written.
+"""All that a public name or a format needs: one test tells everything that is missing, with the command that
+makes it or the file in which it is written.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from aidl_dev.highlighting import site as colours
 from aidl_dev.reference import coverage, gallery, site
 from aidl_dev.reference.pages import image
 from aidl_lang.checking import builtins
+from aidl_lang.export import FORMATS
 from aidl_lang.tools.reference.collect import reference
 from tests.checker import test_corpus as corpus
 from tests.documents import ROOT
@@ -38,7 +39,7 @@ FOR_THE_LIBRARY = {
 
 
 def test_every_public_name_has_all_that_it_needs() -> None:
-    told = [*_undocumented(), *_stale(), *_untried()]
+    told = [*_undocumented(), *_stale(), *_untried(), *_unlisted()]
     if told:
         pytest.fail("\n".join(told), pytrace=False)
 
@@ -80,6 +81,14 @@ def _untried() -> Iterator[str]:
 
     for name in coverage.unshown(_read(site.COVERAGE)):
         yield f"`{name}(a, b)` takes nothing: say how it is called in `FORMS` of `{coverage.__name__}`"
+
+
+def _unlisted() -> Iterator[str]:
+    """The formats without a row in the table of formats."""
+    page = _read("docs/cli.md")
+    for suffix in FORMATS:
+        if not re.search(rf"^\|[^|]*`{re.escape(suffix)}`", page, re.MULTILINE):
+            yield f"`{suffix}` is a format: give it a row in the table of `docs/cli.md`"
 
 
 def _read(path: str) -> str:

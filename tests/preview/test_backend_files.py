@@ -20,6 +20,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.files import Reads
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.host import Host
@@ -142,9 +143,9 @@ def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
     with serving(file) as client, talking(client, file) as page:
         page.preview()
         offered = page.answer("aidl/exports")
-        assert [f["name"] for f in offered["formats"]] == ["svg", "pdf", "png", "dxf", "step", "stl", "3mf"]
+        assert [f["name"] for f in offered["formats"]] == list(OFFERED)
         options = {o["name"]: o for o in offered["options"]}
-        assert options["sheet"]["formats"] == ["svg", "pdf", "png", "dxf"]
+        assert options["sheet"]["formats"] == [f for f in OFFERED if FORMATS[f".{f}"].cuts]
         assert {"kerf", "spacing", "nest", "tile", "theme"} <= options.keys()
         asked = {"format": "dxf", "options": {"sheet": "120x120", "kerf": "0.2mm", "spacing": ""}}
         made = page.answer("aidl/export", **asked)
