@@ -78,7 +78,10 @@ shape path(steps: list, from: point, heading: turn, is_aimed: bool, closed: bool
             ) else mirrored_way(unit(arrival), chord)
             let last = if is_arrival_free then mirrored_way(unit(departure), chord) else arrival
             segment[i] = bezier(
-                pen, pen + smooth_handle(departure, chord), to - smooth_handle(last, chord), to
+                pen,
+                pen + smooth_handle(departure, last, chord),
+                to - smooth_handle(last, departure, chord),
+                to
             )
         } else if move.kind == "bezier_to" {
             segment[i] = bezier(pen, move.first, move.second, to)
@@ -253,8 +256,20 @@ fn comes_smoothly(drawn: list, start: point) = len(
 // The direction square to an axis on the side to which a way leads.
 fn across(axis: point, way: point) =
     turned(axis, if cross(written(axis), written(way)) >= 0mm * 1mm then 90deg else -90deg)
-fn smooth_handle(way: point, chord: point) =
-    unit(way) * (norm(chord) * 2 / 3 / max(0.5mm, 1mm + dot(unit(way), unit(chord)) / 1mm))
+// Where the tangents at both ends cross ahead, a handle ends there at the latest: so the curve stays in their corner.
+fn smooth_handle(way: point, other: point, chord: point) = unit(way) * (if norm(
+    written(chord)
+) > 0.000001 and cuts_corner(written(way), written(other), written(chord)) then min(
+    round_share(way, chord), corner_share(way, other, chord)
+) else round_share(way, chord))
+fn round_share(way: point, chord: point) =
+    norm(chord) * 2 / 3 / max(0.5mm, 1mm + dot(unit(way), unit(chord)) / 1mm)
+fn corner_share(way: point, other: point, chord: point) =
+    cross(chord, unit(other)) / cross(unit(way), unit(other))
+fn cuts_corner(way: point, other: point, chord: point) =
+    do_turn_alike(way, chord, other) and do_turn_alike(other, chord, way)
+fn do_turn_alike(way: point, first: point, second: point) =
+    cross(way, first) * cross(way, second) > 0.000001 * dot(way, way) * norm(first) * norm(second)
 
 fn as_step(move: record) = move
 fn as_step(p: point) = line_to(p)
@@ -460,7 +475,7 @@ fn tangent_arc_to(to: point, smooth: bool = true) =
 /// step behind it; into the first step where it closes the outline, and square to the axis of `mirrored(smooth: true)`.
 /// `heading` is its direction at its end, `leaving` that at its start, where the path may have a corner then. Without
 /// `leaving` the first step of an open path sets out in the path's `heading`, or, where it has none, as an arc does:
-/// turned from its chord as much as it arrives.
+/// turned from its chord as much as it arrives. It stays in the corner of its two directions, where they have one ahead.
 ///
 /// ```aidl
 /// solid pear {

@@ -210,7 +210,8 @@ def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Ou
     for number, (face, body) in enumerate(faces):
         for k, loop in enumerate(face.holes):
             hole = edges.owner(loop, body.path)
-            style = drawing.styles[hole or body.path].with_lines_of(body.style)
+            look = body.style
+            style = replace(drawing.styles[hole or body.path], stroke=look.stroke, dash=look.dash)
             operation = profile.operation(style.layer, OUTER if (number, k) in late else INNER)
             yield Outline(
                 loop.pieces,

@@ -137,7 +137,7 @@ class Layers:
         self._root = model.root
         self._names: dict[str, str] = {}
         self._taken = {_NEVER_PLOTTED, *OWN}
-        self._colors: dict[str, str] = {}
+        self.colors: dict[str, str] = {}
 
     def name(self, wanted: str, look: Look | None = None) -> str:
         """Returns the document's name for a layer of the program, which is made on first use, with a look."""
@@ -148,12 +148,8 @@ class Layers:
                 color = OWN.get(name) or FURTHER[own % len(FURTHER)]
                 self._document.layers.add(name, **({"color": color} if look is None else self._like(look)))
             if look is not None:
-                self._colors[name] = look.color
+                self.colors[name] = look.color
         return self._names[wanted]
-
-    def has_color(self, name: str, color: str) -> bool:
-        """Tells whether a layer of the document was made with a colour."""
-        return self._colors.get(name) == color
 
     def _like(self, look: Look) -> dict[str, int]:
         """Returns the attributes of a layer; programs that know no true colours take that of the index."""
@@ -295,7 +291,7 @@ def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, A
     """Returns the layer of an outline for a cutter, and its colour where that is not the layer's."""
     look, color = profile.look(outline.style.layer, outline.operation), profile.color(outline)
     name = layers.name(look.layer or outline.layer, look)
-    own = {} if layers.has_color(name, color) else color_attributes(color, layers.is_old)
+    own = {} if layers.colors.get(name) == color else color_attributes(color, layers.is_old)
     return {"layer": name} | own
 
 

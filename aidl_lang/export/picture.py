@@ -384,7 +384,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
         return
     color = style.color or themes.OUTLINE
     if stroke.over is not None:
-        color = themes.contrasting(stroke.over) if stroke.faces else themes.etched(stroke.over)
+        color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
         yield from _filled(Region(stroke.faces), style, color, size)
         return

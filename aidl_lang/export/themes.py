@@ -7,7 +7,7 @@ from functools import singledispatch
 
 from aidl_lang.common.colors import hexadecimal, rgb
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import HALO, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, polygon
+from aidl_lang.export.marks import HALO, Area, Curves, Dot, Frame, Group, Mark, Picture, Text, polygon
 
 # --- Calm colours for bodies without a colour of their own, and the ink for everything else.
 
@@ -40,6 +40,8 @@ _LIGHTEST_OUTLINE = 128
 """Brightness, of 255, up to which an outline is seen well on white paper."""
 _DARK = 112
 """Brightness, of 255, up to which dark letters are hard to read."""
+_READABLE = 64
+"""Least difference in brightness, of 255, of letters and what they lie on."""
 _DARKEST = 60
 """Brightness, of 255, up to which a darker line is hard to see."""
 _TINT = 0.5
@@ -69,9 +71,12 @@ def etched(fill: str) -> str:
     return hexadecimal(part + _TINT * (255 - part) for part in rgb(fill))
 
 
-def contrasting(fill: str) -> str:
-    """Returns an ink for letters that can be read on a fill of this colour, and on white beside it."""
-    return OUTLINE if _brightness(rgb(fill)) > _DARK else LIGHT
+def contrasting(fill: str, own: str | None) -> str:
+    """Returns an ink for letters that can be read on a fill: their own, or one for white beside it, too."""
+    bright = _brightness(rgb(fill))
+    if own is not None and abs(_brightness(rgb(own)) - bright) > _READABLE:
+        return own
+    return OUTLINE if bright > _DARK else LIGHT
 
 
 def _brightness(parts: tuple[int, int, int]) -> float:
@@ -132,7 +137,7 @@ def _(mark: Area, theme: Theme) -> Mark:
         return replace(mark, fill=theme.paper)
     if mark.is_sign:
         return replace(mark, fill=theme.line)
-    ink = None if mark.ink is None else _ink(mark.ink, theme)
+    ink = None if mark.ink is None else replace(mark.ink, color=theme.line)
     fill = theme.fill if mark.fill and mark.opacity == 1.0 and not mark.fades else None
     return replace(mark, fill=fill, ink=ink, opacity=1.0, gradient=None)
 
@@ -141,7 +146,7 @@ def _(mark: Area, theme: Theme) -> Mark:
 def _(mark: Curves, theme: Theme) -> Mark:
     if mark.role == HALO:
         return replace(mark, ink=replace(mark.ink, color=theme.paper))
-    return replace(mark, ink=_ink(mark.ink, theme))
+    return replace(mark, ink=replace(mark.ink, color=theme.line))
 
 
 @_reduced.register
@@ -152,7 +157,3 @@ def _(mark: Text, theme: Theme) -> Mark:
 @_reduced.register
 def _(mark: Dot | Frame, theme: Theme) -> Mark:
     return replace(mark, color=theme.line)
-
-
-def _ink(ink: Ink, theme: Theme) -> Ink:
-    return replace(ink, color=theme.line)

@@ -163,9 +163,7 @@ def round_range(curve: Arc | Circle | Ellipse | EllipseArc) -> tuple[float, floa
     """Returns the first angle (eccentric anomaly for ellipses) and the sweep, in radians."""
     if isinstance(curve, Arc):
         return curve.start_angle, curve.sweep
-    if isinstance(curve, EllipseArc):
-        return curve.first, curve.sweep
-    return 0.0, TAU
+    return (curve.first, curve.sweep) if isinstance(curve, EllipseArc) else (0.0, TAU)
 
 
 def _on_ellipse(curve: Ellipse | EllipseArc, u: float) -> Vec:

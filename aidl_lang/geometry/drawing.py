@@ -111,8 +111,8 @@ class Stroke:
     `role` is `drawing` for the curves of a drawing and the outlines of holes that end in
     their solid, `open` for curves of other structures that bound no face,
     `hole` for the outline of a hole that nothing holds, `slit` for gaps that one cut makes.
-    `over`: the colour of what it lies on, where it
-    has the same from a structure around it, so that it would not be seen. `faces`: what letters enclose,
+    `over`: the colour of what it lies on, where its own was not said for it and may not be seen there: lines
+    that have the same, and all letters. `faces`: what letters enclose,
     or an area with a look of its own (`is_area`), which is filled where it can be; `pieces` are their
     outlines.
     """
@@ -428,6 +428,8 @@ def _inked(
         is_asked = is_own or "color" in shape.geometry.attributes
         is_hidden = not is_asked and ground.hides(look.color, shape.numbers, place, wholly=False)
         over = look.color if is_hidden else None
+        if not is_asked and not is_hidden and shape.geometry.type == LETTERING:
+            over = ground.below(shape.numbers, place)
         # What is engraved as areas is one area, the rest a stroke for each shape.
         alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
     for (look, over, _), together in alike.items():

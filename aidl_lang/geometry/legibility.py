@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_left, bisect_right
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
@@ -80,11 +80,19 @@ class Ground:
         if not alike:
             return False
         asked = all if wholly else any
-        middles = ([k for k in self._at_middles[curve] if k < count] for curve in curves)
-        if asked(bool(on) and on[-1] in alike for on in middles) is not wholly:
+        if asked(top in alike for top in self._tops(curves, count)) is not wholly:
             return not wholly
         # By the middles alone it may still be otherwise.
         return asked(bool(on) and on[-1] in alike for _, on in self._parts(curves, below))
+
+    def below(self, curves: Sequence[int], place: float) -> str | None:
+        """Returns the colour of the body that most of some curves lie on; None if it has none."""
+        ((top, _),) = Counter(self._tops(curves, bisect_left(self._places, place))).most_common(1)
+        return None if top is None else self.bodies[top].color
+
+    def _tops(self, curves: Sequence[int], count: int) -> Iterator[int | None]:
+        """Yields the last of the first `count` bodies that the middle of each of some curves lies in."""
+        return (max((k for k in self._at_middles[c] if k < count), default=None) for c in curves)
 
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
@@ -113,8 +121,7 @@ class Ground:
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
         above = [b for b in self.bodies if b.place > place and not b.is_clear]
-        above = [b for b in above if boxes_meet(b.section, faces)]
-        above = [b for b in above if not covers(faces, b.section)]
+        above = [b for b in above if boxes_meet(b.section, faces) and not covers(faces, b.section)]
         by = [b.path for b in above if not is_nothing(intersection(b.section, faces))]
         hidden = intersection(union([b.section for b in above]), faces) if by else None
         return (hidden.area() / faces.area() if hidden is not None else 0.0), by

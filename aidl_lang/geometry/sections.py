@@ -109,9 +109,7 @@ def union(sections: Sequence[Section]) -> Section:
 
 
 def difference(a: Section, b: Section) -> Section:
-    if not boxes_meet(a, b):
-        return a
-    return a - b
+    return a - b if boxes_meet(a, b) else a
 
 
 def intersection(a: Section, b: Section) -> Section:

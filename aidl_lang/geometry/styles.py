@@ -120,10 +120,6 @@ class Style:
         """Returns dashes and gaps by turns, mm, in a drawing of a size; None for whole lines."""
         return (DASH * size, GAP * size) if self.dash == () else self.dash
 
-    def with_lines_of(self, other: Style) -> Style:
-        """Returns this style with its lines drawn as those of another one."""
-        return replace(self, stroke=other.stroke, dash=other.dash)
-
 
 def styles_of(root: SolvedStructure) -> dict[str, Style]:
     """Returns the style of each structure by its path."""

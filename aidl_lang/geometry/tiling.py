@@ -213,11 +213,9 @@ def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
     def level(p: Vec) -> Vec:
         return p[0] * x + p[1] * y, sense * (p[1] * x - p[0] * y)
 
-    def leveled(direction: float) -> float:
-        return sense * (direction - math.atan2(y, x))
-
-    boxes = [bounds(image(c, level, turned=leveled, sense=sense)) for c in region.pieces]
-    left, bottom, right, top = union_bounds(boxes)
+    across = math.atan2(y, x)
+    images = (image(c, level, turned=lambda a: sense * (a - across), sense=sense) for c in region.pieces)
+    left, bottom, right, top = union_bounds([bounds(c) for c in images])
     u, v = ((left + right) / 2, (bottom + top) / 2) if is_middle else (left, bottom)
     return u * x - sense * v * y, u * y + sense * v * x
 

@@ -409,3 +409,32 @@ def test_a_shade_that_is_none_is_told(arguments: str) -> None:
     made = compiled(f"@shade({arguments}) solid s {{ p = circle(radius: 3) }}")
     (found,) = [d for d in made.diagnostics if d.code == "E0517"]
     assert found.message.startswith("`@shade` takes `round`, `ball`, `slope`, `fade`, `none`, or a colour")
+
+
+INSCRIBED = """
+assembly a {
+    @color("navy") solid dark {
+        body = rectangle(center: fixed((0, 0)), width: 60, height: 30)
+        @color("black") plate = rectangle(center: fixed((0, 8)), width: 40, height: 10)
+        drawing mark { on_dark = text("A", center: fixed((0, 8)), height: 6) }
+    }
+    @color("gold") solid light {
+        body = rectangle(center: fixed((0, -30)), width: 60, height: 30)
+        @color("ivory") plate = rectangle(center: fixed((0, -30)), width: 40, height: 10)
+        drawing mark { on_light = text("B", center: fixed((0, -30)), height: 6) }
+    }
+    drawing beside {
+        over_dark = text("C", center: fixed((0, -6)), height: 6)
+        over_light = text("D", center: fixed((0, -20)), height: 6)
+    }
+    @color("dimgray") drawing said { as_said = text("E", center: fixed((20, -6)), height: 6) }
+}
+"""
+
+
+def test_letters_without_a_colour_of_their_own_can_be_read_on_what_they_lie_on() -> None:
+    """Whether they are written in what they lie on or beside it."""
+    svg = written(".svg", INSCRIBED).data.decode()
+    fills = re.findall(r'class="letters".* fill="(#?\w+)"', svg)
+    light, dark = themes.LIGHT, themes.OUTLINE
+    assert fills == [light, dark, light, dark, "dimgray"]
