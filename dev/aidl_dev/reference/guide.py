@@ -208,8 +208,17 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
 
 
 _RARE = [
-    *("checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf"),
-    *("ogee_arch", "ogive", "reuleaux", "rhombus", "rosette", "squircle"),
+    *("arc_slot", "checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf", "ogee_arch"),
+    *(
+        "ogive",
+        "quarter_circle",
+        "reuleaux",
+        "rhombus",
+        "right_trapezoid",
+        "rosette",
+        "squircle",
+        "tapered_slot",
+    ),
 ]
 """Shapes whose names are told among those of `names` only, of whatever topic they are."""
 
