@@ -207,19 +207,9 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
-_RARE = [
-    *("arc_slot", "checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf", "ogee_arch"),
-    *(
-        "ogive",
-        "quarter_circle",
-        "reuleaux",
-        "rhombus",
-        "right_trapezoid",
-        "rosette",
-        "squircle",
-        "tapered_slot",
-    ),
-]
+_RARE = """
+    arc_slot checkers crescent d_shape double_arrow double_d kite leaf ogee_arch ogive quarter_circle reuleaux
+    rhombus right_trapezoid rosette squircle tapered_slot""".split()
 """Shapes whose names are told among those of `names` only, of whatever topic they are."""
 
 
