@@ -25,6 +25,7 @@ from aidl_lang.checking.subset import Variant
 from aidl_lang.checking.types import PRIMITIVES, PUBLIC
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
+from aidl_lang.syntax.tables import load_tables
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.reference.signatures import parts
 
@@ -207,9 +208,9 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
-_RARE = """
-    arc_slot checkers crescent d_shape double_arrow double_d kite leaf ogee_arch ogive quarter_circle reuleaux
-    rhombus right_trapezoid rosette squircle tapered_slot""".split()
+_RARE = ["arc_slot", "checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf"]
+_RARE += ["ogee_arch", "ogive", "quarter_circle", "reuleaux", "rhombus", "right_trapezoid", "rosette"]
+_RARE += ["squircle", "tapered_slot"]
 """Shapes whose names are told among those of `names` only, of whatever topic they are."""
 
 
@@ -219,13 +220,11 @@ def _names(variant: Variant, *topics: str) -> str:
 
 
 def _fields(variant: Variant) -> str:
-    kinds = [PRIMITIVES[name] for name in reference().entries if name in PUBLIC]
+    kinds = (PRIMITIVES[name] for name in reference().entries if name in PUBLIC)
     return "\n".join(f"{each.kind}: {' '.join(each.names)}" for each in kinds)
 
 
 def _reserved(variant: Variant) -> str:
-    from aidl_lang.syntax.tables import load_tables
-
     return " ".join(sorted(load_tables().reserved))
 
 
