@@ -156,6 +156,11 @@ def is_unlined(stated: Attributes) -> bool:
 
 
 def _within(around: Style, stated: Attributes) -> Style:
+    shade = around.shade
+    if "shade" in stated:
+        shade = _shade(stated["shade"], around.turn)
+    elif shade is not None and "color" in stated and css_color([shade.kind]):
+        shade = None  # The colour that went over into another is not this one.
     return Style(
         css_color(stated.get("color", ())) or around.color,
         _text(stated.get("layer")) or around.layer,
@@ -164,7 +169,7 @@ def _within(around: Style, stated: Attributes) -> Style:
         0.0 if is_unlined(stated) else _number(stated.get("stroke"), around.stroke),
         _dash(stated["dash"]) if "dash" in stated else around.dash,
         _number(stated.get("opacity"), around.opacity),
-        _shade(stated["shade"], around.turn) if "shade" in stated else around.shade,
+        shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
         tuple(float(v) for v in stated.get("depth", ()) if isinstance(v, int | float)),

@@ -404,6 +404,17 @@ def test_shade_ends_where_it_is_said() -> None:
     assert "url(" not in written(".svg", program, theme="ink").data.decode()
 
 
+@pytest.mark.parametrize(("shade", "is_shaded"), [('"navy"', False), ("slope", True), ("fade", True)])
+def test_a_colour_of_its_own_does_not_go_over_into_another(shade: str, is_shaded: bool) -> None:
+    text = f"""
+    @color("skyblue") @shade({shade}) solid scene {{
+        sky = rectangle(center: fixed((0, 0)), width: 90, height: 60)
+        @color("gold") sun = circle(center: fixed((20, 10)), radius: 9)
+    }}
+    """
+    assert (b'fill="gold"' in written(".svg", text).data) != is_shaded
+
+
 @pytest.mark.parametrize("arguments", ["", "3", '"nocolour"', "round, 3mm", "round, 1, 2"])
 def test_a_shade_that_is_none_is_told(arguments: str) -> None:
     made = compiled(f"@shade({arguments}) solid s {{ p = circle(radius: 3) }}")

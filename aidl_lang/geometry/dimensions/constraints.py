@@ -20,7 +20,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, point, turn_between
 from aidl_lang.geometry.dimensions.features import (
     SizedGeometry,
     angle_of,
@@ -259,7 +259,7 @@ class _Statement:
         if line is None:
             p, q = self._point(a), self._point(b)
         else:
-            p = self._point(b if line_a else a) if not (line_a and line_b) else _middle(line_b or line)
+            p = self._point(b if line_a else a) if not (line_a and line_b) else point(line_b or line, 0.5)
             q = foot(p, line) if p is not None else None
         return length_of_line(p, q) if p is not None and q is not None else None
 
@@ -425,10 +425,6 @@ def _agrees(found: Dimension, value: float) -> bool:
     if isinstance(found, Roundness):
         sizes = [found.curve.radius, 2 * found.curve.radius]
     return any(abs(size - value) <= _SLACK * max(1.0, value) for size in sizes)
-
-
-def _middle(line: Line) -> Vec:
-    return (line.start[0] + line.end[0]) / 2, (line.start[1] + line.end[1]) / 2
 
 
 def _total(offsets: Sequence[tuple[int, Num | PointVal]]) -> Num | PointVal | None:
