@@ -269,8 +269,8 @@ def read_own_attributes(
     said = list(_read(it, node.attributes, Env(scope, here, Reach.OWN)))
     is_area = any(name in FILLING for name, _, _ in said)
     for name, values, attribute in said:
-        is_unlined = is_area and here.kind in OWN_LOOKS and name == "stroke" and values == [NO_OUTLINE]
-        is_own = here is container and (is_unlined or name in OWN_LOOKS.get(here.kind, ()))
+        is_outline = is_area and here.kind in OWN_LOOKS and name == "stroke"
+        is_own = here is container and (is_outline or name in OWN_LOOKS.get(here.kind, ()))
         if not things or not (name == "note" or is_own):
             _misplaced(it, node, name, attribute, value, container)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):

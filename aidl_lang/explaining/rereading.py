@@ -32,7 +32,7 @@ _MOST = 64
 """The most ways that are tried."""
 _RANKS = (1, 2, 3)
 """Ranks by distance of the readings that are tried, after the nearest."""
-_SECONDS, _LONGEST = 1.5, 0.2
+_SECONDS, _LONGEST = 4.0, 0.2
 """Time after which no other way is begun, and for one: what solves does so soon."""
 _MUCH = 0.1
 """Relative change of a size above which other readings are tried."""

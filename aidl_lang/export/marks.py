@@ -19,6 +19,7 @@ CHARACTER = 0.6
 HALO = "halo"
 """The role of what has the colour of the paper: a gap around what lies in front."""
 LETTERS = "letters"
+PATCH = "area"
 
 
 @record()
@@ -79,7 +80,7 @@ class Area:
     @property
     def is_sign(self) -> bool:
         """True for a mark of its own, as a letter or an arrowhead; false for a solid without outline."""
-        return self.ink is None and self.role not in ("", HALO)
+        return self.ink is None and self.role not in ("", HALO, PATCH)
 
 
 def widened(box: Bounds, by: float) -> Bounds:

@@ -15,7 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
+from aidl_lang.export.marks import LETTERS, PATCH, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
@@ -359,12 +359,12 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     return Halos(drawing, root)
 
 
-def _filled(region: Region, style: Style, fill: str, size: float) -> Iterator[Area]:
+def _filled(region: Region, style: Style, fill: str, size: float, role: str = "") -> Iterator[Area]:
     """Yields the faces of a region with their outlines."""
     ink = None if style.is_unlined else _line(style, _outline_color(style), OUTLINE_WIDTH, size)
     gradient = None if style.shade is None else gradient_of(style.shade, fill, region)
     for face in region.faces:
-        yield Area(face, fill, ink, opacity=_opacity(style), gradient=gradient)
+        yield Area(face, fill, ink, role, _opacity(style), gradient)
 
 
 def _outline_color(style: Style) -> str:
@@ -386,7 +386,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
-        yield from _filled(Region(stroke.faces), style, color, size)
+        yield from _filled(Region(stroke.faces), style, color, size, PATCH)
         return
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)

@@ -243,7 +243,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         ]
         for f in walk.findings:
             is_seen = isinstance(f, InnerLoop | CoveredHoles) and (
-                styles[f.structure.path].has_seams or any(map(is_filled, f.face.geometries))
+                styles[f.structure.path].has_seams
+                or any(is_filled(g, f.structure.kind) for g in f.face.geometries)
             )
             if not is_seen:
                 notes += finding_notes(f, network)
@@ -483,7 +484,7 @@ def _areas(
     for structure in root.walk():
         of = material.get(structure.path, fill([], "NonZero"))
         for k, shape in enumerate(shapes[structure.path] if structure.kind != "hole" else (), 1):
-            if not is_filled(shape.geometry):
+            if not is_filled(shape.geometry, structure.kind):
                 continue
             loose: tuple[Piece, ...] = ()
             if structure.kind == "drawing":
@@ -494,7 +495,7 @@ def _areas(
                 section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
                 section = intersection(union_of(own_faces(network, [shape]).faces), of)
-                later = [s for s in shapes[structure.path][k:] if not is_filled(s.geometry)]
+                later = [s for s in shapes[structure.path][k:] if not is_filled(s.geometry, structure.kind)]
                 if later and (over := own_faces(network, later).faces):  # in the colour of the body again
                     section = difference(section, union_of(over))
                 region = trace(network, section).region

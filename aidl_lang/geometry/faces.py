@@ -256,8 +256,9 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     outlines: list[Use] = []
     for shape in shapes:
         uses = [use for number in shape.numbers for use in network.uses[number]]
-        closed = _is_closed(network, shape, uses)
-        kept = _without_dangling(network, uses) if closed else []
+        is_curve = not shape.geometry.parts and len(shape.leaves) == 1
+        is_open = is_curve and uses and first_node(network, uses[0]) != last_node(network, uses[-1])
+        kept = [] if is_open else _without_dangling(network, uses)
         if kept:
             section, crossed = _area(network, shape, kept)
             result.crossed += crossed
@@ -297,13 +298,6 @@ def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list
     for leaf, number in shape.leaves:
         parts[letter_of.get(id(leaf))] += [use for use in network.uses[number] if use in closed]
     yield from parts.values()
-
-
-def _is_closed(network: Network, shape: Shape, uses: list[Use]) -> bool:
-    """Tells whether the shape may be a face by itself: not a single open curve."""
-    if shape.geometry.parts or len(shape.leaves) > 1:
-        return True
-    return bool(uses) and first_node(network, uses[0]) == last_node(network, uses[-1])
 
 
 def _touches(network: Network, curve: int, edges: set[int]) -> bool:

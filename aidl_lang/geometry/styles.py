@@ -143,10 +143,10 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
     return _within(style, geometry.attributes)
 
 
-def is_filled(geometry: SolvedGeometry) -> bool:
-    """Tells whether a geometry is an area with a look of its own: a line has a width or dashes."""
+def is_filled(geometry: SolvedGeometry, within: str = "drawing") -> bool:
+    """Tells whether geometry is an area with a look of its own; with a width, in a drawing it is a line."""
     stated = geometry.attributes
-    is_line = "dash" in stated or ("stroke" in stated and not is_unlined(stated))
+    is_line = within == "drawing" and not {"dash", "stroke"}.isdisjoint(stated) and not is_unlined(stated)
     return any(look in stated for look in FILLING) and not is_line
 
 
@@ -220,7 +220,8 @@ def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
 def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[str]) -> list[Diagnostic]:
     """Returns warnings about looks of geometry that encloses nothing of its body, but what is `loose`."""
     lined = [(s, g) for s in root.walk() if s.kind == "drawing" for g in s.drawn if g.path not in areas]
-    unlined = {h.path: h for pair in lined for h in pair if is_unlined(h.attributes)}
+    mixed = {s.path for s in root.walk() for g in s.drawn if g.path in areas}
+    unlined = {h.path: h for pair in lined for h in pair if is_unlined(h.attributes) and h.path not in mixed}
     hints = ("give a width, as in `@stroke(0.3mm)`; a closed geometry with a `@color` is an area",)
     message = "`@stroke(none)` of `{}` counts for nothing where lines are drawn: they have a width"
     return [Diagnostic("W0727", message.format(p), h.span, hints=hints) for p, h in unlined.items()] + [
@@ -233,7 +234,7 @@ def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[
         )
         for s in root.walk()
         for g in s.drawn
-        if s.kind not in ("drawing", "hole") and is_filled(g) and g.path not in areas
+        if s.kind not in ("drawing", "hole") and is_filled(g, s.kind) and g.path not in areas
         if not any(part.path in loose for part in g.walk())
     ]
 

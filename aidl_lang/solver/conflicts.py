@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
-SECONDS = 1.0
+SECONDS = 2.5
 """Time for one explanation, should the budget not be spent by then."""
 PATIENCE = 4.0
 """Seconds after the first failure during which explanations are sought."""

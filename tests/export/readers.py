@@ -108,8 +108,8 @@ def _straight(p: Any, q: Any) -> Curve:
 
 
 def read_svg(data: bytes) -> dict[str, Body]:
-    """Filled paths with an outline, as bodies have, by the path of their structure; in mm as the physical
-    size of the document has it.
+    """Filled paths of bodies, without areas on them, by the path of their structure; in mm as the physical size
+    of the document has it.
     """
     import svgelements
 
@@ -118,10 +118,7 @@ def read_svg(data: bytes) -> dict[str, Body]:
     bodies: dict[str, Body] = defaultdict(Body)
     for group in document.select(lambda e: isinstance(e, svgelements.Group) and "data-path" in e.values):
         for path in group.select(lambda e: isinstance(e, svgelements.Path)):
-            if path.values.get("class") in ("seam", "open", "hole", "engrave") or "none" in (
-                path.values["fill"],
-                path.values["stroke"],
-            ):
+            if path.values.get("class") or path.values["fill"] == "none":
                 continue
             body = bodies[group.values["data-path"]]
             body.faces += 1
@@ -224,7 +221,7 @@ def _chained(curves: Iterable[Curve]) -> list[list[Curve]]:
 
 
 def read_pdf(data: bytes) -> list[Body]:
-    """One body for each filled path with an outline on the first page, in order of drawing; mm, y upwards."""
+    """One body for each filled path on the first page, in order of drawing; mm, y upwards."""
     import pypdfium2.raw as pdfium
     from pypdfium2 import PdfDocument
 
@@ -235,7 +232,7 @@ def read_pdf(data: bytes) -> list[Body]:
             continue
         mode, stroke = pdfium.c_int(), pdfium.c_int()  # type: ignore[attr-defined]
         pdfium.FPDFPath_GetDrawMode(item.raw, mode, stroke)
-        if mode.value != pdfium.FPDF_FILLMODE_NONE and stroke.value:
+        if mode.value != pdfium.FPDF_FILLMODE_NONE:
             found.append(Body(_of_pdf(item.raw, item.get_matrix()), faces=1))
     document.close()
     return found

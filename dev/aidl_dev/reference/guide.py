@@ -60,12 +60,8 @@ def guide(variant: Variant = Variant.FULL) -> str:
     """Returns the guide as Markdown. Raises KeyError for an unknown placeholder or topic."""
     text = template()
     for block in _BLOCKS:
-        text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)
+        text = block.sub(lambda m: m[2] if str(variant) in m[1].split() else "", text)
     return _PLACEHOLDER.sub(lambda m: _MAKERS[m[1]](variant, *m[2].split()), text)
-
-
-def _variants(names: str) -> list[Variant]:
-    return [variant for variant in Variant if str(variant) in names.split()]
 
 
 def template() -> str:
@@ -107,6 +103,8 @@ def _calls(variant: Variant, *topics: str) -> str:
     return _joined(lines)
 
 
+_OF_ALL = {"patterns": ("angle", "margin")}
+"""Arguments that the prose tells of for all names of a topic."""
 _OPTIONAL = re.compile(r", \w+\?")
 
 _GATHERED: Mapping[str, tuple[str, ...]] = {
@@ -152,7 +150,7 @@ def _arguments(variant: Variant, entry: Entry) -> str:
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
     forms = [f for f in forms if not any(f == _OPTIONAL.sub("", o) for o in forms if o != f)]
     forms = [f for f in forms if not any(_is_laxer(o, f) for o in forms if o != f)]
-    for name in ("rotatable", *_UNSAID.get(variant, ())):
+    for name in ("rotatable", *_UNSAID.get(variant, ()), *_OF_ALL.get(entry.topic, ())):
         forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
     forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
     return _factored(forms) if entry.sort != "constant" else ""
@@ -208,9 +206,10 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
     return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
-_RARE = ["arc_slot", "checkers", "crescent", "d_shape", "double_arrow", "double_d", "kite", "leaf"]
-_RARE += ["ogee_arch", "ogive", "quarter_circle", "reuleaux", "rhombus", "right_trapezoid", "rosette"]
-_RARE += ["squircle", "tapered_slot"]
+_RARE = ["arc_slot", "checkers", "circumcenter", "crescent", "d_shape", "double_arrow", "double_d"]
+_RARE += ["equilateral_triangle", "house", "keyhole", "kite", "leaf", "mesh", "mirror_of", "ogee_arch"]
+_RARE += ["ogive", "pentagon", "pointed_arch", "quarter_circle", "rays", "reuleaux", "rhombus"]
+_RARE += ["right_trapezoid", "rosette", "scales", "shield", "squircle", "tapered_slot", "tiled"]
 """Shapes whose names are told among those of `names` only, of whatever topic they are."""
 
 

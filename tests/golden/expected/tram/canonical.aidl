@@ -1,57 +1,62 @@
-/// A city tram: doors and windows along its body, two bogies, a pantograph, and the track.
+/// A city tram in its street: doors and windows along the body, two bogies, a pantograph.
+@stroke(0.4mm)
 assembly tram {
     param length = 360 in 300..440
     param windows = 3 in 1..4
-    param paint = "crimson"
+    param paint = "#a8323e"
+    let cream = "#f0e4c8"
+    let glass = "#d7e6ea"
     let pane_width = (length - 132) / (windows + 2) - 8
 
-    @color("dimgray") solid track {
-        rail = rectangle(width: length + 60, height: 5)
-        for i in 0..10 { sleeper[i] = rectangle(width: 16, height: 6) }
-        constrain {
-            spread(sleeper, inside: rail, axis: x, margin: 10)
-            for s in sleeper { s.top == rail.bottom }
-        }
+    @color("#a9c3cf") @shade(cream) @stroke(none) @rigid solid scene at fixed((0, 0)) {
+        sky = rectangle(bottom_center: (0, 0), width: length + 120, height: 210)
+        @color("#8d8478") @shade("#5f574e")
+        street = rectangle(top_center: (0, 4), width: length + 120, height: 44)
+        @color("#3d3833") rail = rectangle(top_center: (0, 0), width: length + 120, height: 3)
+        @color("black") @opacity(0.6) @shade(fade)
+        shadow = ellipse(center: (0, -4), rx: length / 2 + 30, ry: 9)
     }
-    @color("black") @rigid solid bogie(radius = 15) {
+    @color("#2f3338") @rigid solid bogie(radius = 15) {
         frame = trapezoid(center: origin, bottom_width: 50, top_width: 76, height: 24)
         for i in 0..1 {
             tyre[i] = circle(center: (48 * i - 24, -12), radius: radius)
-            hole spokes[i] at (48 * i - 24, -12) {
-                cut = polar_array(circle(radius: 2.5), n: 5, radius: 9)
-            }
+            @color("#9aa1a8") @shade(ball)
+            hub[i] = circle(center: (48 * i - 24, -12), radius: 0.6 * radius)
         }
     }
     front = bogie() at (110, 0)
     rear = bogie() at (-110, 0)
 
-    @color(paint) @shade(slope) solid body {
-        hull = rounded_rectangle(width: length, height: 92, radius: 16)
-        @color("gold") drawing lettering { name = text("CITY LINE 17", height: 9) }
-        constrain lettering.name.center == hull.bottom_center + (0, 14)
-    }
-    @color("dimgray") solid pantograph {
+    @color("#3d434a") solid pantograph {
         arms = thick(polyline([(-16, 0), (26, 24), (0, 48)]), 3)
         shoe = rounded_rectangle(center: (0, 50), width: 56, height: 5, radius: 2)
     }
+    @color(paint) @shade(slope) @rigid solid body {
+        hull = rounded_rectangle(center: origin, width: length, height: 92, radius: 16)
+        @color(cream) band = rectangle(center: (0, -17), width: length, height: 5)
+        @color(cream) drawing lettering { name = text("CITY LINE 17", center: (0, -30), height: 9) }
+    }
     for i in 0..1 {
-        @color("lightcyan") @shade("lightblue") solid door[i] {
+        @color(glass) @shade(darker(glass)) solid door[i] {
             leaf = rounded_rectangle(width: 40, height: 74, radius: 4)
         }
         constrain door[i].bottom == body.bottom + 6
     }
     for i in 0..windows + 1 {
-        @color("lightcyan")
-        solid pane[i] { glass = rounded_rectangle(width: pane_width, height: 36, radius: 6) }
+        @color(glass) @shade(darker(glass)) @rigid solid pane[i] {
+            window = rounded_rectangle(center: origin, width: pane_width, height: 36, radius: 6)
+            @color("white") @opacity(0.4) @stroke(none)
+            gleam = parallelogram(center: (-4, 0), width: 6, height: 36, shift: 10)
+        }
         constrain pane[i].top == body.top - 14
     }
 
     constrain {
-        front.on_top_of(track)
-        rear.on_top_of(track)
+        front.on_top_of(scene.rail)
+        rear.on_top_of(scene.rail)
         row(rear, front, pitch: 0.6 * length)
-        centered_horizontally([rear, front], track)
-        centered_horizontally(body, track)
+        centered_horizontally([rear, front], scene)
+        centered_horizontally(body, scene)
         body.bottom == front.frame.bottom
         spread(
             [pane[0], door[0]] + [pane[i] for i in 1..windows] + [door[1], pane[-1]],
