@@ -13,9 +13,9 @@ import numpy as np
 from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
+from aidl_lang.export import marks, themes
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import LETTERS, PATCH, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
+from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
@@ -386,7 +386,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
-        yield from _filled(Region(stroke.faces), style, color, size, PATCH)
+        yield from _filled(Region(stroke.faces), style, color, size, marks.PATCH)
         return
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)

@@ -232,7 +232,7 @@ def _box(stroke: Stroke) -> Bounds:
 # --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
 
 _LIGHT: dict[str, tuple[tuple[float, float], ...]] = {
-    "round": ((0.0, -0.26), (0.16, 0.2), (0.26, 0.34), (0.38, 0.22), (0.6, -0.06), (0.9, -0.44), (1.0, -0.36)),
+    "round": ((0, -0.26), (0.16, 0.2), (0.26, 0.34), (0.38, 0.22), (0.6, -0.06), (0.9, -0.44), (1, -0.36)),
     "ball": ((0.0, 0.5), (0.5, 0.0), (1.0, -0.45)),
     "slope": ((0.0, 0.18), (1.0, -0.26)),
 }

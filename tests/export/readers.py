@@ -108,8 +108,8 @@ def _straight(p: Any, q: Any) -> Curve:
 
 
 def read_svg(data: bytes) -> dict[str, Body]:
-    """Filled paths of bodies, without areas on them, by the path of their structure; in mm as the physical size
-    of the document has it.
+    """Filled paths of bodies, without areas on them, by the path of their structure; in mm as the physical
+    size of the document has it.
     """
     import svgelements
 

@@ -83,8 +83,8 @@ def test_pdf(name: str):
         loops = [1 + len(face["holes"]) for face in region["faces"]]
         for body in found:
             faces = [body, *itertools.islice(found, len(loops) - 1)]
-            area = sum(each.area for each in faces)
-            if [len(each.loops) for each in faces] == loops and area == pytest.approx(region["area"], rel=1e-5):
+            area = pytest.approx(sum(each.area for each in faces), rel=1e-5)
+            if [len(each.loops) for each in faces] == loops and area == region["area"]:
                 break
         else:
             pytest.fail(f"no faces of {region['area']} mm² with {loops} loops")
