@@ -39,6 +39,15 @@ solid sign {
 """
 
 
+BORED = """
+solid plate {
+    param width = 80 in 40..120
+    body = rectangle(center: fixed((0, 0)), width: width, height: 40)
+    hole slot { rim = rectangle(center: fixed((30, 0)), width: 10, height: 10) }
+}
+"""
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty working directory with programs in it; sweeps run in this process."""
@@ -80,6 +89,14 @@ def test_a_summary_for_scripts(folder: Path, aidl: Command) -> None:
     (failure,) = told["failures"]
     assert (failure["n"], failure["params"], failure["messages"][0]["code"]) == (2, {"width": 120.0}, "E0604")
     assert aidl("sweep", "plate.aidl", "-D", "width=80").code == 0
+
+
+def test_neighbours_of_different_kind_are_told(folder: Path, aidl: Command) -> None:
+    (folder / "bored.aidl").write_text(BORED)
+    done = aidl("sweep", "bored.aidl", "-D", "width=60,80", "--json")
+    told = "`width` from 60 to 80: holes go from 0 to 1"
+    assert (done.code, json.loads(done.out)["turns"]) == (0, [told])
+    assert done.err.splitlines()[0] == f"of another kind: {told}; `aidl check --range` tells where"
 
 
 def test_a_sweep_that_stops_says_how_it_goes_on(folder: Path, aidl: Command) -> None:

@@ -34,6 +34,26 @@ def test_a_sweep_is_an_iterator_and_a_table(tmp_path: Path) -> None:
     assert (tmp_path / "80.svg").read_bytes() == direct.export(".svg", theme="ink")
 
 
+def test_neighbours_of_different_kind_are_told() -> None:
+    """A slot leaves its plate between 60 and 80; that more bores are asked for is no change of kind."""
+    text = """
+    solid plate {
+        param width = 80 in 40..120
+        param bores = 2 in 1..4
+        body = rectangle(center: fixed((0, 0)), width: width, height: 40)
+        for i in 1..bores { hole bore[i] { rim = circle(center: fixed((9 * i - 18, 0)), radius: 2) } }
+        hole slot { rim = rectangle(center: fixed((30, 0)), width: 10, height: 10) }
+    }
+    """
+    assert aidl_lang.sweep(text, {"width": [120, 80, 60], "bores": [1, 2]}, jobs=1).turns == [
+        "`width` from 60 to 80 with bores=1: holes go from 1 to 2",
+        "`width` from 60 to 80 with bores=2: holes go from 2 to 3",
+    ]
+    (told,) = aidl_lang.sweep(text, {"width": [40, 60]}, jobs=1).turns
+    assert told.startswith("`width` from 40 to 60: ")
+    assert "no more: W0703" in told
+
+
 def test_values_may_be_written_as_on_the_command_line() -> None:
     assert len(aidl_lang.sweep(PLATE, {"width": "40..80/5", "bored": "*"})) == 10
     assert len(aidl_lang.sweep(PLATE, {}, random=7, seed=3)) == 7

@@ -304,15 +304,12 @@ def run_params(arguments: argparse.Namespace) -> int:
     if arguments.json:
         import json
 
-        print(json.dumps([_data(knob) for knob in knobs], indent=2, ensure_ascii=False))
+        names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
+        data = [{name: getattr(knob, name) for name in names} for knob in knobs]
+        print(json.dumps(data, indent=2, ensure_ascii=False))
     else:
         _print_table(knobs)
     return exit_code(diagnostics)
-
-
-def _data(knob: Knob) -> dict[str, object]:
-    names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
-    return {name: getattr(knob, name) for name in names}
 
 
 def _print_table(knobs: tuple[Knob, ...]) -> None:

@@ -329,7 +329,7 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
     failures.sort(key=lambda row: row.variant.number)
     if arguments.json:
         print(json.dumps(_summary(session, failures), indent=2, ensure_ascii=False))
-    _list(failures, arguments.output)
+    _list(failures, session.turns, arguments.output)
     if session.stale:
         from aidl_lang.common.prose import named
 
@@ -357,7 +357,7 @@ def line(session: Session) -> str:
     return f"{', '.join(parts)}, {session.seconds:.1f} s"
 
 
-def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
+def _list(failures: Sequence[Row], turns: Sequence[str], outputs: Sequence[str]) -> None:
     from aidl_lang.common.render import escape
     from aidl_lang.tools.sweeping.plan import labels
 
@@ -373,6 +373,8 @@ def _list(failures: Sequence[Row], outputs: Sequence[str]) -> None:
     if (more := len(failures) - _MOST_TOLD) > 0:
         where = "the tables have all" if outputs else "a table has all: `-o table.csv`"
         say(f"and {counted(more, 'failure')} more; {where}")
+    for turn in turns[:_MOST_TOLD]:
+        say(f"of another kind: {escape(_short(turn))}; `aidl check --range` tells where")
 
 
 def _short(text: str, most: int = 200) -> str:
@@ -401,6 +403,7 @@ def _summary(session: Session, failures: Sequence[Row]) -> dict[str, Any]:
         "begun_again": session.given_again,
         "complete": session.is_complete,
         "seconds": round(session.seconds, 3),
+        "turns": session.turns,
         "failures": [
             {
                 "n": row.variant.number,

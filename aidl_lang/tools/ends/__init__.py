@@ -19,7 +19,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Front, Settings
-from aidl_lang.tools.sweeping.bundle import Fault, fault, limit_fault, patience
+from aidl_lang.tools.sweeping.bundle import BROKEN, Fault, fault, patience
 
 # --- The values of a param to try: the ends of its range, and values between them and the written one.
 
@@ -342,7 +342,7 @@ def _came(found: Tried | Broke) -> Tried:
         return found
     if found.limit is None:
         raise found.error
-    return Tried(False, (limit_fault(found.limit),), was_given_up=True)
+    return Tried(False, (Fault("E0603", BROKEN[found.limit]),), was_given_up=True)
 
 
 # --- The results at the ends of params, as sentences and as data.

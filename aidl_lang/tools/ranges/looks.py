@@ -28,12 +28,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.tools.sweeping.bundle import Fault, fault
+from aidl_lang.tools.sweeping.bundle import OF_KIND, Fault, fault
 
-OF_KIND = frozenset(
-    f"W07{n}" for n in ("02", "03", "04", "05", "06", "08", "10", "11", "12", "14", "28", "36", "62", "63")
-)
-"""The warnings that tell of a change of kind: of outlines, openings and pieces."""
 _SAME_BOX = 1e-5
 """How near two boxes are that are the same, as a part of the size of the drawing."""
 _TOUCHING = 1e-4

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, field
-from functools import cached_property
-from typing import Any
+from dataclasses import field, replace
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.processes import Limit
@@ -15,6 +14,9 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import FileError, ReadFailure, World, normalize, reads_of
 from aidl_lang.pipeline import Settings
+
+if TYPE_CHECKING:
+    from cattrs import Converter
 
 # --- A program with all that it reads, as it travels to whoever compiles it.
 
@@ -152,11 +154,6 @@ BROKEN = {
 }
 
 
-def limit_fault(limit: Limit) -> Fault:
-    """Returns what there is to say of a program that met a limit."""
-    return Fault("E0603", BROKEN[limit])
-
-
 def fault(diagnostic: Diagnostic) -> Fault:
     """Returns a diagnostic without its sources."""
     span = diagnostic.span
@@ -174,6 +171,10 @@ MEASURES = (
 )
 """The measures of the whole, in mm, mm², mm³ and g; None where there is none, or it is not known."""
 ASSERT = "E0604"
+OF_KIND = frozenset(
+    f"W07{n}" for n in ("02", "03", "04", "05", "06", "08", "10", "11", "12", "14", "28", "36", "62", "63")
+)
+"""The warnings that tell of a change of kind: of outlines, openings and pieces."""
 
 Measures = Mapping[str, float | int | None]
 
@@ -200,6 +201,7 @@ class Outcome:
     files     by suffix: the file, and further ones beside it
     picture   a small PNG, if it was asked for
     missing   files that it asked for and that did not travel with it
+    parts     the number of geometries and their parts
     """
 
     status: str
@@ -214,6 +216,7 @@ class Outcome:
     files: Mapping[str, tuple[bytes, ...]] = field(default_factory=dict)
     picture: bytes = b""
     missing: tuple[str, ...] = ()
+    parts: int = 0
 
     @property
     def errors(self) -> tuple[Fault, ...]:
@@ -224,64 +227,21 @@ class Outcome:
         return tuple(each for each in self.faults if each.code == ASSERT)
 
 
-def to_data(outcome: Outcome) -> dict[str, Any]:
+@cache
+def _converter() -> Converter:
+    from cattrs.preconf.json import make_converter
+
+    return make_converter(detailed_validation=False)
+
+
+def to_data(outcome: Outcome) -> Any:
     """Returns an outcome as JSON has it."""
-    return {
-        "status": outcome.status,
-        "ok": outcome.ok,
-        "faults": [asdict(each) for each in outcome.faults],
-        "params": dict(outcome.params),
-        "measures": dict(outcome.measures),
-        "changed": [asdict(each) for each in outcome.changed],
-        "asserts": outcome.asserts,
-        "dof": outcome.dof,
-        "seconds": outcome.seconds,
-        "files": {suffix: list(map(_packed, found)) for suffix, found in outcome.files.items()},
-        "picture": _packed(outcome.picture),
-    }
+    return _converter().unstructure(replace(outcome, missing=()), Outcome)
 
 
 def from_data(data: Any) -> Outcome:
-    """Reads an outcome from JSON of any source. Raises ValueError, TypeError or KeyError for what is none."""
-    faults = tuple(Fault(**each) for each in data["faults"])
-    strings = [
-        data["status"],
-        *(text for each in faults for text in (each.code, each.message, each.label, each.text)),
-    ]
-    numbers = [data["asserts"], data["seconds"], *(data["measures"][name] for name in data["measures"])]
-    if not all(isinstance(each, str) for each in strings) or not all(
-        each is None or isinstance(each, int | float) for each in [*numbers, data["dof"]]
-    ):
+    """Reads an outcome from JSON of any source. Raises an error of Python for what is none."""
+    found = _converter().structure(data, Outcome)
+    if set(found.measures) - set(MEASURES) or type(data["ok"]) is not bool:
         raise ValueError("no outcome")
-    if set(data["measures"]) - set(MEASURES) or type(data["ok"]) is not bool:
-        raise ValueError("no outcome")
-    return Outcome(
-        data["status"],
-        data["ok"],
-        faults,
-        {str(path): _plain(value) for path, value in data["params"].items()},
-        dict(data["measures"]),
-        tuple(
-            Change(str(each["path"]), float(each["written"]), float(each["solved"]))
-            for each in data["changed"]
-        ),
-        data["asserts"],
-        data["dof"],
-        data["seconds"],
-        {str(suffix): tuple(map(_unpacked, found)) for suffix, found in data["files"].items()},
-        _unpacked(data["picture"]),
-    )
-
-
-def _plain(value: object) -> float | str | bool:
-    if not isinstance(value, float | int | str | bool):
-        raise ValueError("no value of a param")
-    return value
-
-
-def _packed(data: bytes) -> str:
-    return b64encode(data).decode()
-
-
-def _unpacked(text: str) -> bytes:
-    return b64decode(text, validate=True)
+    return found

@@ -7,7 +7,9 @@ import json
 import os
 import re
 import unicodedata
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -18,8 +20,8 @@ from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export import FORMATS, suffix_of
 from aidl_lang.export.job import file_names, require
-from aidl_lang.tools.sweeping.bundle import MEASURES, Fault, Measures, Outcome
-from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, refused, shown
+from aidl_lang.tools.sweeping.bundle import MEASURES, OF_KIND, Fault, Measures, Outcome
+from aidl_lang.tools.sweeping.plan import Plan, Value, Variant, labels, refused, shown
 
 if TYPE_CHECKING:
     import pyarrow
@@ -136,6 +138,31 @@ class Columns:
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
     return sorted(rows, key=lambda row: row.variant.number)
+
+
+def turns(rows: Sequence[Row]) -> Iterator[str]:
+    """Yields a sentence for each two variants that are neighbours in one param, and of different kind."""
+    ways: dict[tuple[str, str], list[tuple[float, Row]]] = defaultdict(list)
+    for row in in_order(rows):
+        for path, value in row.params.items():
+            if not isinstance(value, str | bool):
+                others = labels({other: given for other, given in row.params.items() if other != path})
+                ways[path, others].append((value, row))
+    for (path, beside), way in ways.items():
+        for (a, one), (b, other) in pairwise(sorted(way, key=lambda step: step[0])):
+            if one.ok and other.ok and (what := _differing(one.outcome, other.outcome)):
+                place = f"`{path}` from {shown(a)} to {shown(b)}{' with ' if beside else ''}{beside}"
+                yield f"{place}: {'; '.join(what)}"
+
+
+def _differing(a: Outcome, b: Outcome) -> list[str]:
+    """Returns what is of another kind in an outcome: counts, unless the parts are others, and warnings."""
+    counts = ("bodies", "pieces", "holes") if a.parts == b.parts else ()
+    was, now = ({f.place: f for f in each.faults if f.code in OF_KIND} for each in (a, b))
+    pairs = [(name, a.measures.get(name), b.measures.get(name)) for name in counts]
+    told = [f"{name} go from {one} to {other}" for name, one, other in pairs if one != other]
+    told += [said(f) for place, f in now.items() if place not in was]
+    return told + [f"no more: {said(f)}" for place, f in was.items() if place not in now]
 
 
 def as_mapping(names: Sequence[str], cells: Sequence[Cell]) -> Mapping[str, Cell]:

@@ -21,17 +21,17 @@ from aidl_lang.common.world import World
 from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import (
+    BROKEN,
     Bundle,
     Fault,
     Gathering,
     Outcome,
     digest_of,
     fault,
-    limit_fault,
     patience,
 )
 from aidl_lang.tools.sweeping.keeping import Store
-from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, write
+from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, turns, write
 from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
 from aidl_lang.tools.sweeping.plan import (
     Axis,
@@ -156,7 +156,7 @@ _Done = tuple[Variant, Outcome, bool]
 def _broken(broke: Broke) -> Outcome:
     """Returns the outcome of a variant that met a limit, or a bug."""
     if broke.limit is not None:
-        return Outcome("broken", False, (limit_fault(broke.limit),))
+        return Outcome("broken", False, (Fault("E0603", BROKEN[broke.limit]),))
     message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
     return Outcome("broken", False, (Fault("E0603", message),))
 
@@ -234,6 +234,11 @@ class Session:
     @property
     def is_complete(self) -> bool:
         return len(self.rows) == len(self.job.plan)
+
+    @property
+    def turns(self) -> list[str]:
+        """Returns a sentence for each two neighbours of different kind."""
+        return list(turns(self.rows))
 
     @property
     def given_again(self) -> int:
@@ -459,6 +464,11 @@ class Sweep:
     def results(self) -> list[Row]:
         """All results in the order of the variants; runs the sweep to its end."""
         return in_order(list(self))
+
+    @property
+    def turns(self) -> list[str]:
+        """A sentence for each two results that are neighbours in one param, and of different kind."""
+        return list(turns(self.results))
 
     @property
     def failures(self) -> list[Row]:

@@ -119,6 +119,7 @@ def _outcome(compiled: Compiled, making: Making) -> Outcome:
         None if model is None else model.degrees,
         files=files,
         picture=picture,
+        parts=0 if model is None else sum(1 for g in model.root.walk_geometry() for _ in g.walk()),
     )
 
 
