@@ -224,22 +224,15 @@ solid s {
     assert len(edits) == 3
 
 
+WORDS = {"x", "y", "left", "right", "center", "top", "bottom", "round", "ball", "slope", "fade", "none"}
+"""Words of arguments and attributes in the examples, which name nothing."""
+
+
 def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) -> None:
     known = list(mentions(example))
     for node in ast.walk(example.module):
         if isinstance(node, ast.Name) and node not in example.resolution.uses:
-            assert node.text in (
-                "x",
-                "y",
-                "left",
-                "right",
-                "center",
-                "top",
-                "bottom",
-                "round",
-                "ball",
-                "slope",
-            ), node.text
+            assert node.text in WORDS, node.text
     for mention in known:
         found = mention_at(example, mention.span.start)
         assert found is not None
