@@ -7,7 +7,6 @@ import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import lib3mf
 import manifold3d
 import numpy as np
 from numpy.typing import NDArray
@@ -318,6 +317,8 @@ _LARGEST = 1e9
 
 def to_3mf(job: Job) -> Exported:
     """Writes the 3MF file. Raises ExportError as `meshes` does, and for a body too far out (E0918)."""
+    import lib3mf
+
     made, notes = meshes(job)
     wrapper = lib3mf.get_wrapper()
     model = wrapper.CreateModel()
@@ -327,7 +328,7 @@ def to_3mf(job: Job) -> Exported:
     order = {body.path: index for index, body in enumerate(job.drawing.bodies)}
     for mesh in made:
         checkpoint()
-        thing = _mesh_object(model, mesh)
+        thing = _mesh_object(lib3mf, model, mesh)
         style = mesh.body.style
         color = style.color or body_fill(order[mesh.body.path])
         name, opacity = printable(style.material or mesh.body.path), style.opacity
@@ -337,7 +338,7 @@ def to_3mf(job: Job) -> Exported:
     return Exported(bytes(model.QueryWriter("3mf").WriteToBuffer()), notes=notes)
 
 
-def _mesh_object(model: Any, mesh: Mesh) -> Any:
+def _mesh_object(lib3mf: Any, model: Any, mesh: Mesh) -> Any:
     if np.abs(mesh.points).max() >= _LARGEST:
         raise ExportError(
             "E0918",

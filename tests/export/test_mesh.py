@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
+import subprocess
+import sys
 import io
 import math
 
@@ -145,6 +147,17 @@ def test_a_plate_with_many_holes() -> None:
     low, high = (2 * (510**2 - count * math.pi * r**2) for r in (3 + chord, 3 - chord))
     assert low < body.volume < high
     assert isinstance(draw(m)[0].bodies[0].region.faces[0].holes[0].pieces[0], Circle)
+
+
+@pytest.mark.parametrize("absent", ["lib3mf", "OCP"])
+def test_a_format_needs_no_package_of_another(absent: str) -> None:
+    """In a process of its own, which has loaded nothing yet."""
+    said = (
+        f"import sys; sys.modules[{absent!r}] = None; import aidl_lang\n"
+        "made = aidl_lang.compile('@thickness(2mm) solid a { b = circle(radius: 4) }')\n"
+        "for suffix in ('.stl', '.svg', '.dxf', '.pdf', '.png', '.json'): assert made.export(suffix)\n"
+    )
+    subprocess.run([sys.executable, "-c", said], check=True, timeout=120)
 
 
 def test_a_package_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
