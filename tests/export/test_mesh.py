@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import importlib.util
-import subprocess
-import sys
 import io
 import math
+import subprocess
+import sys
 
 import pytest
 import trimesh
