@@ -106,7 +106,9 @@ fn threads(
 ) = hatching(of, pitch * cos(slope), angle: angle + slope, width: width, margin: margin)
 
 /// Bars across an outline, half as wide as their `pitch` if no `width` is given. They run along `angle`, as the
-/// lines of `hatching` do: upright unless it is said.
+/// lines of `hatching` do.
+///
+/// Lies upright.
 ///
 /// ```aidl
 /// solid vent {
@@ -376,7 +378,9 @@ fn shingle_outline(half: length, height: length, round: length) = path(
     close()
 )
 
-/// Lines like the grain of wood over an outline, about a `pitch` apart, level at angle 0; bars if a `width` is given.
+/// Lines like the grain of wood over an outline, about a `pitch` apart; bars if a `width` is given.
+///
+/// Lies level.
 ///
 /// ```aidl
 /// assembly desk {

@@ -960,7 +960,7 @@ export const about: Record<string, string> = {
   "honeycomb": "Hexagons over an outline, `size` across their flats: their sides as lines, or with a `gap` the cells.",
   "scales": "The scales of a fish over an outline, round at the bottom: their edges as lines, or with a `gap` the scales.",
   "shingles": "Rounded shingles in rows over an outline: their edges as lines, or with a `gap` the shingles.",
-  "wood_grain": "Lines like the grain of wood over an outline, about a `pitch` apart, level at angle 0; bars if a `width` is given.",
+  "wood_grain": "Lines like the grain of wood over an outline, about a `pitch` apart; bars if a `width` is given.",
   "rays": "Rays over an outline, `n` lines from a `center`, that of the outline if none is said; wedges if they get a `share`.",
   "finger_panel": "A panel with finger joints: `width` and `height` are those of the whole, tabs included.",
   "finger_edge": "One edge with fingers for an outline of your own; the material lies to the left of the way from start to end.",
