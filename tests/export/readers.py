@@ -10,7 +10,7 @@ import io
 import math
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -108,25 +108,31 @@ def _straight(p: Any, q: Any) -> Curve:
 
 
 def read_svg(data: bytes) -> dict[str, Body]:
-    """Filled paths of bodies, without areas on them, by the path of their structure; in mm as the physical
-    size of the document has it.
+    """Filled paths of bodies, without areas on them, by the path of their structure."""
+    bodies: dict[str, Body] = defaultdict(Body)
+    for path, role, fill in svg_fills(data):
+        if not role:
+            bodies[path].faces += 1
+            bodies[path].loops += fill.loops
+    return dict(bodies)
+
+
+def svg_fills(data: bytes) -> Iterator[tuple[str, str, Body]]:
+    """Each filled path as one body, after the path of its structure and its class; in mm as the physical size
+    of the document has it.
     """
     import svgelements
 
     # To the reader a millimetre is 0.0393701 inches: with so many pixels an inch it is one pixel.
     document = svgelements.SVG.parse(io.StringIO(data.decode()), ppi=1 / 0.0393701)
-    bodies: dict[str, Body] = defaultdict(Body)
     for group in document.select(lambda e: isinstance(e, svgelements.Group) and "data-path" in e.values):
         for path in group.select(lambda e: isinstance(e, svgelements.Path)):
-            if path.values.get("class") or path.values["fill"] == "none":
-                continue
-            body = bodies[group.values["data-path"]]
-            body.faces += 1
-            body.loops += [
-                Loop([_of_svg(s) for s in sub if not isinstance(s, svgelements.Move) and s.length() > 0])
-                for sub in map(svgelements.Path, path.as_subpaths())
-            ]
-    return dict(bodies)
+            if path.values["fill"] != "none":
+                loops = [
+                    Loop([_of_svg(s) for s in sub if not isinstance(s, svgelements.Move) and s.length() > 0])
+                    for sub in map(svgelements.Path, path.as_subpaths())
+                ]
+                yield group.values["data-path"], path.values.get("class") or "", Body(loops, faces=1)
 
 
 def svg_origin(data: bytes) -> tuple[float, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import itertools
 import json
 import math
 from functools import cache
@@ -75,19 +74,23 @@ def test_dxf(name: str, kind: str, tolerance: float):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_pdf(name: str):
-    """The reader has single precision, and paths without names: in order of drawing, areas and letters among
-    them.
+    """The reader has single precision, and paths without names: in order of drawing, as the SVG has them. In
+    place of each that fades there are steps.
     """
-    found, told = iter(readers.read_pdf(example(name).export(".pdf"))), bodies_of(name)
-    for region in told.values():
-        loops = [1 + len(face["holes"]) for face in region["faces"]]
-        for body in found:
-            faces = [body, *itertools.islice(found, len(loops) - 1)]
-            area = pytest.approx(sum(each.area for each in faces), rel=1e-5)
-            if [len(each.loops) for each in faces] == loops and area == region["area"]:
-                break
-        else:
-            pytest.fail(f"no faces of {region['area']} mm² with {loops} loops")
+    svg = example(name).export(".svg")
+    found, told = readers.read_pdf(example(name).export(".pdf")), bodies_of(name)
+    fading = sum(b"stop-opacity" in each for each in svg.split(b"Gradient>"))
+    at, bodies, steps = 0, 0.0, 0
+    for path, role, fill in readers.svg_fills(svg):
+        same = (k for k in range(at, len(found)) if found[k].area == pytest.approx(fill.area, rel=2e-5))
+        if (here := next(same, None)) is None:
+            steps += 1
+            continue
+        assert fading or here == at
+        assert len(found[here].loops) == len(fill.loops)
+        at, bodies = here + 1, bodies + (found[here].area if path in told and not role else 0.0)
+    assert (steps, at) == (fading, len(found))
+    assert bodies == pytest.approx(sum(region["area"] for region in told.values()), rel=2e-6)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
