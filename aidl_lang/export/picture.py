@@ -109,15 +109,15 @@ def tiled(
         sight = (x, y - window[1], x + window[0], y)
         groups = [
             replace(group, marks=shown, clip=widened(sight, BLEED))
-            for group, marks in zip(picture.groups, shapes, strict=True)
-            if (shown := tuple(mark for mark, shape in marks if shape.meets(sight)))
+            for group, held in zip(picture.groups, shapes, strict=True)
+            if (shown := tuple(mark for mark, shape in held if shape.meets(sight)))
         ]
         if groups or across.count * down.count == 1:
             found.append((sight, groups, f"row {row + 1}, column {column + 1}"))
     made = []
     for k, (sight, groups, place) in enumerate(found, 1):
-        marks = _page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")
-        made.append(Picture(widened(sight, margin), (*groups, Group("page-marks", tuple(marks)))))
+        added = _page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")
+        made.append(Picture(widened(sight, margin), (*groups, Group("page-marks", tuple(added)))))
     return made
 
 
@@ -386,7 +386,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
-        yield from _filled(Region(stroke.faces), style, color, size, marks.PATCH)
+        yield from _filled(Region(stroke.faces), style, color, size, marks.AREA)
         return
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)

@@ -10,6 +10,7 @@ from aidl_lang.export.job import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_filled, is_unlined
 
+_Holder = SolvedStructure | SolvedGeometry
 _NAMED = 6
 _UNLINED = "stroke(none)"
 _AREA = "color(…)"
@@ -41,14 +42,14 @@ def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
     stated = list(_stated(job.model.root, lost))
     if not stated:
         return []
-    names = [name for name in lost if any(_states(holder, name) for holder in stated)]
+    names, times = [n for n in lost if any(n == name for _, name in stated)], len({id(h) for h, _ in stated})
     counts = "counts" if len(names) == 1 else "count"
     return [
         Diagnostic(
             "N0741",
             f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}",
-            stated[0].span,
-            "stated here" if len(stated) == 1 else f"stated here first, {len(stated)} times in all",
+            stated[0][0].span,
+            "stated here" if times == 1 else f"stated here first, {times} times in all",
             hints=("pictures (.svg, .png, .pdf) are drawn so",),
         )
     ]
@@ -113,17 +114,16 @@ def followed_notes(job: Job) -> list[Diagnostic]:
     return notes
 
 
-def _states(holder: SolvedStructure | SolvedGeometry, name: str) -> bool:
+def _states(holder: _Holder, kind: str, name: str) -> bool:
     if name == _AREA:
-        return isinstance(holder, SolvedGeometry) and "color" in holder.attributes and is_filled(holder)
+        return isinstance(holder, SolvedGeometry) and "color" in holder.attributes and is_filled(holder, kind)
     return is_unlined(holder.attributes) if name == _UNLINED else name in holder.attributes
 
 
-def _stated(root: SolvedStructure, names: Collection[str]) -> Iterator[SolvedStructure | SolvedGeometry]:
-    """Yields the structures and the geometries in them that state one of some attributes."""
+def _stated(root: SolvedStructure, names: Collection[str]) -> Iterator[tuple[_Holder, str]]:
     for structure in root.walk():
-        holders: tuple[SolvedStructure | SolvedGeometry, ...] = (structure, *structure.drawn)
-        yield from (holder for holder in holders if any(_states(holder, name) for name in names))
+        holders: tuple[_Holder, ...] = (structure, *structure.drawn)
+        yield from ((each, name) for each in holders for name in names if _states(each, structure.kind, name))
 
 
 def twice_compensated(root: SolvedStructure, width: float) -> list[Diagnostic]:

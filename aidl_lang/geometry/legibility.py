@@ -97,11 +97,7 @@ class Ground:
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
-        over = [
-            k
-            for k in self._above(curves, place)
-            if union_bounds([box, self.bodies[k].box]) == self.bodies[k].box
-        ]
+        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
         over = [k for k in over if all(k in self._at_middles[curve] for curve in curves)]
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
@@ -165,6 +161,10 @@ class Ground:
             for n in beside[inside_mask(self.bodies[k].section, on_grid[beside])].tolist():
                 found[n].append(k)
         return found
+
+
+def _lies_within(inner: Bounds, outer: Bounds) -> bool:
+    return outer[0] < inner[0] and outer[1] < inner[1] and inner[2] < outer[2] and inner[3] < outer[3]
 
 
 def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Diagnostic:

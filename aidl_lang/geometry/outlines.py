@@ -414,7 +414,9 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
         return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
 
     def inner(g: SolvedGeometry) -> SolvedGeometry:
-        if (g.filled or is_filled(g)) and not all(kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)):
+        if (g.filled or is_filled(g, "drawing")) and not all(
+            kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)
+        ):
             return replace(g, curve=None, parts=parts(g, common(_region([g]), region).pieces))
         curve, one = kept.get(id(g), (None, None))
         if one is None or one.inner == (curve,):

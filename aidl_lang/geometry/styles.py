@@ -143,7 +143,7 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
     return _within(style, geometry.attributes)
 
 
-def is_filled(geometry: SolvedGeometry, within: str = "drawing") -> bool:
+def is_filled(geometry: SolvedGeometry, within: str) -> bool:
     """Tells whether geometry is an area with a look of its own; with a width, in a drawing it is a line."""
     stated = geometry.attributes
     is_line = within == "drawing" and not {"dash", "stroke"}.isdisjoint(stated) and not is_unlined(stated)

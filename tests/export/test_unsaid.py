@@ -44,3 +44,15 @@ def test_it_is_in_the_file_or_told(said: str, name: str) -> None:
         assert ("N0756" in told) == (name.endswith(".dxf") or name.startswith("cutter"))
     else:
         assert is_there or "N0741" in told
+
+
+def test_the_colour_of_an_area_with_an_outline_of_its_own_is_told_too() -> None:
+    text = """
+    @color("blue") @thickness(2mm) solid s {
+        body = rectangle(center: fixed((0, 0)), width: 40, height: 20)
+        @color("gold") @stroke(1mm) disc = circle(center: fixed((5, 0)), radius: 4)
+    }
+    """
+    made = pipeline.compile(SourceFile("s.aidl", text)).exported(".3mf", Options())
+    (note,) = [n for n in made.notes if n.code == "N0741"]
+    assert note.message.startswith("`@stroke` and `@color(…)` count for nothing in this file")

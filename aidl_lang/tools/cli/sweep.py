@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.prose import counted
+from aidl_lang.common.prose import counted, named
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
@@ -316,8 +316,6 @@ def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
 
         rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
-            from aidl_lang.common.prose import named
-
             say(f"{arguments.table}: carried along, as no param is called so: {named(rows.labels)}")
     is_drawn = arguments.random is not None
     axes = [axis(name, values, knobs, is_drawn=is_drawn) for name, values in arguments.params]
@@ -327,12 +325,11 @@ def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
 def _tell(session: Session, arguments: argparse.Namespace) -> None:
     failures = [row for row in session.rows if not row.ok]
     failures.sort(key=lambda row: row.variant.number)
+    turns = session.turns
     if arguments.json:
-        print(json.dumps(_summary(session, failures), indent=2, ensure_ascii=False))
-    _list(failures, session.turns, arguments.output)
+        print(json.dumps(_summary(session, failures, turns), indent=2, ensure_ascii=False))
+    _list(failures, turns, arguments.output)
     if session.stale:
-        from aidl_lang.common.prose import named
-
         say(
             f"of an earlier run, and left as they are, though their variants fail now: {named(session.stale)}"
         )
@@ -375,6 +372,8 @@ def _list(failures: Sequence[Row], turns: Sequence[str], outputs: Sequence[str])
         say(f"and {counted(more, 'failure')} more; {where}")
     for turn in turns[:_MOST_TOLD]:
         say(f"of another kind: {escape(_short(turn))}; `aidl check --range` tells where")
+    if (more := len(turns) - _MOST_TOLD) > 0:
+        say(f"and {counted(more, 'place')} more; `--json` has all")
 
 
 def _short(text: str, most: int = 200) -> str:
@@ -393,7 +392,7 @@ def _tell_unfinished(session: Session) -> None:
     say(f"{len(session.rows)} of {counted(count, 'variant')} done; {where}")
 
 
-def _summary(session: Session, failures: Sequence[Row]) -> dict[str, Any]:
+def _summary(session: Session, failures: Sequence[Row], turns: Sequence[str]) -> dict[str, Any]:
     return {
         "variants": len(session.job.plan),
         "done": len(session.rows),
@@ -403,7 +402,7 @@ def _summary(session: Session, failures: Sequence[Row]) -> dict[str, Any]:
         "begun_again": session.given_again,
         "complete": session.is_complete,
         "seconds": round(session.seconds, 3),
-        "turns": session.turns,
+        "turns": turns,
         "failures": [
             {
                 "n": row.variant.number,

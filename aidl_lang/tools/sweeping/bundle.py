@@ -240,8 +240,8 @@ def to_data(outcome: Outcome) -> Any:
 
 
 def from_data(data: Any) -> Outcome:
-    """Reads an outcome from JSON of any source. Raises an error of Python for what is none."""
+    """Reads an outcome from JSON of any source. Raises ValueError, TypeError or KeyError for what is none."""
     found = _converter().structure(data, Outcome)
-    if set(found.measures) - set(MEASURES) or type(data["ok"]) is not bool:
+    if set(found.measures) - set(MEASURES) or type(data["ok"]) is not bool or to_data(found) != data:
         raise ValueError("no outcome")
     return found
