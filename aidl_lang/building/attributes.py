@@ -363,7 +363,7 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
 def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
     """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
     written, is_flat, wrong, hint = attribute.span.one_line, of.kind in ("drawing", "hole"), "", ""
-    if (name == "edges" and is_flat) or (name == "halo" and of.kind == "hole"):
+    if (name in ("edges", "shadow") and is_flat) or (name == "halo" and of.kind == "hole"):
         has = "material or strokes" if name == "halo" else "material"
         wrong = f"is said of what has {has}, and `{of.name}` is a {of.kind}"
         hint = f"leave `{written}` out, or put it before a `solid` or an `assembly`"
@@ -443,6 +443,14 @@ def _shade(values: list[Value]) -> str:
     return f"{words}, or a colour, and where wanted the way it goes, as in `@shade(round, 90deg)`"
 
 
+def _shadow(values: list[Value]) -> str:
+    by, dark = _numbers(values[:2], units.LENGTH), _numbers(values[2:], units.PLAIN)
+    is_dark = dark is not None and len(dark) <= 1 and all(0 < share <= 1 for share in dark)
+    if by is not None and len(by) == 2 and max(map(abs, by)) <= WIDEST and is_dark:
+        return ""
+    return "two lengths, to the right and up, and where wanted a share of black, as in `@shadow(3, -3, 0.3)`"
+
+
 def _text(name: str) -> Callable[[list[Value]], str]:
     def rule(values: list[Value]) -> str:
         is_text = len(values) == 1 and isinstance(values[0], TextVal)
@@ -490,6 +498,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
         units.PLAIN, lambda n: 0 < n <= 1, "a share above 0, and up to 1, as in `@opacity(0.5)`"
     ),
     "shade": _shade,
+    "shadow": _shadow,
     "edges": _worded(EDGES, "`seams` or `outline`, as in `@edges(seams)`"),
     "halo": _one_number(
         units.LENGTH, lambda n: 0 <= n <= WIDEST, f"a width of 0 to {WIDEST:g} mm, as in `@halo(1)`"

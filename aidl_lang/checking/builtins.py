@@ -291,7 +291,7 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
-    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo"),
+    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "shadow", "edges", "halo"),
     *("behind", "in_front", "clip"),
     *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
 )

@@ -18,6 +18,7 @@ CHARACTER = 0.6
 
 HALO = "halo"
 """The role of what has the colour of the paper: a gap around what lies in front."""
+SHADOW = "shadow"
 LETTERS = "letters"
 AREA = "area"  # of a colour of its own, on a body or in a drawing
 
@@ -80,7 +81,7 @@ class Area:
     @property
     def is_sign(self) -> bool:
         """True for a mark of its own, as a letter or an arrowhead; false for a solid without outline."""
-        return self.ink is None and self.role not in ("", HALO, AREA)
+        return self.ink is None and self.role not in ("", HALO, SHADOW, AREA)
 
 
 def widened(box: Bounds, by: float) -> Bounds:

@@ -15,14 +15,28 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks, themes
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
+from aidl_lang.export.marks import (
+    LETTERS,
+    Area,
+    Curves,
+    Dot,
+    Frame,
+    Group,
+    Ink,
+    Mark,
+    Picture,
+    Placing,
+    Text,
+    widened,
+)
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
+from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points
+from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import DASH, GAP, Style, drawing_below, stacked
 
@@ -222,6 +236,8 @@ MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 _SEAM_OPACITY = 0.55
+_DARK = 0.3
+"""The share of black in a shadow for which none is stated."""
 _DRAWN = ":drawn"
 _OVER = ":over"
 """Behind the path of a solid or a hole: what is engraved there and no drawing of its own."""
@@ -234,7 +250,9 @@ def picture(job: Job) -> Picture:
 
 def _whole(job: Job) -> Picture:
     options = job.options
+    shadows = [] if options.for_cutter else list(_shadows(job.model.root, job.drawing))
     box = _picture_box(job.model, job.drawing, options.show)
+    box = union_bounds([box, *(region_bounds(Region((area.face,))) for _, area in shadows)])
     size = max(box[2] - box[0], box[3] - box[1]) or 1.0
     seen, dimensions = box, tuple[Group, ...]()
     if options.dimension:
@@ -242,7 +260,7 @@ def _whole(job: Job) -> Picture:
 
         seen, dimensions = dimensioned(job.model, job.drawing, box)
     overlay = explain(job.model, job.drawing, options.show, seen, size)
-    groups = [*_drawn(job, size)]
+    groups = [*_drawn(job, size, shadows)]
     groups += dimensions
     groups += [
         Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
@@ -254,13 +272,13 @@ def _whole(job: Job) -> Picture:
     return Picture(widened(overlay.box, margin), tuple(groups))
 
 
-def _drawn(job: Job, size: float) -> Iterator[Group]:
+def _drawn(job: Job, size: float, shadows: Iterable[tuple[str, Area]] = ()) -> Iterator[Group]:
     """Yields the groups of the drawing: for a cutter what it follows, else one for each structure."""
     if job.options.followed is not None:
         from aidl_lang.export.sheets import followed_groups
 
         return followed_groups(job.model, job.drawing, job.options.followed)
-    return _groups(job.model, job.drawing, _marks(job.model.root, job.drawing, size))
+    return _groups(job.model, job.drawing, [*shadows, *_marks(job.model.root, job.drawing, size)])
 
 
 def _overhang(drawing: Drawing) -> float:
@@ -350,6 +368,17 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
             yield f"{stroke.path}{_DRAWN}" if is_on_part else stroke.path, mark
 
 
+def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Area]]:
+    """Yields what structures cast on what lies behind them: all their bodies as one, moved."""
+    for structure in root.walk():
+        if shadow := drawing.styles[structure.path].shadow:
+            paths = {below.path for below in structure.walk()}
+            cast = united(*(b.region for b in drawing.bodies if b.path in paths and not b.style.is_clear))
+            x, y, dark = (*shadow, _DARK)[:3]
+            for face in cast.mapped(Placing(1.0, (x, y)).piece).faces:
+                yield structure.path, Area(face, "black", None, marks.SHADOW, dark)
+
+
 def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     """Returns the gaps around what lies in front; None where none are asked for, as in most drawings."""
     if not any(style.halo for style in drawing.styles.values()):
@@ -359,10 +388,12 @@ def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
     return Halos(drawing, root)
 
 
-def _filled(region: Region, style: Style, fill: str, size: float, role: str = "") -> Iterator[Area]:
-    """Yields the faces of a region with their outlines."""
+def _filled(
+    region: Region, style: Style, fill: str, size: float, role: str = "", whole: Sequence[Piece] = ()
+) -> Iterator[Area]:
+    """Yields the faces of a region with their outlines; `whole`: what shade runs over, if some is hidden."""
     ink = None if style.is_unlined else _line(style, _outline_color(style), OUTLINE_WIDTH, size)
-    gradient = None if style.shade is None else gradient_of(style.shade, fill, region)
+    gradient = None if style.shade is None else gradient_of(style.shade, fill, whole or region.pieces)
     for face in region.faces:
         yield Area(face, fill, ink, role, _opacity(style), gradient)
 
@@ -386,7 +417,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
-        yield from _filled(Region(stroke.faces), style, color, size, marks.AREA)
+        yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
         return
     if stroke.faces:
         yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)

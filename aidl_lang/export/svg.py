@@ -47,6 +47,7 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
+    all_bounds,
     bounds,
     ends,
     point,
@@ -54,7 +55,7 @@ from aidl_lang.geometry.curves import (
     union_bounds,
 )
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.region import Face, Loop, Region, region_bounds
+from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.styles import Shade, stacked
 
@@ -236,20 +237,22 @@ _LIGHT: dict[str, tuple[tuple[float, float], ...]] = {
     "ball": ((0.0, 0.5), (0.5, 0.0), (1.0, -0.45)),
     "slope": ((0.0, 0.18), (1.0, -0.26)),
 }
-"""Shares of the way, and of white in the colour there, or of black where they are negative."""
+"""Shares of the way, and how much lighter the colour is there, or darker where they are negative."""
 _FADING = ((0.0, 1.0), (0.3, 0.78), (0.6, 0.3), (0.8, 0.09), (1.0, 0.0))
 """Shares of the way out of the middle, and the opacity there: as soft light and shadows end."""
 _SPOT = (0.36, 0.66)
 """Where a ball is brightest: shares of the width and the height of its box."""
 _REACH = 0.72
 """How far light reaches from there, in the larger side of the box."""
+_LIFT, _PALER = 0.6, 0.5
+"""What a tone adds to a colour of its own strength, and how much white."""
 _STEPS = np.linspace(0.0, 1.0, 9)
 
 
-def gradient_of(shade: Shade, color: str, region: Region) -> Gradient:
-    """Returns the fill of a body of a colour."""
+def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
+    """Returns the fill of a colour in what has an outline, of which some may be hidden."""
     stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
-    left, bottom, right, top = region_bounds(region)
+    left, bottom, right, top = union_bounds(all_bounds(outline))
     width, height = right - left, top - bottom
     if shade.way is None:
         center = (left + width / 2, bottom + height / 2)
@@ -259,7 +262,7 @@ def gradient_of(shade: Shade, color: str, region: Region) -> Gradient:
         spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
         return Gradient(spot, spot, stops, _REACH * max(width, height))
     ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
-    spots = np.concatenate([points(piece, _STEPS) for piece in region.pieces])
+    spots = np.concatenate([points(piece, _STEPS) for piece in outline])
     along = spots @ ways
     middle = np.array([(left + right) / 2, (bottom + top) / 2])
     start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
@@ -272,9 +275,12 @@ def gradient_of(shade: Shade, color: str, region: Region) -> Gradient:
 
 
 def _toned(color: str, tone: float) -> str:
-    """Returns a colour with a share of white in it, or of black where that is negative."""
-    goal = 255.0 if tone > 0 else 0.0
-    return hexadecimal(part + abs(tone) * (goal - part) for part in rgb(color))
+    """Returns a colour in more light, or in less if the tone is negative. Light makes it stronger before it
+    makes it paler: red gleams red, and not pink.
+    """
+    lift = min(1 + _LIFT * tone, 255 / max(*rgb(color), 1)) if tone > 0 else 1 + tone
+    parts = [lift * part for part in rgb(color)]
+    return hexadecimal(part + _PALER * max(tone, 0.0) * (255 - part) for part in parts)
 
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"

@@ -24,6 +24,7 @@ _WITHOUT: Mapping[str, str] = {
     _AREA: ".step .stl .3mf",
     "edges": "cutter .step .stl .3mf .dxf",
     "halo": "cutter .step .stl .3mf .dxf",
+    "shadow": "cutter .step .stl .3mf .dxf",
 }
 """By attribute, or one as written, the files that have no place for it; all others are drawn so."""
 _WHY: Mapping[str, str] = {

@@ -62,7 +62,16 @@ from aidl_lang.geometry.notes import (
 )
 from aidl_lang.geometry.pieces import LETTERING, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
-from aidl_lang.geometry.sections import Section, Traced, difference, fill, intersection, trace, trace_all
+from aidl_lang.geometry.sections import (
+    Section,
+    Traced,
+    difference,
+    fill,
+    intersection,
+    trace,
+    trace_all,
+    union,
+)
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
@@ -74,6 +83,7 @@ from aidl_lang.geometry.styles import (
     stacked,
     styled,
     styles_of,
+    veils,
 )
 
 SLIT = "slit"
@@ -114,7 +124,7 @@ class Stroke:
     `over`: the colour of what it lies on, where its own was not said for it and may not be seen there: lines
     that have the same, and all letters. `faces`: what letters enclose,
     or an area with a look of its own (`is_area`), which is filled where it can be; `pieces` are their
-    outlines.
+    outlines. `whole`: that of an area before others covered some of it, as its shade runs.
     """
 
     path: str
@@ -125,6 +135,7 @@ class Stroke:
     over: str | None = None
     faces: tuple[Face, ...] = ()
     is_area: bool = False
+    whole: tuple[Piece, ...] = ()
 
 
 @record()
@@ -199,8 +210,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
+    aside = frozenset().union(*map(veils, root.walk()))
+    made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
     network, walk, masses, traced, gaps = _closed(
-        root, network, shapes, partial(_arranged, root, shapes, clips, blind)
+        root, network, shapes, partial(_arranged, root, made, clips, blind)
     )
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(
@@ -225,8 +238,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    material = {path: m.section for m in masses for path in (*m.inner, m.structure.path)}
-    areas = dict(_areas(root, shapes, network, material, ink[0]))
+    areas = dict(_areas(root, shapes, aside, walk, masses, ink[0]))
     lying = [*solids, *_lying_areas(stacked(root), styles, areas)]
     ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
@@ -476,13 +488,17 @@ def _unseen(
 def _areas(
     root: SolvedStructure,
     shapes: _Shapes,
-    network: Network,
-    material: dict[str, Section],
+    aside: Collection[str],
+    walk: Bodies,
+    masses: Sequence[Mass],
     ink: Sequence[Piece],
 ) -> Iterator[tuple[str, _Area]]:
-    """Yields the paths and areas of geometry with a look of its own: what it encloses of its body."""
+    """Yields the paths and areas of geometry with a look of its own: what it encloses of its body, or all
+    but the holes in it if it lies `aside`, as a veil.
+    """
+    network, mass_of = walk.network, {path: m for m in masses for path in (*m.inner, m.structure.path)}
     for structure in root.walk():
-        of = material.get(structure.path, fill([], "NonZero"))
+        mass, clip = mass_of.get(structure.path), walk.clips.get(structure.path)
         for k, shape in enumerate(shapes[structure.path] if structure.kind != "hole" else (), 1):
             if not is_filled(shape.geometry, structure.kind):
                 continue
@@ -494,7 +510,12 @@ def _areas(
                 polygons = map(np.array, region_polygons(region, network.tolerance))
                 section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
-                section = intersection(union_of(own_faces(network, [shape]).faces), of)
+                whole = union_of(own_faces(network, [shape]).faces)
+                if shape.geometry.path in aside:
+                    section = difference(whole, union([v.section for v in mass.voids] if mass else []))
+                    section = intersection(section, clip) if clip is not None else section
+                else:
+                    section = intersection(whole, mass.section if mass else union([]))
                 later = [s for s in shapes[structure.path][k:] if not is_filled(s.geometry, structure.kind)]
                 if later and (over := own_faces(network, later).faces):  # in the colour of the body again
                     section = difference(section, union_of(over))
@@ -529,7 +550,10 @@ def _colored(
     structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
 ) -> Iterator[Stroke]:
     look, region = styled(style, geometry), area.region
-    yield Stroke(structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True)
+    whole = tuple(geometry.curves())
+    yield Stroke(
+        structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True, whole=whole
+    )
     if area.loose:
         yield Stroke(structure.path, geometry.path, area.loose, look)
 

@@ -151,7 +151,12 @@ class Part:
     def moved(self, by: Motion) -> Part:
         region = self.body.region.mapped(by.piece)
         strokes = tuple(
-            replace(s, pieces=by.pieces(s.pieces), faces=tuple(f.mapped(by.piece) for f in s.faces))
+            replace(
+                s,
+                pieces=by.pieces(s.pieces),
+                faces=tuple(f.mapped(by.piece) for f in s.faces),
+                whole=by.pieces(s.whole),
+            )
             for s in self.strokes
         )
         box = region_bounds(region)

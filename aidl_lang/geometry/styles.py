@@ -23,7 +23,7 @@ Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
 
 DASH, GAP = 0.012, 0.008
 """Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
-_OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "halo", "quantity")
+_OF_BODIES = ("color", "stroke", "dash", "opacity", "shade", "shadow", "halo", "quantity")
 """Looks and numbers that a body has as a whole."""
 
 
@@ -63,6 +63,7 @@ class Style:
     dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
     opacity  how much of what lies behind is covered, from 0 to 1
     shade    how the fill of a body changes over it
+    shadow   how far that of the structure falls to the right and up, mm, and a share of black
     halo     width of the clear gap around what lies in front, mm; drawings have one of their own alone
     edges    `seams` if the borders between the geometries of a solid are drawn
     turn     the directions of the structure
@@ -80,6 +81,7 @@ class Style:
     shade: Shade | None = None
     edges: str | None = None
     halo: float | None = None
+    shadow: tuple[float, ...] = ()
     depth: tuple[float, ...] = ()
     quantity: int = 1
     turn: Turn = Turn()
@@ -150,6 +152,16 @@ def is_filled(geometry: SolvedGeometry, within: str) -> bool:
     return any(look in stated for look in FILLING) and not is_line
 
 
+def veils(structure: SolvedStructure) -> frozenset[str]:
+    """Returns the paths of the translucent and fading areas of a solid, which add no material: they lie on
+    what else it has. A solid of nothing else is made of them.
+    """
+    drawn = [g for g in structure.drawn if not g.construction] if structure.kind == "solid" else []
+    seen = frozenset(g.path for g in drawn if is_filled(g, "solid") and styled(Style(), g).is_clear)
+    is_made = len(seen) < len(drawn) or any(child.kind == "solid" for child in structure.structures)
+    return seen if is_made else frozenset()
+
+
 def is_unlined(stated: Attributes) -> bool:
     """Tells whether attributes ask for solids and areas without outline."""
     return stated.get("stroke") == ("none",)
@@ -172,7 +184,8 @@ def _within(around: Style, stated: Attributes) -> Style:
         shade,
         _text(stated.get("edges")) or around.edges,
         _number(stated.get("halo"), around.halo),
-        tuple(float(v) for v in stated.get("depth", ()) if isinstance(v, int | float)),
+        _numbers(stated.get("shadow", ())),
+        _numbers(stated.get("depth", ())),
         around.quantity * int(_number(stated.get("quantity"), 1.0) or 1),
         around.turn,
     )
@@ -208,12 +221,16 @@ def _number(values: tuple[Scalar, ...] | None, default: float | None) -> float |
     return float(first) if isinstance(first, int | float) and not isinstance(first, bool) else default
 
 
+def _numbers(values: Iterable[Scalar]) -> tuple[float, ...]:
+    return tuple(float(v) for v in values if isinstance(v, int | float))
+
+
 def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
     """Returns the lengths by turns; a single one is that of the gaps, too."""
     stated = tuple(values)
     if stated in ((True,), (False,)) and isinstance(stated[0], bool):
         return () if stated[0] else None
-    lengths = tuple(float(v) for v in stated if isinstance(v, int | float))
+    lengths = _numbers(stated)
     return lengths * 2 if len(lengths) == 1 else lengths
 
 

@@ -337,6 +337,7 @@ SNIPPETS = (
     Snippet("@dash", "dashed lines", "@dash(${1:3}, ${2:1.5})$0", "attribute"),
     Snippet("@opacity", "what shows through", "@opacity(${1:0.5})$0", "attribute"),
     Snippet("@shade", "light and shade on a fill", "@shade(${1:round})$0", "attribute"),
+    Snippet("@shadow", "a cast shadow", "@shadow(${1:3mm}, ${2:-3mm})$0", "attribute"),
     Snippet("@edges", "seams in a solid", "@edges(${1:seams})$0", "attribute"),
     Snippet("@halo", "a clear gap around what lies in front", "@halo(${1:1mm})$0", "attribute"),
     Snippet("@clip", "drawn inside an outline only", "@clip(${1:outline})$0", "attribute"),

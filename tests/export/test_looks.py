@@ -314,6 +314,42 @@ def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
     assert near(at(26, 0), blue)
 
 
+SHADOWED = """
+assembly a {
+    @color("blue") @stroke(none) solid wall { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
+    @shadow(10, -20, 0.4) assembly b {
+        @color("yellow") solid one {
+            body = rectangle(center: fixed((0, 0)), width: 20, height: 20)
+            @color("red") @opacity(0.5) @stroke(none) glow = circle(center: fixed((0, 0)), radius: 25)
+        }
+        @color("yellow") solid other { body = rectangle(center: fixed((5, 0)), width: 20, height: 20) }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_a_shadow_is_one_of_all_that_casts_it_and_a_veil_lies_beyond_its_body(suffix: str) -> None:
+    scale, margin = 10, 0.03 * 100
+    picture = written(suffix, SHADOWED, **({"pixels": 1060} if suffix == ".png" else {}))
+    if suffix == ".png":
+        image = Image.open(io.BytesIO(picture.data)).convert("RGB")
+    else:
+        image = PdfDocument(picture.data)[0].render(scale=scale / 72 * 25.4).to_pil().convert("RGB")
+
+    def at(x: float, y: float) -> object:
+        return image.getpixel((round((x + 50 + margin) * scale), round((30 + margin - y) * scale)))
+
+    assert near(at(-40, 0), (0, 0, 255))
+    assert near(at(22, -28), (0, 0, 153))  # of both parts: once as dark
+    assert near(at(2, -28), (0, 0, 153))
+    assert near(at(-2, -28), (0, 0, 255))
+    assert near(at(-12, 0), (128, 0, 128))  # the glow, on the wall
+    assert near(at(-8, 0), (255, 128, 0))
+    assert near(at(12, 0), (255, 255, 0))  # in front of it
+    assert "fill-opacity" not in written(".svg", SHADOWED, theme="blueprint").data.decode()
+
+
 # --- Shade -----------------------------------------------------------------------------------------
 
 

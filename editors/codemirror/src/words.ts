@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "thread", "tolerance", "finish", "allow"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity", "detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "shadow", "edges", "halo", "behind", "in_front", "clip", "title", "author", "number", "revision", "thread", "tolerance", "finish", "allow"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1075,6 +1075,7 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@dash", "title": "dashed lines", "body": "@dash(${1:3}, ${2:1.5})$0", "place": "attribute"},
   {"prefix": "@opacity", "title": "what shows through", "body": "@opacity(${1:0.5})$0", "place": "attribute"},
   {"prefix": "@shade", "title": "light and shade on a fill", "body": "@shade(${1:round})$0", "place": "attribute"},
+  {"prefix": "@shadow", "title": "a cast shadow", "body": "@shadow(${1:3mm}, ${2:-3mm})$0", "place": "attribute"},
   {"prefix": "@edges", "title": "seams in a solid", "body": "@edges(${1:seams})$0", "place": "attribute"},
   {"prefix": "@halo", "title": "a clear gap around what lies in front", "body": "@halo(${1:1mm})$0", "place": "attribute"},
   {"prefix": "@clip", "title": "drawn inside an outline only", "body": "@clip(${1:outline})$0", "place": "attribute"},

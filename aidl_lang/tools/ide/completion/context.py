@@ -36,6 +36,7 @@ from aidl_lang.tools.vocabulary import vocabulary
 _ATTRIBUTES: dict[str, Type] = {
     **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
     **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
+    "shadow": NumberType(LENGTH),
     **dict.fromkeys(STACKING, StructureType()),
     CLIP: GeometryType(""),
 }
