@@ -37,6 +37,7 @@ from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.network import GRID, Network, Use
 from aidl_lang.geometry.notes import at, local
+from aidl_lang.geometry.pieces import LETTERING
 from aidl_lang.geometry.region import Region, length, loop_points
 from aidl_lang.geometry.sections import (
     Section,
@@ -246,12 +247,17 @@ def owner(bodies: Mapping[str, Body], path: str) -> str | None:
     return path or None
 
 
-def overhang(pieces: Sequence[Piece], region: Region) -> float:
-    """Returns how far curves reach out of the outer outlines of a region, mm, by samples; 0 for none."""
+def overhang(pieces: Sequence[Piece], region: Region, *, partly: bool = False) -> float:
+    """Returns how far curves reach out of the outer outlines of a region, mm, by samples; 0 for none, and if
+    `partly` for those that lie beside it altogether.
+    """
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max(initial=0.0))
     polygons = [loop_points(face.outer, 1e-5 * size) for face in region.faces]
     spots = np.concatenate([points(piece, _TIMES) for piece in pieces])
-    spots = spots[~inside(polygons, spots)]
+    out = ~inside(polygons, spots)
+    if partly and out.all():
+        return 0.0
+    spots = spots[out]
     spots = spots[:: len(spots) // _MOST + 1]
     if not len(spots):
         return 0.0
@@ -264,24 +270,29 @@ def overhang(pieces: Sequence[Piece], region: Region) -> float:
 def overhanging_notes(
     root: SolvedStructure, bodies: Sequence[Body], strokes: Sequence[Stroke]
 ) -> Iterator[Diagnostic]:
-    """Yields a warning for each geometry that is drawn in a part of some stock, and reaches out of it."""
-    if not any(body.style.thickness or body.style.material for body in bodies):
-        return
+    """Yields a warning for each geometry that reaches out of its part: what is drawn in one of some stock,
+    and letters of which some lie on it.
+    """
     holders = Holders(bodies)
-    spans = {g.path: g.span for s in root.walk() for drawn in s.drawn for g in drawn.walk()}
+    drawn = {g.path: g for s in root.walk() for top in s.drawn for g in top.walk()}
     found: dict[str, tuple[Body, float]] = {}
     for stroke in strokes:
         body = holders.of(stroke) if stroke.role == "drawing" else None
-        if body is None or not (body.style.thickness or body.style.material):
+        if body is None:
             continue
-        far = max(overhang(stroke.pieces, body.region), found.get(stroke.geometry, (body, 0.0))[1])
+        is_stock = bool(body.style.thickness or body.style.material)
+        geometry = drawn.get(stroke.geometry)
+        if not is_stock and (geometry is None or geometry.type != LETTERING):
+            continue
+        far = overhang(stroke.pieces, body.region, partly=not is_stock)
+        far = max(far, found.get(stroke.geometry, (body, 0.0))[1])
         if far:
             found[stroke.geometry] = body, far
     for path, (body, far) in found.items():
         yield Diagnostic(
             "W0763",
             f"`{path}` reaches {rough(round(far, 2))} mm out of `{body.path}`, on which it is engraved",
-            spans.get(path),
+            drawn[path].span if path in drawn else None,
             hints=(
                 "make it smaller or move it inwards: a cutter burns what lies beside the part, too",
                 f"or have it end at the edge: `@clip({body.path.rpartition('.')[2]})` before the drawing",

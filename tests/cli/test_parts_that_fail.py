@@ -88,6 +88,19 @@ def test_a_hole_that_leaves_a_part_in_pieces(told: Callable[[str], str]) -> None
         assert "W0762" not in told(text)
 
 
+PLATE = """
+solid plate {
+    body = rectangle(center: origin, width: 60, height: 20)
+    drawing title { word = text("AIDL", center: (0, 0), height: 6) }
+}
+"""
+
+
+def test_letters_that_reach_out_of_their_solid(told: Callable[[str], str]) -> None:
+    found = told(PLATE.replace('"AIDL"', '"WIDER THAN IT"').replace("width: 60", "width: 40"))
+    assert "warning[W0763]: `plate.title.word` reaches 11.63 mm out of `plate`" in found
+
+
 def test_a_drawing_that_reaches_out_of_its_part(told: Callable[[str], str]) -> None:
     found = told(STAR)
     assert "warning[W0763]: `medal.marks.rays` reaches 5 mm out of `medal`, on which it is engraved" in found
@@ -96,6 +109,8 @@ def test_a_drawing_that_reaches_out_of_its_part(told: Callable[[str], str]) -> N
         STAR.replace("45", "39"),
         STAR.replace("    drawing", "    @clip(medal) drawing"),
         STAR.replace("@thickness(3mm)\n", ""),  # a picture, and no part
+        PLATE,
+        PLATE.replace("(0, 0)", "(0, 30)"),  # a title beside it
     )
     for text in fine:
         assert "W0763" not in told(text)

@@ -316,7 +316,7 @@ def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
 
 SHADOWED = """
 assembly a {
-    @color("blue") @stroke(none) solid wall { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
+    @color("blue") @stroke(none) solid wall { body = rectangle(width: 100, height: 60) }
     @shadow(10, -20, 0.4) assembly b {
         @color("yellow") solid one {
             body = rectangle(center: fixed((0, 0)), width: 20, height: 20)

@@ -207,7 +207,7 @@ def _as_one(lists: Sequence[list[str]]) -> str | None:
 
 
 _RARE = ["arc_slot", "checkers", "circumcenter", "crescent", "d_shape", "double_arrow", "double_d"]
-_RARE += ["equilateral_triangle", "heart", "house", "keyhole", "kite", "leaf", "mesh", "mirror_of"]
+_RARE += ["equilateral_triangle", "heart", "house", "keyhole", "kite", "leaf", "mesh", "mirror_of", "octagon"]
 _RARE += ["ogee_arch", "ogive", "pentagon", "pointed_arch", "quarter_circle", "rays", "reuleaux", "rhombus"]
 _RARE += ["right_trapezoid", "rosette", "s_curve", "scales", "shield", "squircle", "tapered_slot", "tiled"]
 """Shapes whose names are told among those of `names` only, of whatever topic they are."""
