@@ -8,15 +8,13 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from aidl_lang.building.model import Knob, Model
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.drawing_time import within
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, OutOfTime, limited_to, working
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
-    from aidl_lang.building.front import Settings
     from aidl_lang.checking.allowing import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
@@ -28,6 +26,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
+    from aidl_lang.interp import Settings
     from aidl_lang.solver.problem import StageReport
 
 

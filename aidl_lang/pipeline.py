@@ -11,22 +11,20 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
-from aidl_lang.building.front import Front, Settings, build, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.allowing import IDLE, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
-from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
-from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, ordered, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
 from aidl_lang.geometry.picturing import pictured
-from aidl_lang.interp import Interpretation, interpret
+from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck

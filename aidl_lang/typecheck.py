@@ -39,8 +39,7 @@ from aidl_lang.checking.types import (
     accepts,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.checking.validity import check_validity
-from aidl_lang.checking.violations import Violation
+from aidl_lang.checking.violations import Violation, check_validity
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span

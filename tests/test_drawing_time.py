@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld

@@ -23,7 +23,7 @@ from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.interp import interpret
 from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
-from aidl_lang.solver.gradients import linearise
+from aidl_lang.solver.valuation import linearise
 from tests.amount import tries
 from tests.solver.check import evaluate
 

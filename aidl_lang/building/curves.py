@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.building import expression as ex
@@ -27,7 +28,6 @@ from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
-
 
 # --- The numbers and points that define a primitive, seen from any structure (language reference: geometry).
 #
@@ -372,3 +372,12 @@ FORMULAS: dict[str, Formulas] = {
     "traced": Formulas(reach=_trace_reach),
 }
 """The formulas of each kind in the registry."""
+
+
+@lru_cache(maxsize=8)
+def gauss(count: int) -> tuple[tuple[float, float], ...]:
+    """Returns nodes and weights over 0..1."""
+    import numpy as np
+
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))

@@ -17,15 +17,20 @@ from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
     CoveredHoles,
+    Gap,
     IdleHole,
     InnerLoop,
     LooseCurves,
     Mass,
     clip_sections,
     clip_shapes,
+    effective,
     empty_clips,
     inner_seams,
+    open_gaps,
     visible_seams,
+    welded_gaps,
+    without_gaps,
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import (
@@ -40,7 +45,6 @@ from aidl_lang.geometry.curves import (
     usable,
 )
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,

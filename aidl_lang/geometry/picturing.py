@@ -9,8 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.model import Model
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.diagnostics import Diagnostic, blaming
 from aidl_lang.common.running import Stopwatch, working
 from aidl_lang.common.source import Span
 

@@ -16,8 +16,7 @@ from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure,
 from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.diagnostics import Diagnostic, blaming
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from aidl_lang.common.quadrature import gauss
+from aidl_lang.building.curves import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import (

@@ -20,11 +20,11 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.branches import violation_of
-from aidl_lang.solver.gradients import FLAT, gradients
+from aidl_lang.solver.loosening import Scope
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.problem import Failure, GroupFailure, Member, Relation
 from aidl_lang.solver.refuting import MOST_ACCUSED, Relaxation, needed, suspects
-from aidl_lang.solver.tiers import Scope
+from aidl_lang.solver.valuation import FLAT, gradients
 
 if TYPE_CHECKING:
     from aidl_lang.solver.hierarchy import Hierarchy

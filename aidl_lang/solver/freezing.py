@@ -24,7 +24,6 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, TIE, ZERO, ArrayFreezing, ArrayProgram
-from aidl_lang.solver.gradients import components
 from aidl_lang.solver.operations import BRANCHING, PARTIALS, Floats, Op
 from aidl_lang.solver.valuation import (
     Affine,
@@ -37,6 +36,7 @@ from aidl_lang.solver.valuation import (
     branched,
     combined,
     compiled,
+    components,
     run,
     scaled,
 )

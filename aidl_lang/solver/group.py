@@ -33,10 +33,20 @@ import numpy as np
 
 from aidl_lang.solver import Stages
 from aidl_lang.solver.branches import Task, attempt, violation_of
-from aidl_lang.solver.loosening import givers, spare_sizes, thin
+from aidl_lang.solver.loosening import (
+    ENDLESS,
+    OWN,
+    POSITIONS,
+    Scope,
+    Tier,
+    Tiers,
+    givers,
+    spare_sizes,
+    stage_name,
+    thin,
+)
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Concession, GroupFailure, StageReport
-from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.hierarchy import Hierarchy

@@ -18,6 +18,7 @@ from aidl_lang.solver import Settings, Stages
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
+from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import (
@@ -31,7 +32,6 @@ from aidl_lang.solver.problem import (
     violations,
 )
 from aidl_lang.solver.riding import Memory, Recollection, riding_depths
-from aidl_lang.solver.tiers import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:

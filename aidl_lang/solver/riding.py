@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
 from aidl_lang.solver import expression
-from aidl_lang.solver.matrix import Sparse
+from aidl_lang.solver.linear import Sparse
 from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem, Settings, StageReport, depths
 

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from aidl_lang.solver import Problem, operations
 from aidl_lang.solver.array_program import ArrayFreezing, Schedule
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.operations import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
-from aidl_lang.solver.valuation import Valuation, evaluate
+from aidl_lang.solver.valuation import Valuation, evaluate, linearise
 
 from .check import values_of
 from .kinds import KINDS

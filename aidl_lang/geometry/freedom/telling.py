@@ -32,8 +32,8 @@ from aidl_lang.geometry.freedom.scene import (
 )
 from aidl_lang.geometry.solved import Motion
 from aidl_lang.solver.analysis import Freedom, Part
-from aidl_lang.solver.gradients import connected
 from aidl_lang.solver.problem import Solution
+from aidl_lang.solver.valuation import connected
 
 # --- The motions possible in one part of a model, and the names of what moves.
 

@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import AidlError, TooLongError
 from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted, first_few

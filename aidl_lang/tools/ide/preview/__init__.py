@@ -10,8 +10,7 @@ from dataclasses import replace
 from aidl_lang.building.expression import Evaluator, Expression, Unknown, add, sub
 from aidl_lang.building.lower import seen
 from aidl_lang.building.model import Model, Structure, convert
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.common.diagnostics import Diagnostic, TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Job, Options
