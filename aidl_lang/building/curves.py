@@ -21,13 +21,11 @@ from aidl_lang.building.model import (
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
 from aidl_lang.checking.types import fields_of
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.common.drawings.drawing import furthest
-from aidl_lang.common.font_files import Vec
-from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
+    from aidl_lang.common.font_files import Vec
 
 # --- The numbers and points that define a primitive, seen from any structure (language reference: geometry).
 #
@@ -331,6 +329,8 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
         return
     at, angle = on_text(text, here), number(view(text, here)["angle"])
     if angle.is_constant and angle.value % 90.0 == 0.0:
+        from aidl_lang.common.lettering import box_around
+
         left, bottom, right, top = box_around(text.glyphs)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
             yield at(corner)[side in ("top", "bottom")]
@@ -356,7 +356,7 @@ def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression
     across, up = (s, c) if axis else (c, -s)
     sense = 1.0 if side in ("right", "top") else -1.0
     over = -1.0 if clockwise(g, here) else 1.0
-    reach = sense * furthest(g.trace.strokes, (sense * across, sense * over * up))
+    reach = sense * g.trace.furthest((sense * across, sense * over * up))
     core = view(g, here)
     yield ex.add(xy(core["start"])[axis], ex.mul(number(core["unit"]), ex.constant(reach)))
 

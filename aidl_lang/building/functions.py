@@ -13,8 +13,6 @@ from aidl_lang.building.coerce import as_point, as_written, constant, look, nume
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.expression import DEGREE, Expression
-from aidl_lang.building.lettering import ink
-from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.patterns import lettered
@@ -26,6 +24,7 @@ from aidl_lang.building.values import (
     Num,
     PointVal,
     RangeVal,
+    RecordVal,
     TextVal,
     Value,
     kind_of,
@@ -422,6 +421,8 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
+
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):
@@ -436,6 +437,17 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         assert isinstance(drawn, Condition)
         it.assertions.append(Assertion(env.here, drawn, OTHERWISE, node.span.one_line, where))
     return point(*found)
+
+
+def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the box of the letters around the start of the first line, in heights of a capital."""
+    from aidl_lang.building.lettering import typeset
+    from aidl_lang.common.lettering import box_around
+
+    if not (glyphs := typeset(it, a)):
+        return NOTHING
+    sides = zip(("left", "bottom", "right", "top"), box_around(glyphs), strict=True)
+    return RecordVal({name: number(value) for name, value in sides})
 
 
 FUNCTIONS: dict[str, Function] = {
@@ -461,7 +473,7 @@ FUNCTIONS: dict[str, Function] = {
     "choice": _choice,
     "rgb": _rgb,
     "channels": _channels,
-    "ink": ink,
+    "ink": _ink,
     "lettered": lettered,
     "traced_part": traced_part,
     "fixed": _mark(Exactness.FIXED),

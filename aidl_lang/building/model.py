@@ -17,8 +17,6 @@ from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
 from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
-from aidl_lang.common.font_files import Curve
-from aidl_lang.common.lettering import Glyph, silhouette
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -26,6 +24,8 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
     from aidl_lang.common.drawings.drawing import Trace
+    from aidl_lang.common.font_files import Curve
+    from aidl_lang.common.lettering import Glyph
 
 SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
@@ -131,7 +131,11 @@ class Geometry:
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
         """The silhouette of a text or a drawing in its own units (see `lettering.silhouette`)."""
-        return silhouette(self.glyphs) if self.trace is None else self.trace.silhouette
+        if self.trace is not None:
+            return self.trace.silhouette
+        from aidl_lang.common.lettering import silhouette
+
+        return silhouette(self.glyphs)
 
     @property
     def value_type(self) -> Type:

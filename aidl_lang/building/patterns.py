@@ -14,7 +14,6 @@ from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
 from aidl_lang.building.curves import defining, xy
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter
@@ -37,7 +36,6 @@ from aidl_lang.building.values import (
     spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.common import lettering
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -415,6 +413,9 @@ _UPRIGHT = TextVal("upright")
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
+    from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
+    from aidl_lang.common.lettering import ALIGNMENTS
+
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
@@ -437,7 +438,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         return NOTHING
     assert isinstance(align, TextVal)
     assert isinstance(a["height"], Num)
-    share = 0.5 if way.is_closed else lettering.ALIGNMENTS[align.value]
+    share = 0.5 if way.is_closed else ALIGNMENTS[align.value]
     first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
     height: Expression | None = None
     reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)

@@ -197,7 +197,6 @@ class Assignment:
 
     def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
         motion, source = copy.motion, copy.source
-        assert isinstance(motion, Motion)
         if isinstance(source, Structure):
             return self._of(source, _framed(source, self.here), motion, indices)
         if (known := self.first.get(source)) is not None:

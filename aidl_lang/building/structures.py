@@ -48,7 +48,7 @@ from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.drawings import WHOLE
+from aidl_lang.common.files import WHOLE
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 

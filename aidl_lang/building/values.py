@@ -30,6 +30,7 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.model import Condition, Geometry, Structure
+    from aidl_lang.building.motion import Motion
 
 T = TypeVar("T")
 
@@ -203,13 +204,13 @@ class StructureCopy:
     """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
 
     source  a structure, or a template to instantiate
-    motion  its placement, in the frame of the structure that holds it (see building.motion)
+    motion  its placement, in the frame of the structure that holds it
     node    the call that asks for it
     is_laid the motion alone places the instance of a template
     """
 
     source: Structure | Instantiation
-    motion: object
+    motion: Motion
     node: ast.Call
     is_laid: bool = False
 

@@ -43,7 +43,7 @@ from aidl_lang.checking.resolving.symbols import (
 )
 from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label, ordered
-from aidl_lang.common.drawings import WHOLE
+from aidl_lang.common.files import WHOLE
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
 from aidl_lang.syntax import ast

@@ -12,7 +12,6 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path, PurePath
 
-from aidl_lang.common import font_files
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 
 # --- Reads regular files of bounded size, and remembers which: what was read is not to be overwritten.
@@ -131,9 +130,12 @@ def _harmless(cell: object) -> object:
 # --- The kinds of files that a program may read beside itself, by their suffixes.
 
 PROGRAM = ".aidl"
+FONTS = (".ttf", ".otf")
 DRAWINGS = (".svg", ".dxf")
-DATA = (*font_files.SUFFIXES, *DRAWINGS)
+DATA = (*FONTS, *DRAWINGS)
 """What is read as bytes: no message quotes it."""
+WHOLE = "drawing"
+"""The name of all that is in a drawing, beside those of its parts."""
 
 
 def is_data(path: str | PurePath) -> bool:

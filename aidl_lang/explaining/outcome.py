@@ -22,12 +22,12 @@ from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution, Status
 
 if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Explanation
     from aidl_lang.explaining.giving import GaveWay
+    from aidl_lang.solver.analysis import Freedom
 
 _TOLERANCE = 1e-6
 """Violation that an assertion may have, relative to the values compared (and never less than this in mm)."""

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.records import record
-from aidl_lang.geometry.arcs import TOLERANCE
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
@@ -77,7 +76,7 @@ class Options:
     theme: str = "colour"
     units: str = "mm"
     dxf: str = "arcs"
-    tolerance: float = TOLERANCE
+    tolerance: float = 0.01
     profile: Profile | None = None
 
     @property
@@ -89,9 +88,11 @@ class Options:
     @property
     def followed(self) -> Profile | None:
         """The profile by which a cutter is told what to do; None if the file is for none."""
+        if not self.for_cutter:
+            return None
         from aidl_lang.export.profiles import PLAIN
 
-        return (self.profile or PLAIN) if self.for_cutter else None
+        return self.profile or PLAIN
 
 
 @record()

@@ -8,8 +8,8 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from aidl_lang.common.font_files import Curve
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import common, without
 from aidl_lang.geometry.curves import (
@@ -26,6 +26,9 @@ from aidl_lang.geometry.nearness import near_rows
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region, loop_area, region_bounds
 from aidl_lang.geometry.sections import closed_loop, faces_of, filled, first_point, trace
+
+if TYPE_CHECKING:
+    from aidl_lang.common.font_files import Curve
 
 
 def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:

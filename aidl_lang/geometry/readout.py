@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import FILLING
@@ -17,7 +18,6 @@ from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, S
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
 from aidl_lang.common.diagnostics import Diagnostic, blaming
-from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry import curves
@@ -42,9 +42,12 @@ from aidl_lang.geometry.solved import (
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
-from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.common.lettering import Glyph
+    from aidl_lang.solver.analysis import Freedom
 
 _FULL_TURN = 2 * math.pi
 

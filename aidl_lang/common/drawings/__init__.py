@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import PurePosixPath
 
 from aidl_lang.common.drawings.drawing import (
-    WHOLE,
     Collector,
     DrawingError,
     Element,
@@ -16,10 +15,9 @@ from aidl_lang.common.drawings.drawing import (
     Remark,
     Trace,
 )
+from aidl_lang.common.files import WHOLE
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
-
-__all__ = ["WHOLE", "outlines"]
 
 MOST_NAMES = 250
 _LONGEST_NAME = 60

@@ -10,12 +10,10 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from aidl_lang.common.files import WHOLE
 from aidl_lang.common.font_files import Curve, Vec, point_of
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-
-WHOLE = "drawing"
-"""The name of all that is in a file, beside those of its parts."""
 
 if TYPE_CHECKING:
     from ezdxf.math import BSpline
@@ -337,6 +335,10 @@ class Trace:
     @cached_property
     def box(self) -> tuple[float, float, float, float]:
         return box(self.strokes)
+
+    def furthest(self, way: Vec) -> float:
+        """Returns the greatest product of a point of it with a vector."""
+        return furthest(self.strokes, way)
 
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
