@@ -180,7 +180,7 @@ class Model:
         """
         from aidl_lang.common.files import replace
         from aidl_lang.export import suffix_of
-        from aidl_lang.export.cut_list import contents, is_pattern
+        from aidl_lang.export.job import contents, is_pattern
         from aidl_lang.tools.cli.options import read
 
         asked = read(options, self._compiled)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
+from aidl_lang.syntax import brackets, foreign, missing, rewriting, spelling
 from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
 from aidl_lang.syntax.tables import END, Token, describe
 
@@ -22,7 +22,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     spelling.unknown_unit,
     spelling.foreign_character,
     foreign.foreign_loop,
-    functions.arrow_function,
+    rewriting.arrow_function,
     foreign.object_literal,
     foreign.loose_point,
     foreign.word_for_sign,

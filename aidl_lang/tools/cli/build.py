@@ -91,7 +91,7 @@ class BuildResult:
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     """Returns the outputs asked for; refuses those whose format or directory does not exist."""
-    from aidl_lang.export.cut_list import is_pattern
+    from aidl_lang.export.job import is_pattern
 
     names = arguments.output or [_beside(arguments.file, _DEFAULT_FORMAT)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
@@ -131,7 +131,7 @@ def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Writes all outputs once all could be made, over nothing that was read. Returns names and remarks."""
-    from aidl_lang.export.cut_list import contents, is_pattern
+    from aidl_lang.export.job import contents, is_pattern
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []

@@ -1,4 +1,6 @@
-"""Functions as other languages write them, and words too many, recognised by their tokens alone."""
+"""What is put right in the tokens before they are parsed: functions as other languages write them, words too
+many, lists that begin statements.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,7 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    opening,
     replaced,
     statement_end,
     wrong,
@@ -194,3 +197,65 @@ def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token
     for i, parameter in enumerate(parameters):
         tokens += [Token(",", ",", *place), parameter] if i else [parameter]
     return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]
+
+
+# --- Lists that begin statements.
+
+
+def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
+    """Puts `constrain` before each list that begins a statement, such as `[a, b].above(c)`, where the grammar
+    wants it. Among constraints that says nothing new; elsewhere E0125 tells of a line that would go on with
+    the one above as an index, and E0101 of another statement that begins with a list.
+    """
+    found: list[tuple[int, Diagnostic | None]] = []
+    among_constraints: list[bool] = []  # for each open block
+    opened: list[str] = []  # a block in a call is one of arguments, which may be lists
+    asserting = False  # the comma before the message of an `assert` ends nothing
+    for n, token in enumerate(tokens):
+        asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
+        begins = token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened
+        if begins and len(found) < _MOST_LISTS:
+            before = tokens[n - 1].kind if n else ";"
+            joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
+            ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
+            close = closing(tokens, n) if joined or ends else -1
+            after = [t.kind for t in tokens[close + 1 : close + 3]]
+            among = among_constraints[-1:] == [True]
+            may_go_on = not joined or (among and tokens[n + 1].kind != "NUMBER")
+            if close > 0 and (after == [".", "CALL"] or (may_go_on and after[0] in _GO_ON)):
+                found.append((n, None if among else _list_as_statement(source, token, joined)))
+        if token.nesting > 0:
+            if token.kind == "{":
+                among_constraints.append(among_constraints[-1:] == [True] or _holds_constraints(tokens, n))
+            opened.append(token.kind)
+        elif token.nesting < 0 and opened and opened.pop() == "{":
+            among_constraints.pop()
+    for n, _ in reversed(found):
+        tokens.insert(n, Token("constrain", "constrain", tokens[n].start, tokens[n].start))
+    return [diagnostic for _, diagnostic in found if diagnostic is not None]
+
+
+def _holds_constraints(tokens: list[Token], brace: int) -> bool:
+    """Tells whether a block is that of `constrain { … }` or of the definition of a constraint."""
+    if brace and tokens[brace - 1].kind == "constrain":
+        return True
+    if not brace or tokens[brace - 1].kind != ")":
+        return False
+    n = opening(tokens, brace - 1)
+    return n > 0 and tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
+
+
+_MOST_LISTS = 100
+_STATEMENT_ENDS = ("{", "}", ";", ",")
+_GO_ON = (".", "==", "<=", ">=", "<", ">", "in")
+
+
+def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagnostic:
+    span, place = Span(source, token.start, token.end), Span(source, token.start, token.start)
+    fix = replaced("put `constrain` before it", place, "constrain ")
+    if not joined:
+        return Diagnostic("E0101", "a statement cannot begin with `[`", span, fix=fix)
+    message = "a line that begins with `[` continues the line above"
+    label = "read as an index of the expression above"
+    hint = "newlines end no statement; with `constrain` before it a list begins one"
+    return Diagnostic("E0125", message, span, label, hints=(hint,), fix=fix)
