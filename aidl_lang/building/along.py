@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import (
+    Place,
     clockwise,
     direction,
     distance,
@@ -21,7 +22,6 @@ from aidl_lang.building.curves import (
 )
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.motion import Place
 from aidl_lang.common.records import record
 
 # --- Ways along cubics: places at lengths of the curve, over expressions.

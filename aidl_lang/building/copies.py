@@ -9,21 +9,25 @@ from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, spelled_out
 from aidl_lang.building.coerce import as_written
-from aidl_lang.building.curves import DIRECTIONS, clockwise, translate, view, xy
-from aidl_lang.building.members import read
-from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
-from aidl_lang.building.motion import (
+from aidl_lang.building.curves import (
+    DIRECTIONS,
     NOWHERE,
     STILL,
     Motion,
     Place,
     after,
+    clockwise,
     mirrored_at_line,
     mirrored_at_point,
     opposite,
+    translate,
     translation,
     turned,
+    view,
+    xy,
 )
+from aidl_lang.building.members import read
+from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
 from aidl_lang.building.outlines import keep_unnamed
 from aidl_lang.building.state import (
     Arguments,

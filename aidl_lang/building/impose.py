@@ -10,7 +10,7 @@ from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measure
 from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
-from aidl_lang.building.curves import defining
+from aidl_lang.building.curves import ask_to_turn, defining
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.model import (
     Assertion,
@@ -21,7 +21,6 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.motion import ask_to_turn
 from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.values import (
     Array,

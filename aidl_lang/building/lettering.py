@@ -10,11 +10,10 @@ from aidl_lang.building.state import Arguments, Interpreter
 from aidl_lang.building.values import Num, TextVal, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
-from aidl_lang.common.files import FONTS
 from aidl_lang.common.font_files import FontError
 from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
-from aidl_lang.common.world import FileError, ReadFailure, relative_to
+from aidl_lang.common.world import FONTS, FileError, ReadFailure, relative_to
 from aidl_lang.syntax import ast
 
 # --- The font that a text names: one that ships with the package, or a file beside the program.

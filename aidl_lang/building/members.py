@@ -10,8 +10,8 @@ from aidl_lang.building.boxes import Box
 from aidl_lang.building.coerce import as_written, entry, may_read
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import positions, refuses_measure
+from aidl_lang.building.curves import unlock
 from aidl_lang.building.model import Condition, Constraint, Geometry, Structure, convert_point
-from aidl_lang.building.motion import unlock
 from aidl_lang.building.outlines import finish_size
 from aidl_lang.building.params import read_param
 from aidl_lang.building.state import (

@@ -23,8 +23,8 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CONNECTING, CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
-from aidl_lang.checking.resolving.imports import meant
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.imports import meant
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
     PEERS,

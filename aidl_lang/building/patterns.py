@@ -12,10 +12,9 @@ from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
-from aidl_lang.building.curves import defining, xy
+from aidl_lang.building.curves import NOWHERE, Motion, Place, defining, turned, xy
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
-from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,

@@ -48,8 +48,8 @@ from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.files import WHOLE
 from aidl_lang.common.source import Span
+from aidl_lang.common.world import WHOLE
 from aidl_lang.syntax import ast
 
 # --- Ready-made cuts that are written in a hole: there they are circles, without depth or thread.

@@ -29,8 +29,8 @@ from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
+    from aidl_lang.building.curves import Motion
     from aidl_lang.building.model import Condition, Geometry, Structure
-    from aidl_lang.building.motion import Motion
 
 T = TypeVar("T")
 

@@ -14,7 +14,7 @@ from aidl_lang.building.model import Comparison, Condition, Geometry, Structure
 from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.building.values import Num, PointVal, Value, members
 from aidl_lang.checking import units
-from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.symbols import SymbolKind
 from aidl_lang.common.diagnostics import Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record

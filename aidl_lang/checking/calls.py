@@ -11,8 +11,8 @@ from aidl_lang.checking.binding import outcomes
 from aidl_lang.checking.builtins import COPYING, MATH, PATTERNS, is_word
 from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined, result
 from aidl_lang.checking.resolve import made_by
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.rules import shown
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import EDITS, FINISHES, PRIMITIVE
 from aidl_lang.checking.calls import arguments
+from aidl_lang.checking.complaints import meant_outside
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolve import made_by
-from aidl_lang.checking.resolving.complaints import meant_outside
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.rules import shown
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import AnyType, GeometryType, NumberType, StructureType, TruthType
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span

@@ -19,12 +19,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from aidl_lang.checking import complaints
 from aidl_lang.checking.allowing import allowances
 from aidl_lang.checking.builtins import ATTRIBUTES, DERIVING, EVERYWHERE, PATTERNS, WORDED, is_word
-from aidl_lang.checking.library import Library, signature
-from aidl_lang.checking.resolving import complaints
-from aidl_lang.checking.resolving.complaints import ATTRIBUTES_MEANT, without_idle
-from aidl_lang.checking.resolving.imports import (
+from aidl_lang.checking.complaints import ATTRIBUTES_MEANT, without_idle
+from aidl_lang.checking.imports import (
     ImportedModules,
     hole_calls,
     load_imports,
@@ -32,7 +31,8 @@ from aidl_lang.checking.resolving.imports import (
     with_inner_imports,
     with_placed_cuts,
 )
-from aidl_lang.checking.resolving.symbols import (
+from aidl_lang.checking.library import Library, signature
+from aidl_lang.checking.symbols import (
     UNKNOWNS,
     Resolution,
     Symbol,
@@ -43,9 +43,9 @@ from aidl_lang.checking.resolving.symbols import (
 )
 from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label, ordered
-from aidl_lang.common.files import WHOLE
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
+from aidl_lang.common.world import WHOLE
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:

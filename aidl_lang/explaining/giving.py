@@ -24,8 +24,7 @@ from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.dependence import Redundancy
-from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op, mentioned
 from aidl_lang.solver.problem import Failure
 from aidl_lang.solver.questions import Reason, reasons
 

@@ -17,7 +17,6 @@ from aidl_lang.building.wording import Wording, differences, givens, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.staying import leaving_notes
 from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region, area, perimeter
@@ -51,6 +50,8 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
+    from aidl_lang.explaining.staying import leaving_notes
+
     found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.files import csv_text
 from aidl_lang.common.prose import first_few, fixed
 from aidl_lang.common.records import record
+from aidl_lang.common.world import csv_text
 from aidl_lang.export.cuts import outlines
 from aidl_lang.export.job import ON_SHEETS, Exported, ExportError, Job
 from aidl_lang.export.marks import Group, Picture

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver import Settings, Stages
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
-from aidl_lang.solver.expression import mentioned
+from aidl_lang.solver.expression import Bools, Floats, mentioned
 from aidl_lang.solver.group import Group
 from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import (
     GroupFailure,
     Problem,

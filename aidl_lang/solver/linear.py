@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.operations import Bools, Floats, Ints
+from aidl_lang.solver.expression import Bools, Floats, Ints
 
 if TYPE_CHECKING:
     from aidl_lang.solver.sparse import SparseMatrix

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from aidl_lang.common.records import record
+from aidl_lang.solver.expression import Floats, Ints
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Relation
 from aidl_lang.solver.valuation import FLAT, gradients
 

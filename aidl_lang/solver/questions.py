@@ -8,10 +8,10 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.conflicts import conflict
+from aidl_lang.solver.expression import Floats
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.loosening import Scope
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Concession, Problem, Settings
 from aidl_lang.solver.refuting import Linearised, Relaxation
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
 from aidl_lang.solver import expression
+from aidl_lang.solver.expression import Bools, Floats, Ints, Op
 from aidl_lang.solver.linear import Sparse
-from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem, Settings, StageReport, depths
 
 # --- Groups that ride along: those that no constraint names keep their place in the group around them.

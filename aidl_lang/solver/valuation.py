@@ -18,9 +18,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, ArrayFreezing, Schedule
-from aidl_lang.solver.expression import Tape, below
+from aidl_lang.solver.expression import BRANCHING, PARTIALS, VALUE, Bools, Floats, Ints, Op, Tape, below
 from aidl_lang.solver.linear import Sparse, starts_of
-from aidl_lang.solver.operations import BRANCHING, PARTIALS, VALUE, Bools, Floats, Ints, Op
 
 Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
 """Function, first operand (all of them for more than two), second operand or -1, result."""

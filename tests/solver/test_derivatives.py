@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, operations
 from aidl_lang.solver.array_program import ArrayFreezing, Schedule
+from aidl_lang.solver.expression import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.operations import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
 from aidl_lang.solver.valuation import Valuation, evaluate, linearise
 
 from .check import values_of

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from aidl_lang.solver import Problem, Solution, Status, dependence, solve, valuation
 from aidl_lang.solver import analysis as mobility
 from aidl_lang.solver.analysis import Freedom, analyse
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op
 from tests.amount import tries
 
 from .build import E, Model, distance

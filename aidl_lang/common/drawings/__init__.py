@@ -15,9 +15,9 @@ from aidl_lang.common.drawings.drawing import (
     Remark,
     Trace,
 )
-from aidl_lang.common.files import WHOLE
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.world import WHOLE
 
 MOST_NAMES = 250
 _LONGEST_NAME = 60

@@ -10,10 +10,10 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from aidl_lang.common.files import WHOLE
 from aidl_lang.common.font_files import Curve, Vec, point_of
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
+from aidl_lang.common.world import WHOLE
 
 if TYPE_CHECKING:
     from ezdxf.math import BSpline

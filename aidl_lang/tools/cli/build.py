@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import AidlError, TooLongError
-from aidl_lang.common.files import is_data, may_be_read
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
+from aidl_lang.common.world import is_data, may_be_read
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (

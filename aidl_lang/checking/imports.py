@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.builtins import COPYING, CUTS, OUTLINES, PATTERNS
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolving.symbols import SymbolScope
+from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.files import PROGRAM, WHOLE, is_drawing
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import FileError, ReadFailure, World, relative_to
+from aidl_lang.common.world import PROGRAM, WHOLE, FileError, ReadFailure, World, is_drawing, relative_to
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.checking.resolving.imports import ImportedDrawing
+    from aidl_lang.checking.imports import ImportedDrawing
     from aidl_lang.common.world import World
 
 
