@@ -23,7 +23,6 @@ from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
-from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
@@ -423,6 +422,7 @@ def _drawn(
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
     """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
+    from aidl_lang.geometry.picturing import pictured
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
     with watch("asserts"):

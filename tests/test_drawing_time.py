@@ -72,7 +72,7 @@ def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.geometry.readout._Reader.geometry", late)
+    monkeypatch.setattr("aidl_lang.geometry.picturing._Reader.geometry", late)
     (told,) = pipeline.compile(SourceFile("plates.aidl", PLATES)).diagnostics
     assert told.code == "E0805"
     assert told.span is not None

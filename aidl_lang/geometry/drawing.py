@@ -32,7 +32,7 @@ from aidl_lang.geometry.bodies import (
     welded_gaps,
     without_gaps,
 )
-from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
 from aidl_lang.geometry.curves import (
     Bounds,
     Piece,
@@ -54,7 +54,6 @@ from aidl_lang.geometry.legibility import (
     overhanging_notes,
     unseen_note,
 )
-from aidl_lang.geometry.letters import lettered_region
 from aidl_lang.geometry.network import GRID, Network, with_finer_chords
 from aidl_lang.geometry.notes import (
     detached_notes,
