@@ -16,8 +16,8 @@ from aidl_lang.building.curves import STILL, Motion, of_frame
 from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
+from aidl_lang.building.members import read_param
 from aidl_lang.building.model import Frame, Geometry, Structure
-from aidl_lang.building.params import read_param
 from aidl_lang.building.state import (
     Env,
     Executor,

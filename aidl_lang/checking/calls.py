@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins, units
 from aidl_lang.checking.binding import outcomes
-from aidl_lang.checking.builtins import COPYING, MATH, PATTERNS, is_word
+from aidl_lang.checking.builtins import COPYING, EDITS, FINISHES, MATH, PATTERNS, is_word
 from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined, result
 from aidl_lang.checking.resolve import made_by
 from aidl_lang.checking.rules import shown
@@ -388,3 +388,22 @@ def parameter_of(index: int, fits: Sequence[Binding]) -> str | None:
     """Returns the parameter that gets an argument, if all fitting overloads agree on it."""
     found = {fit.parameter_of(index) for fit in fits}
     return found.pop() if len(found) == 1 else None
+
+
+_OPERATIONS = EDITS | FINISHES
+"""Calls that are statements of their own: they edit the drawing, and are no conditions."""
+
+
+def check_operation(infer: Inference, node: ast.Expression) -> bool:
+    """Checks the arguments of an operation on geometry. Returns whether the statement is one."""
+    if not isinstance(node, ast.Call) or infer.called(node) not in _OPERATIONS:
+        return False
+    infer.fact(node)
+    return True
+
+
+def operation(infer: Inference, node: ast.Expression) -> str | None:
+    """Returns the name of the operation that an expression calls; None for anything else."""
+    if not isinstance(node, ast.Call) or isinstance(infer.fact(node).type, TruthType):
+        return None
+    return name if (name := infer.called(node)) in _OPERATIONS else None

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CONNECTING, DERIVING, FOLLOWED, PATTERNS, PRIMITIVE
-from aidl_lang.checking.calls import arguments
+from aidl_lang.checking.calls import arguments, operation
 from aidl_lang.checking.complaints import used_early
-from aidl_lang.checking.conditions import operation
 from aidl_lang.checking.facts import NOTHING_READ, Fact, ReadPlace, is_point, of_symbol
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.rules import shown
