@@ -15,7 +15,7 @@ from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
-    from aidl_lang.checking.allowing import Allowance
+    from aidl_lang.checking.symbols import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exporter
@@ -170,7 +170,7 @@ class Compiled:
         """Returns the notes on a use of the drawing that the program does not want unsaid."""
         if not self.allowances:
             return tuple(notes)
-        from aidl_lang.checking.allowing import audible
+        from aidl_lang.checking.symbols import audible
 
         return tuple(audible(notes, self.allowances))
 

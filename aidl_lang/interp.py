@@ -27,10 +27,10 @@ from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits, Interpreter
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.structures import run_module
 from aidl_lang.checking import library as library_module
-from aidl_lang.checking.allowing import Allowance
 from aidl_lang.checking.builtins import ROTATION
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.subset import Variant, adapted
+from aidl_lang.checking.symbols import Allowance
 from aidl_lang.common.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.records import record

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang import parser
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
-from aidl_lang.checking.allowing import IDLE, audible, idle
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.subset import adapted
-from aidl_lang.checking.symbols import SymbolKind
+from aidl_lang.checking.symbols import IDLE, SymbolKind, audible, idle
 from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, ordered, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working

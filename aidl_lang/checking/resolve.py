@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking import complaints
-from aidl_lang.checking.allowing import allowances
 from aidl_lang.checking.builtins import ATTRIBUTES, DERIVING, EVERYWHERE, PATTERNS, WORDED, is_word
 from aidl_lang.checking.complaints import ATTRIBUTES_MEANT, without_idle
 from aidl_lang.checking.imports import (
@@ -38,6 +37,7 @@ from aidl_lang.checking.symbols import (
     Symbol,
     SymbolKind,
     SymbolScope,
+    allowances,
     library_scope,
     word_meant,
 )

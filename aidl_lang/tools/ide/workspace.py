@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.allowing import audible
 from aidl_lang.checking.imports import SUFFIX, ImportedDrawing, digest
-from aidl_lang.checking.symbols import Resolution
+from aidl_lang.checking.symbols import Resolution, audible
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.common.names import fold
