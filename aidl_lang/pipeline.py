@@ -11,6 +11,7 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
+from aidl_lang.building.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.resolve import resolve
@@ -22,7 +23,6 @@ from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
-from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
+    from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import Solution
-    from aidl_lang.solver.riding import Memory
 
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Any
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.hierarchy import solve
+    from aidl_lang.solver.hierarchy import Memory, solve
     from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, Solution, Status
-    from aidl_lang.solver.riding import Memory
 
 __all__ = ["Constraint", "Memory", "Problem", "Relation", "Row", "Settings", "Solution", "Status", "solve"]
 

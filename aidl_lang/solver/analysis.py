@@ -14,9 +14,9 @@ from aidl_lang.common.arrays import each_once, others
 from aidl_lang.common.records import record
 from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
 from aidl_lang.solver.expression import Bools, Floats, Ints
+from aidl_lang.solver.hierarchy import Riding, groups_riding
 from aidl_lang.solver.linear import DOUBT, RANK, Sparse
 from aidl_lang.solver.problem import Problem, Solution
-from aidl_lang.solver.riding import Riding, groups_riding
 from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
 # --- The motions that leave every equation as it is, as far as a reader can see them.

@@ -25,11 +25,11 @@ from aidl_lang.solver import newton
 from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
+from aidl_lang.solver.hierarchy import riding_depths
 from aidl_lang.solver.linear import stacked_least_norm
 from aidl_lang.solver.loosening import MOST, NAMES, STILL
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
-from aidl_lang.solver.riding import riding_depths
 from aidl_lang.solver.valuation import Sorted, components
 
 ROUNDS = 4

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export.job import Options
     from aidl_lang.pipeline import Compiled
+    from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import StageReport
-    from aidl_lang.solver.riding import Memory
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -273,7 +273,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
     if arguments.file == files.STANDARD:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
-    from aidl_lang.solver.riding import Memory
+    from aidl_lang.solver.hierarchy import Memory
 
     targets(arguments)
 

@@ -24,7 +24,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, normalize
 from aidl_lang.parser import Parsed
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.typecheck import Program

@@ -21,7 +21,7 @@ from aidl_lang.geometry.curves import Bounds, Circle, Piece, Vec, bounds, is_fin
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,
