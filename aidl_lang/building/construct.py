@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
-from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.curves import direction, distance, polar
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
+from aidl_lang.building.wording import all_of, compare_numbers
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.types import PRIMITIVES, NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
@@ -24,7 +24,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings.drawing import Trace
+    from aidl_lang.common.drawings import Trace
 
 # --- Arcs given by three points without names: centre, start and end, with a warning if they hardly can be.
 

@@ -10,7 +10,6 @@ from aidl_lang.building import coerce, copies, patterns
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, look, numeric
-from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
@@ -32,6 +31,7 @@ from aidl_lang.building.values import (
     number,
     point,
 )
+from aidl_lang.building.wording import compare_numbers
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.colors import css_color, rgb, similar_colors

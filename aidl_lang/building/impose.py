@@ -9,7 +9,6 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
 from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
-from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.curves import ask_to_turn, defining
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.model import (
@@ -35,7 +34,21 @@ from aidl_lang.building.values import (
     number,
     type_of,
 )
-from aidl_lang.building.wording import Read, Wording, compared, differences, givens, rounding, sides
+from aidl_lang.building.wording import (
+    EXACT,
+    RELATIONS,
+    Read,
+    Wording,
+    all_of,
+    compare_numbers,
+    compared,
+    differences,
+    givens,
+    placed_by,
+    rounding,
+    sides,
+    value_unknowns,
+)
 from aidl_lang.checking import rules
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH

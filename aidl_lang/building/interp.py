@@ -19,13 +19,13 @@ from zlib import crc32
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import settle_clips
 from aidl_lang.building.calls import call
-from aidl_lang.building.conditions import holds
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Comparison, Constraint, Model, Structure
 from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits, Interpreter, Stop
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.structures import run_module
+from aidl_lang.building.wording import holds
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.builtins import ROTATION
 from aidl_lang.checking.resolve import resolve

@@ -11,7 +11,6 @@ from aidl_lang.building import boxes, curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import Box
 from aidl_lang.building.coerce import as_written, constant, entry, may_read
-from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import positions, refuses_measure
 from aidl_lang.building.curves import unlock
 from aidl_lang.building.model import Condition, Constraint, Geometry, Knob, Structure, convert_point
@@ -47,6 +46,7 @@ from aidl_lang.building.values import (
     number,
     type_of,
 )
+from aidl_lang.building.wording import compare_numbers
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.binding import MEMBERS
 from aidl_lang.checking.builtins import FINISHES, ROTATION

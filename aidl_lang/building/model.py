@@ -23,7 +23,7 @@ from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
-    from aidl_lang.common.drawings.drawing import Trace
+    from aidl_lang.common.drawings import Trace
     from aidl_lang.common.font_files import Curve
     from aidl_lang.common.lettering import Glyph
 

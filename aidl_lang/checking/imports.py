@@ -23,7 +23,7 @@ from aidl_lang.common.world import PROGRAM, WHOLE, FileError, ReadFailure, World
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace
+    from aidl_lang.common.drawings import DrawingError, OutlineFile, Trace
 
 # --- Ready-made cuts, such as `clearance_hole("m3")`: holes in a solid or an assembly, elsewhere outlines.
 #
@@ -396,7 +396,7 @@ class _Loader:
         if self.world is None:
             self._unread(statement)
             return None
-        from aidl_lang.common.drawings.drawing import DrawingError
+        from aidl_lang.common.drawings import DrawingError
 
         try:
             data = self.world.read_bytes(path)

@@ -9,11 +9,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.boxes import SIDES, constrain_sources
-from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.building.wording import Wording, differences, givens, rounding
+from aidl_lang.building.wording import RELATIONS, Wording, differences, givens, holds, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span

@@ -23,9 +23,9 @@ from aidl_lang.common.source import Span
 from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver.conflicts import nearby_solution
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Failure
-from aidl_lang.solver.questions import nearby_solution
 from aidl_lang.syntax import ast
 
 _MOST = 64

@@ -21,10 +21,10 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.solver import Settings, Solution, solve
+from aidl_lang.solver.conflicts import equations, nearby_solution, residual, shortfall
 from aidl_lang.solver.expression import Floats
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import GroupFailure
-from aidl_lang.solver.questions import equations, nearby_solution, residual, shortfall
 from aidl_lang.syntax import ast
 
 _MOST = 12

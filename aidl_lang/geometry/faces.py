@@ -38,7 +38,7 @@ from aidl_lang.geometry.sections import (
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings.drawing import Element, Stroke
+    from aidl_lang.common.drawings import Element, Stroke
 
 # --- Outlines of drawings of other programs, as exact curves, and what they enclose.
 #

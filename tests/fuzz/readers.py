@@ -30,8 +30,7 @@ from pygls.exceptions import JsonRpcInternalError
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawings import outlines
-from aidl_lang.common.drawings.drawing import DrawingError
+from aidl_lang.common.drawings import DrawingError, outlines
 from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
