@@ -1,4 +1,4 @@
-"""The primitives before they are solved: what defines them, their pieces, and how far they reach."""
+"""The primitives before they are solved: what defines them, their pieces, and how far they reach; motions."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ touches passes on in silence, so that one run reports all errors and still yield
 
 The work is done in `building/`: `structures` (files and roots, too), `statements`, `evaluate` (expressions),
 `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers), `impose`
-(constraints), `anchors` (what they move first).
+(constraints). The stages before come along: text → Program → Model, with all diagnostics that they can give.
 """
 
 from __future__ import annotations
@@ -176,6 +176,14 @@ def build(
     static += [violation.diagnostic(built.written) for violation in program.violations]
     return built, within_limit(ordered(adapted([*static, *built.diagnostics], settings.variant)))
 
+
+# --- The anchor among equals, which is held: one of `row(a, b, c)`, of `symmetric(a, b)`, of `same_width(a,
+# b)`.
+#
+# A call over equals says of none that it stays. Any of them that something else places is the anchor, so it
+# can be chosen only when all constraints are known. If nothing places any, the one stays that is dearest to
+# move: one whose content is exact in its frame, then one by which others are placed, then the last. An anchor
+# held this way may still move, only later: holding it is what the solver tries first.
 
 _NUDGE = 1e-4
 """The part by which a position is moved to see whether a comparison feels it: too little to pass another."""

@@ -1,4 +1,4 @@
-"""Names and members: bindings read from the place of use, and the fields behind a dot."""
+"""Names and members: bindings read from the place of use, and the fields behind a dot; params."""
 
 from __future__ import annotations
 
@@ -413,6 +413,8 @@ def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) ->
     it.report("E0503", message, node.index, hints=hints, fix=fix)
     return NOTHING
 
+
+# --- Knobs: a `param` with its range, its value from the program or from outside.
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)\s*")
 _RANGE_SLACK = 1e-9

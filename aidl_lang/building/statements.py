@@ -1,4 +1,4 @@
-"""The effect of each statement of a body when its line is reached."""
+"""The effect of each statement of a body when its line is reached, and the names given to values."""
 
 from __future__ import annotations
 

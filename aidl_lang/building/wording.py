@@ -1,4 +1,4 @@
-"""Statements that constrain, kept so that they can be read again in other words and in numbers."""
+"""Conditions, and statements that constrain, kept to be read again in other words and in numbers."""
 
 from __future__ import annotations
 
@@ -35,6 +35,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import limited_to
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+# --- Conditions: comparing values, joining comparisons, and testing whether a condition holds.
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
 """Relations that can constrain; `!=` can only be asserted or tested."""

@@ -451,6 +451,8 @@ def _bring(source: SymbolScope, scope: SymbolScope, names: set[str] | None) -> N
             scope.aliases.setdefault(name, alias)
 
 
+# --- The step that enters the declarations of a block into its scope, before any of its names is looked up.
+
 T = TypeVar("T")
 Branch: TypeAlias = tuple[tuple[int, bool], ...]
 """The `if`s around a declaration, and which way each has to go for it."""

@@ -280,7 +280,10 @@ class _Joined(dict[str, list[Signature]]):
         return self[name] if name in self else default  # noqa: SIM401 (that would be this method)
 
 
-# --- Notes and warnings that a program wants unsaid ---
+# --- Notes and warnings that a program wants unsaid: `@allow("N0602")` before a statement.
+#
+# What is silenced has its place within the statement and is no error. One that silenced nothing is told, once
+# it is known what there was to tell.
 
 IDLE = "N0201"
 

@@ -1,4 +1,4 @@
-"""Breaches of the rules of validity, and their fixes: statements moved to another structure."""
+"""Validity of references: breaches of its rules, and their fixes: statements moved to another structure."""
 
 from __future__ import annotations
 
@@ -456,6 +456,18 @@ def _root(node: ast.Node) -> ast.Node:
 def _whose(written: str, owner: str) -> str:
     """Returns the words for where a reference leads; a structure itself is only said to lie outside."""
     return "lies outside it" if owner == f"`{written}`" else f"belongs to {owner}"
+
+
+# --- Validity of references (language reference: validity): the unknowns that each expression may read.
+#
+# Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may
+# reach further, since the instantiating structure ties them by equalities; geometry derived for good, as by
+# `mirror`, `copy` and `offset`, may be made of geometry anywhere further up, of its points and sizes too.
+# Rule 2: a constraint references only the subtree of the structure that holds it.
+#
+# A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be
+# stated, and mends the program: what reads too far becomes a first guess, and the ancestor gets the
+# constraint.
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:

@@ -195,6 +195,9 @@ def apply_fixes(source: SourceFile, diagnostics: Iterable[Diagnostic]) -> tuple[
     return text, applied
 
 
+# --- The limit on the time that working out, measuring or comparing a drawing may take.
+
+
 class TooLongError(AidlError):
     """Work on a drawing takes too long: names it and, if known, the part of the program to blame."""
 

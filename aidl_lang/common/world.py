@@ -1,4 +1,4 @@
-"""The world that all files are read through, so that the core is one for disk, memory, editor and browser.
+"""Files, and the world that they are read through, so that the core is one for disk, memory and browser.
 
 Paths are relative to the root of a project and written with `/`. Nothing outside the root can be read,
 whatever `..`, absolute paths or symbolic links say.

@@ -280,6 +280,8 @@ def rendered(pages: Sequence[Picture], suffix: str, options: Options, title: str
     return Exported(data, tuple(further), notes)
 
 
+# --- What a program says and a file cannot hold, or would hold twice.
+
 _Holder = SolvedStructure | SolvedGeometry
 _NAMED = 6
 _UNLINED = "stroke(none)"

@@ -466,6 +466,14 @@ def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
         start = None
 
 
+# --- Closes outlines with small gaps: open ends of curves that lie close together become one, and each gap is
+# reported.
+#
+# Numbers written by hand have two or three decimals, so the ends of two curves that are meant to meet may be
+# a hundredth of a millimetre apart. One of them is moved onto the other, and its curve changes as little as
+# that takes: it stays a line, an arc, a Bézier curve. Only curves that enclose nothing otherwise are joined,
+# and only where they enclose something then.
+
 WIDEST = 5e-4
 """Width of a gap that is closed, relative to the size of the drawing: two decimals in a drawing of 30 mm."""
 WIDEST_MM = 0.05

@@ -496,6 +496,10 @@ def _compare(network: Network, a: Solid, b: Solid) -> Contact:
     return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)
 
 
+# --- The areas of letters that a drawing fills, with their counters open; letters with overlapping contours
+# united; letters of stencils, with bridges to what they enclose.
+
+
 def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
     other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.

@@ -1,4 +1,4 @@
-"""Makes the drawing of a solution: names with places, regions, and diagnostics."""
+"""Makes the drawing of a solution: numbers read off, names with places, regions, and diagnostics."""
 
 from __future__ import annotations
 
@@ -100,6 +100,8 @@ def _most_drawn(model: SolvedModel) -> Span | None:
                 made[geometry.span] += sum(1 for each in geometry.walk() if each.curve is not None)
     return max(made, key=lambda span: made[span], default=None)
 
+
+# --- Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root.
 
 _FULL_TURN = 2 * math.pi
 

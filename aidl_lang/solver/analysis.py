@@ -330,7 +330,7 @@ def _stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: 
 # A motion is a direction in the null space of the Jacobian of the equations that hold, over all unknowns
 # that are not kept sizes. Only what can be seen counts: degrees of freedom are the rank of the observables'
 # Jacobian on that space, so that a frame and its contents moving against each other do not count. An
-# inequality takes no freedom away. What no constraint names rides along, and adds none (see `riding`).
+# inequality takes no freedom away. What no constraint names rides along, and adds none (see `hierarchy`).
 
 SINGULAR = 1e-7
 """Slope of a row, in units of its scale, below which it counts as none and says nothing of the constraint."""

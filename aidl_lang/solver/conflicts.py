@@ -394,6 +394,8 @@ class _ConflictSearch:
         return _SearchResult(verdict.end, reached, verdict.violation)
 
 
+# --- Questions about a problem beyond its solution: what is lacking, what is near, why something gave way.
+
 SEARCH_RESTARTS = 3
 """Perturbed starts."""
 FEW_ROWS = 40

@@ -1,7 +1,7 @@
 """Expressions over the unknowns as one shared graph: the tape.
 
 A tape is a directed acyclic graph in plain arrays, each node after its operands, equal nodes stored once.
-`TapeBuilder` makes it; `operations` says what each node means; `freezing` evaluates parts of it.
+`TapeBuilder` makes it; `freezing` evaluates parts of it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
+
+# --- The operations of the tape: values and partial derivatives, safe on any input.
+#
+# Values follow IEEE arithmetic: a quotient by zero is infinite, a root of a negative number is NaN, and
+# nothing raises or warns. A residual that is not finite never counts as satisfied, and Newton's method never
+# steps onto one. Partial derivatives, on the other hand, are always finite, and at singular places they are
+# chosen so that Newton's method can leave them:
+#
+#     sqrt   at 0                   1 (the true slope is infinite, and its Newton step zero)
+#     hypot  at (0, 0)              (1, 0): coincident points that shall be apart part along x
+#     atan2  at (0, 0)              1 in y: a line without length is taken to point along +x
+#     abs    at 0                   1
+#     asin, acos at -1 and 1        the slope is capped at 1e8
+#
+# Each operation has a scalar form; those that are frequent have one on arrays besides, of the same meaning.
+# Functions of one operand take a second and ignore it, so that both are called alike.
 
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.intp]

@@ -1,7 +1,7 @@
 """How a group is solved: few parts give way, of these few things, and these by the shortest way.
 
 The paper (appendix B) solves a structure in two stages: translations of its children first, then the
-geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`tiers`) that says
+geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`loosening`) that says
 how dear it is to move: what the constraints place; what else is the group's own, the frames of its
 children among it; frames further down; what lies inside of parts; what rides along with its part, because
 constraints name one thing of that part at most; sizes as written. But no stage frees a whole tier:

@@ -1,4 +1,4 @@
-"""The order of solving: groups from the leaves to the root, and at each group the stages.
+"""The order of solving: groups from the leaves to the root, at each the stages; what need not be solved.
 
 Groups of one depth are solved all at once (`levels`) where there are many rows, else one by one (`group`,
 which says what the stages are).

@@ -166,7 +166,7 @@ class Levels:
         return labels[:count], labels[count:]
 
     def _tiers(self, depth: int, held: Bools) -> Ints:
-        """Returns the tier (see `tiers`) of each unknown (n,) below a group at `depth`, as one number."""
+        """Returns the tier (see `loosening`) of each unknown (n,) below a group at `depth`, as one number."""
         problem = self.problem
         level = self._unknown_depth - depth
         pairs = self.problem.placed[:, held[problem.placed[0]]]

@@ -327,6 +327,8 @@ def _scaled(factors: Floats) -> Floats:
     return scaled
 
 
+# --- A matrix by its entries, row by row, and the ranks of such.
+
 RANK = 1e-6
 """Singular values of unit rows above this count towards the rank."""
 DOUBT = 1e-8

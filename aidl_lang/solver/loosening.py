@@ -32,6 +32,27 @@ if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
 
+# --- The stages at which the unknowns of a group become free.
+#
+# At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
+#
+#     (1, 0)  own position that a constraint of the group places
+#     (1, 1)  own position that only a bound which holds anyway would place
+#     (1, 2)  own length or direction between two points of which a constraint places one
+#     (2, 0)  own position, or translation of a child's frame (owned by the group, too)
+#     (2, 1)  the same of a frame that stands where its content counts as exact
+#     (3, d)  translation of a frame, owned by a group d levels below
+#     (4, d)  other position of a group d levels below, or such a length or direction
+#     (5, d)  position of what rides along with its parent, since no constraint names it
+#     (6, 0)  kept size that a constraint places, at any level
+#     (6, 1)  own kept size
+#     (6, 1 + d)  kept size of a group d levels below
+#     (9, 1)  what is in a group that is sealed: it is never freed
+#
+# A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
+# constraints of descendants that mention something free. Those constraints are the ones that a move could
+# break, and they join the system; a descendant that nothing outside mentions therefore never moves.
+
 Tier: TypeAlias = tuple[int, int]
 
 PLACED: Tier = (1, 2)

@@ -371,6 +371,12 @@ def _is_finite(number: float) -> bool:
     return number - number == 0.0
 
 
+# --- Gradients of many nodes at one place, as sparse matrices; these in their connected parts.
+#
+# They are accumulated forward as dictionaries, which for a drawing is quickest; for large models in reverse
+# for all roots together, by the programs on arrays that solve them. Newton's method, which comes back to the
+# same rows again and again, does not use this.
+
 Gradient: TypeAlias = dict[int, float]
 """Partial derivative by unknown; unknowns that are missing have none."""
 

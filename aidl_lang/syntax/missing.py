@@ -1,4 +1,4 @@
-"""Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks."""
+"""Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks, brackets."""
 
 from __future__ import annotations
 

@@ -56,6 +56,13 @@ from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
+# --- Completes the dimensions of a part, so that it can be made from them alone, and nothing is said twice.
+#
+# Dimensions are taken in their order as long as they tell something new (see `sketch`); then what is still
+# missing is added: sizes of what is round, then the levels of edges and centres from the left and lower end
+# of the part, or from the centre of what is round there, or across the axis of a symmetric part, then
+# corners.
+
 Group = tuple[Dimension, ...]
 
 DERIVED = "derived"

@@ -1,7 +1,7 @@
 """The motions that are left, in words: those of the solver, taken apart into simple ones.
 
 The solver tells for each part of the model which velocities are possible for what is drawn. Here simple
-velocities are tried in turn (`telling`): of points, geometry, structures and of all that keeps together in
+velocities are tried in turn: of points, geometry, structures and of all that keeps together in
 every motion, the smallest first, a slide along an axis or another direction, and a turn; then changes of
 single parameters, then growth. Each that is possible and new is told; what is left over is told as things
 that move together. That the whole drawing can move as one is known beforehand, so nothing is told of it.
