@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 
 from aidl_lang.building import curves
@@ -55,6 +55,7 @@ from aidl_lang.building.values import (
     TextVal,
     Value,
     kind_of,
+    leaves,
     members,
     number,
     point,
@@ -356,7 +357,6 @@ def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: 
         case Structure():
             return _of_structure(it, value, copier.motion, node, env)
         case StructureCopy(source, first):
-            assert isinstance(first, Motion)
             return StructureCopy(source, after(first, copier.motion), node)
         case Instantiation():
             return StructureCopy(value, copier.motion, node)
@@ -384,12 +384,8 @@ def _of_structure(it: Interpreter, source: Structure, motion: Motion, node: ast.
     return StructureCopy(source, motion, node)
 
 
-def _geometry_in(value: Value | None) -> Iterator[Geometry]:
-    if isinstance(value, Geometry):
-        yield value
-    else:
-        for item in (members(value) or ()) if value is not None else ():
-            yield from _geometry_in(item)
+def _geometry_in(value: Value) -> list[Geometry]:
+    return [item for item in leaves(value) if isinstance(item, Geometry)]
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
@@ -472,7 +468,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
     if motion is None:
         return NOTHING
-    copied_things = list(_geometry_in(a["x"]))
+    copied_things = _geometry_in(a["x"])
     is_loose = any(g.name is None for g in copied_things) or isinstance(a["x"], Instantiation)
     # A part of an imported drawing is taken to another structure to be what that one is.
     drawn = [g for g in copied_things if not g.is_guide and (g.trace is None or g.owner is env.here)]

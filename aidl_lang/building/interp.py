@@ -101,11 +101,6 @@ def _speaks_of_rotation(module: ast.Module) -> bool:
     return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))
 
 
-def nothing_built() -> Interpretation:
-    """Returns the interpretation of a program that is not run."""
-    return Interpretation(Model(_nothing(), [], [], [], [], [], []), [], {})
-
-
 def _nothing() -> Structure:
     return Structure("assembly", "model", None, None)
 
@@ -169,7 +164,8 @@ def build(
     """Builds the Model of a text. Returns it with every diagnostic that does not need solving."""
     program, found = checked or read(source, world, settings, watch)
     if is_too_many(found):  # nothing of the model would be used or reported
-        return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
+        unbuilt = Interpretation(Model(_nothing()), [], {})
+        return unbuilt, within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):
         built = interpret(program, params, settings.building, turned, states_constants)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
-from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
+from aidl_lang.building.values import Num, PointVal, leaves
 from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
 from aidl_lang.common.records import record
@@ -318,15 +318,12 @@ class Structure:
 
 
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
-    """Yields the geometry among named values that belongs to the container, members of arrays and lists
+    """Returns the geometry among named values that belongs to the container, members of arrays and lists
     included; each once, however many names it has.
     """
-    seen: set[Geometry] = set()
-    for value in named.values():
-        for geometry in _geometry_in(value, container):
-            if geometry not in seen:
-                seen.add(geometry)
-                yield geometry
+    held = (item for value in named.values() for item in leaves(value))
+    own = (item for item in held if isinstance(item, Geometry) and item.container is container)
+    return iter(dict.fromkeys(own))
 
 
 def all_parts(g: Geometry) -> Iterator[Geometry]:
@@ -334,15 +331,6 @@ def all_parts(g: Geometry) -> Iterator[Geometry]:
     for part in own_geometry(g.parts, g):
         yield part
         yield from all_parts(part)
-
-
-def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:
-    if isinstance(value, Geometry):
-        if value.container is container:
-            yield value
-    elif isinstance(value, ListVal | Array):
-        for item in members(value) or ():
-            yield from _geometry_in(item, container)
 
 
 def chain(structure: Structure) -> list[Structure]:
@@ -559,10 +547,10 @@ class Model:
     """
 
     root: Structure
-    constraints: list[Constraint]
-    assertions: list[Assertion]
-    unknowns: list[Unknown]
-    knobs: list[Knob]
+    constraints: list[Constraint] = field(default_factory=list)
+    assertions: list[Assertion] = field(default_factory=list)
+    unknowns: list[Unknown] = field(default_factory=list)
+    knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)
     literals: list[Literal] = field(default_factory=list)
     by_hand: list[Constraint] = field(default_factory=list)

@@ -288,12 +288,19 @@ def each_of(value: Value, kind: type[T]) -> Iterator[T]:
         yield from (thing for things in found for thing in things if all(found))
 
 
+def leaves(value: Value) -> Iterator[Value]:
+    """Yields a value, or what a list or an array holds, at any depth."""
+    items = members(value)
+    if items is None:
+        yield value
+    else:
+        for item in items:
+            yield from leaves(item)
+
+
 def holds(value: Value, kind: type) -> bool:
     """Tells whether a value is of a kind, or a list with something of it."""
-    if isinstance(value, kind):
-        return True
-    items = members(value)
-    return items is not None and any(holds(item, kind) for item in items)
+    return any(isinstance(item, kind) for item in leaves(value))
 
 
 def type_of(value: Value) -> Type:

@@ -22,6 +22,7 @@ from aidl_lang.building.values import (
     PointVal,
     TextVal,
     Value,
+    leaves,
     members,
     type_of,
 )
@@ -56,11 +57,17 @@ def compare(
     right_node: ast.Node,
 ) -> Value:
     """Returns `left relation right`, a truth if both are constants; of a list it is asked of each member."""
+
+    def incomparable() -> Nothing:
+        sides = shown(left_node), shown(right_node)
+        it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *sides), node)
+        return NOTHING
+
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     if isinstance(left, TextVal | bool) or isinstance(right, TextVal | bool):
         if relation not in ("==", "!=") or type(left) is not type(right):
-            return _incomparable(it, relation, left, right, node, left_node, right_node)
+            return incomparable()
         one, other = (side.value if isinstance(side, TextVal) else side for side in (left, right))
         return (one == other) == (relation == "==")
     if (pairs := _one_by_one(relation, left, right)) is not None:
@@ -73,7 +80,7 @@ def compare(
     if a is not None and b is not None:
         return _compare_points(it, relation, a, b, node)
     if a is not None or b is not None:
-        return _incomparable(it, relation, left, right, node, left_node, right_node)
+        return incomparable()
     x, y = numeric(it, left, left_node, env), numeric(it, right, right_node, env)
     return compare_numbers(it, relation, x, y, node) if x is not None and y is not None else NOTHING
 
@@ -82,8 +89,7 @@ def _one_by_one(relation: str, left: Value, right: Value) -> list[tuple[Value, V
     """Returns the pairs that a relation with a list in it is asked of: each member and the other side, or
     those of two lists of one length in their order; None where two values compare as they are.
     """
-    lists = [members(side) if isinstance(side, ListVal | Array) else None for side in (left, right)]
-    one, other = lists
+    one, other = (members(side) if isinstance(side, ListVal | Array) else None for side in (left, right))
     if relation == "!=" or (one is None and other is None):
         return None
     if one is not None and other is not None:
@@ -101,20 +107,6 @@ def _is_pair(values: Sequence[Value]) -> bool:
 
 def _is_point(value: Value) -> bool:
     return isinstance(value, PointVal) or (isinstance(value, Geometry) and value.type == "point")
-
-
-def _incomparable(
-    it: Interpreter,
-    relation: str,
-    left: Value,
-    right: Value,
-    node: ast.Node,
-    left_node: ast.Node,
-    right_node: ast.Node,
-) -> Nothing:
-    sides = shown(left_node), shown(right_node)
-    it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *sides), node)
-    return NOTHING
 
 
 def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, node: ast.Node) -> Value:
@@ -148,19 +140,11 @@ def _relates(
     if is_angle and relation in ("==", "!="):
         difference = (difference + 180.0) % 360.0 - 180.0
     near = abs(difference) <= tolerance * max(1.0, abs(a), abs(b))
-    match relation:
-        case "==":
-            return near
-        case "!=":
-            return not near
-        case "<=":
-            return near or difference < 0
-        case "<":
-            return not strict if near else difference < 0
-        case ">":
-            return not strict if near else difference > 0
-        case _:
-            return near or difference > 0
+    if relation in ("==", "!="):
+        return near is (relation == "==")
+    if near:
+        return not strict or relation in ("<=", ">=")
+    return difference < 0 if relation in ("<=", "<") else difference > 0
 
 
 def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node: ast.Node) -> Value:
@@ -257,17 +241,11 @@ def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Pa
 
 def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
     """Yields the unknowns that place a value, as seen from a structure."""
-    match value:
-        case Num(expression=e):
-            yield from ex.unknowns([e])
-        case PointVal(x, y):
-            yield from ex.unknowns([x.expression, y.expression])
-        case ListVal() | Array():
-            for item in members(value) or ():
-                yield from value_unknowns(item, here)
-        case _:
-            box = box_of(value, here)
-            for source in box.sources if box else ():
+    for item in leaves(value):
+        if isinstance(item, Num):
+            yield from ex.unknowns([item.expression])
+        elif (box := box_of(item, here)) is not None:
+            for source in box.sources:
                 yield from source_unknowns(source, here)
 
 

@@ -2,9 +2,9 @@
 
 In the order of reading: `expression` (operations, and the tape), `problem`; `valuation`, `freezing` (some
 rows, on numbers); `array_program` (many rows, on arrays); `linear`, `sparse`; `newton` (one smooth system),
-`branches` (one attempt); `loosening` (what is free when, who gives way), `group` (one structure), `levels` (all
-groups of a depth), `hierarchy` (`solve`); `refuting`, `conflicts` (and what is asked besides). What is said of
-a solution afterwards is in `analysis`. What stands at this door is loaded when it is asked for: a program is
+`branches` (one attempt); `loosening` (what is free when, who gives way), `group` (one structure), `levels`
+(all groups of a depth), `hierarchy` (`solve`); `refuting`, `conflicts` (and what is asked besides). What is
+said of a solution afterwards is in `analysis`. What stands here is loaded when asked for: a program is
 checked without the solver and without numpy.
 """
 
