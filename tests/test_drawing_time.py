@@ -83,7 +83,7 @@ def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.geometry.drawing.draw", late)
+    monkeypatch.setattr("aidl_lang.geometry.picturing.draw", late)
     text = (
         "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
         "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"

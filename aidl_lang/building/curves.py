@@ -143,7 +143,7 @@ def defining(geometry: Geometry, here: Structure) -> list[Expression]:
 # they reach.
 #
 # A curve of straight lines and cubics gives these (`pieces`), and its box, its ends and its outline follow;
-# any other gives its reach, and `geometry.readout` makes it of its numbers.
+# any other gives its reach, and `geometry.picturing` makes it of its numbers.
 
 Piece: TypeAlias = tuple[tuple[Expression, Expression], ...]
 """The two ends of a straight line, or the four control points of a cubic."""

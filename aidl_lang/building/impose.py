@@ -52,6 +52,7 @@ from aidl_lang.building.wording import (
 from aidl_lang.checking import rules
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.materials import is_fit
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
@@ -92,8 +93,6 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         hint = "as in `dimension(body.left, eye.center)`, `dimension(a.x, b.x)` or `dimension(rim)`"
         it.report("E0590", f"this dimension measures nothing: {reason}", node, hints=[hint])
         return
-    from aidl_lang.common.materials import is_fit
-
     said = {name: evaluate(it, value, env) for name, value in options(node).items()}
     fit, tolerance = said.get("fit"), said.get("tolerance")
     if isinstance(fit, TextVal) and fit.value and not is_fit(fit.value):

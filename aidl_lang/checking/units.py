@@ -7,6 +7,8 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
+from aidl_lang.common.materials import PAPERS
+
 # Values are kept in millimetres, degrees and their products. A dimension counts powers of length and of
 # angle; a number written without a unit is *bare*: it takes the dimension its place asks for, unchanged in
 # value.
@@ -97,18 +99,6 @@ def power(a: MaybeDimension, exponent: float) -> MaybeDimension:
 
 # --- Lengths and sizes of paper and sheets as people give them to commands and dialogs.
 
-PAPERS = {
-    "a0": (841.0, 1189.0),
-    "a1": (594.0, 841.0),
-    "a2": (420.0, 594.0),
-    "a3": (297.0, 420.0),
-    "a4": (210.0, 297.0),
-    "a5": (148.0, 210.0),
-    "letter": (215.9, 279.4),
-    "legal": (215.9, 355.6),
-    "tabloid": (279.4, 431.8),
-}
-"""Width and height of paper in mm, upright."""
 LARGEST = 1e5
 """Largest side of a sheet, mm."""
 

@@ -1,4 +1,4 @@
-"""Tables of makers: materials, fits by ISO 286-1."""
+"""Tables of makers: materials, sizes of paper, fits by ISO 286-1."""
 
 from __future__ import annotations
 
@@ -66,6 +66,22 @@ def similar(material: str) -> list[str]:
 def _plain(text: str) -> str:
     """Returns a name in lower case, with `-`, `_` and any run of spaces as one space."""
     return re.sub(r"[\s_-]+", " ", text).strip().casefold()
+
+
+# --- Sizes of paper.
+
+PAPERS = {
+    "a0": (841.0, 1189.0),
+    "a1": (594.0, 841.0),
+    "a2": (420.0, 594.0),
+    "a3": (297.0, 420.0),
+    "a4": (210.0, 297.0),
+    "a5": (148.0, 210.0),
+    "letter": (215.9, 279.4),
+    "legal": (215.9, 355.6),
+    "tabloid": (279.4, 431.8),
+}
+"""Width and height in mm, upright."""
 
 
 # --- Fits: the limits of sizes by ISO 286-1, from its tolerance grades and fundamental deviations.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Constraint", "Memory", "Problem", "Relation", "Row", "Settings", "Solution", "Status", "solve"]
 
-_HOME = {"Memory": "riding", "solve": "hierarchy"}
+_HOME = {"Memory": "hierarchy", "solve": "hierarchy"}
 
 
 def __getattr__(name: str) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import field
 
-from aidl_lang.checking.units import PAPERS
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.records import record
 from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text
 from aidl_lang.geometry.curves import Bounds, Circle, Line, Vec

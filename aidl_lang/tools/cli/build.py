@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking.units import PAPERS
 from aidl_lang.common.diagnostics import AidlError, TooLongError
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.world import is_data, may_be_read

@@ -13,7 +13,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from aidl_lang.checking.units import PAPERS
+from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.render import escape
