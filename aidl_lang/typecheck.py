@@ -11,15 +11,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
 from aidl_lang.checking.calls import (
+    check_condition,
+    check_empty,
+    check_item,
     check_operation,
     check_square,
     check_unused_geometry,
     check_unused_params,
-)
-from aidl_lang.checking.conditions import (
-    check_condition,
-    check_empty,
-    check_item,
     counting_params,
     find_cycles,
 )

@@ -8,11 +8,11 @@ from itertools import groupby
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import counted, fixed, listed, named, size_text
-from aidl_lang.export import twice_compensated
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.job import ON_SHEETS, ExportError, Job, Progress, require
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
 from aidl_lang.export.profiles import CUTS, FILL, Profile
+from aidl_lang.export.unsaid import twice_compensated
 from aidl_lang.geometry.arcs import WIDEST, Slit, as_arcs, has_slivers, without_slits
 from aidl_lang.geometry.curves import union_bounds
 from aidl_lang.geometry.drawing import SLIT, Drawing, Stroke
