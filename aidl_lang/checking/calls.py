@@ -1,4 +1,4 @@
-"""Calls, before anything is built: overloads that fit, facts about results, habits of other languages; and the
+"""Calls, before anything is built: overloads that fit, facts about results, habits of other languages; the
 checks of constraints and params.
 """
 
