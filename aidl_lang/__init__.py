@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
-from aidl_lang.common.files import Reads
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import Reads
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
@@ -178,9 +178,9 @@ class Model:
         Raises AidlError for an unknown format or option, if the format cannot hold the drawing, and for a
         model that is not `ok` unless `best_effort=True`; OSError if a file cannot be written.
         """
-        from aidl_lang.common.files import replace
+        from aidl_lang.common.world import replace
         from aidl_lang.export import suffix_of
-        from aidl_lang.export.cut_list import contents, is_pattern
+        from aidl_lang.export.job import contents, is_pattern
         from aidl_lang.tools.cli.options import read
 
         asked = read(options, self._compiled)

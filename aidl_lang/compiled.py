@@ -8,16 +8,15 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from aidl_lang.building.model import Knob, Model
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.drawing_time import within
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, OutOfTime, limited_to, working
 from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
-    from aidl_lang.building.front import Settings
-    from aidl_lang.checking.allowing import Allowance
+    from aidl_lang.building.interp import Settings
+    from aidl_lang.checking.symbols import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exporter
@@ -171,7 +170,7 @@ class Compiled:
         """Returns the notes on a use of the drawing that the program does not want unsaid."""
         if not self.allowances:
             return tuple(notes)
-        from aidl_lang.checking.allowing import audible
+        from aidl_lang.checking.symbols import audible
 
         return tuple(audible(notes, self.allowances))
 

@@ -15,12 +15,16 @@ from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_m
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.automaton import LONGEST, Automaton, Checkpoint, Trouble
-from aidl_lang.syntax.brackets import CLOSE_BLOCK, lists_as_statements
-from aidl_lang.syntax.functions import understood
-from aidl_lang.syntax.tables import END, Token, Tokens, is_open_comment, tokenize
+from aidl_lang.syntax.automaton import CLOSE_BLOCK, LONGEST, Automaton, Checkpoint, Trouble
+from aidl_lang.syntax.rewriting import begins_with_sign, lines_joined_by_sign, lists_as_statements, understood
+from aidl_lang.syntax.tables import (
+    END,
+    Token,
+    Tokens,
+    is_open_comment,
+    tokenize,
+)
 from aidl_lang.syntax.tree import Builder, Nodes
-from aidl_lang.syntax.warnings import begins_with_sign, lines_joined_by_sign
 
 
 @record()

@@ -11,22 +11,18 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
-from aidl_lang.building.front import Front, Settings, build, read
+from aidl_lang.building.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
-from aidl_lang.checking.allowing import IDLE, audible, idle
 from aidl_lang.checking.resolve import resolve
-from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
-from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
-from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.checking.symbols import IDLE, SymbolKind, audible, idle
+from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, ordered, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
-from aidl_lang.geometry.picturing import pictured
-from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
@@ -41,8 +37,8 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
+    from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import Solution
-    from aidl_lang.solver.riding import Memory
 
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
@@ -425,6 +421,7 @@ def _drawn(
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
     """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
+    from aidl_lang.geometry.picturing import pictured
 
     model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
     with watch("asserts"):

@@ -10,12 +10,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import NAMING
-from aidl_lang.checking.calls import check_square, check_unused_geometry, check_unused_params
-from aidl_lang.checking.conditions import (
+from aidl_lang.checking.calls import (
     check_condition,
     check_empty,
     check_item,
     check_operation,
+    check_square,
+    check_unused_geometry,
+    check_unused_params,
     counting_params,
     find_cycles,
 )
@@ -23,9 +25,9 @@ from aidl_lang.checking.facts import Fact, of_symbol
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.members import compare
-from aidl_lang.checking.resolving.symbols import Resolution, word_meant
 from aidl_lang.checking.rules import a, shown
 from aidl_lang.checking.subset import Variant, check_subset
+from aidl_lang.checking.symbols import Resolution, word_meant
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -39,8 +41,7 @@ from aidl_lang.checking.types import (
     accepts,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.checking.validity import check_validity
-from aidl_lang.checking.violations import Violation
+from aidl_lang.checking.violations import Violation, check_validity
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span

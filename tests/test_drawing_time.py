@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
@@ -72,7 +72,7 @@ def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.geometry.readout._Reader.geometry", late)
+    monkeypatch.setattr("aidl_lang.geometry.picturing._Reader.geometry", late)
     (told,) = pipeline.compile(SourceFile("plates.aidl", PLATES)).diagnostics
     assert told.code == "E0805"
     assert told.span is not None
@@ -83,7 +83,7 @@ def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.geometry.drawing.draw", late)
+    monkeypatch.setattr("aidl_lang.geometry.picturing.draw", late)
     text = (
         "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
         "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"

@@ -19,8 +19,8 @@ from aidl_lang import pipeline
 from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.boolean import lettered_region, stencilled
 from aidl_lang.geometry.curves import Bezier, Line, reverse
-from aidl_lang.geometry.letters import lettered_region, stencilled
 from aidl_lang.geometry.region import loop_area
 from tests.amount import tries
 

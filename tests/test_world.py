@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.files import Reads
 from aidl_lang.common.world import (
     DiskWorld,
     FileError,
     MemoryWorld,
     ReadFailure,
+    Reads,
     World,
 )
 

@@ -8,11 +8,20 @@ from functools import cached_property
 from itertools import pairwise
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.curves import clockwise, direction, distance, is_reflected, number, sweep, view, xy
+from aidl_lang.building.curves import (
+    Place,
+    clockwise,
+    direction,
+    distance,
+    gauss,
+    is_reflected,
+    number,
+    sweep,
+    view,
+    xy,
+)
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.motion import Place
-from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 
 # --- Ways along cubics: places at lengths of the curve, over expressions.

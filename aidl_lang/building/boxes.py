@@ -15,7 +15,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import defining, view, xy
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
+from aidl_lang.building.values import Num, PointVal, Value, leaves, length, point
 from aidl_lang.checking.types import BoxType
 from aidl_lang.common.records import record
 
@@ -369,7 +369,7 @@ def unmoved(*roots: Expression) -> frozenset[Unknown]:
     return frozenset(held)
 
 
-def box_of(value: object, here: Structure) -> Box | None:
+def box_of(value: Value, here: Structure) -> Box | None:
     """Returns the box of a value; None if it has none."""
     if isinstance(value, Box):
         return value
@@ -377,11 +377,9 @@ def box_of(value: object, here: Structure) -> Box | None:
     return Box(sources, here) if sources else None
 
 
-def _sources(value: object) -> Iterable[Source]:
-    if isinstance(value, Geometry | Structure | PointVal):
-        yield value
-    elif isinstance(value, Box):
-        yield from value.sources
-    elif isinstance(value, ListVal | Array):
-        for item in members(value) or ():
-            yield from _sources(item)
+def _sources(value: Value) -> Iterable[Source]:
+    for item in leaves(value):
+        if isinstance(item, Box):
+            yield from item.sources
+        elif isinstance(item, Geometry | Structure | PointVal):
+            yield item

@@ -6,12 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, owners_of, run
-from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
+from aidl_lang.building.curves import ask_to_turn, is_of_directions
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.model import Condition, Geometry, Structure, all_parts, reach_of
-from aidl_lang.building.motion import ask_to_turn, is_of_directions
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, arranged, candidates_of, no_overload, placing, site_of
 from aidl_lang.building.state import (
@@ -40,6 +39,7 @@ from aidl_lang.building.values import (
     members,
     spliced,
 )
+from aidl_lang.building.wording import all_of
 from aidl_lang.checking.builtins import COPYING
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.types import (

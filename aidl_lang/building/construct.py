@@ -6,23 +6,25 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
-from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.curves import direction, distance, polar
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import bridge, is_filled, typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
+from aidl_lang.building.wording import all_of, compare_numbers
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.types import PRIMITIVES, NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.drawings.drawing import Trace
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.common.drawings import Trace
 
 # --- Arcs given by three points without names: centre, start and end, with a warning if they hardly can be.
 
@@ -429,6 +431,8 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    from aidl_lang.building.lettering import bridge, is_filled, typeset
+
     g.glyphs = typeset(it, a)
     g.filled = is_filled(a, g.glyphs)
     it.count_entity(None, len(g.glyphs))

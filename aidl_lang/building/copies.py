@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, spelled_out
 from aidl_lang.building.coerce import as_written
-from aidl_lang.building.curves import DIRECTIONS, clockwise, translate, view, xy
-from aidl_lang.building.members import read
-from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
-from aidl_lang.building.motion import (
+from aidl_lang.building.curves import (
+    DIRECTIONS,
     NOWHERE,
     STILL,
     Motion,
     Place,
     after,
+    clockwise,
     mirrored_at_line,
     mirrored_at_point,
     opposite,
+    translate,
     translation,
     turned,
+    view,
+    xy,
 )
+from aidl_lang.building.members import read
+from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
 from aidl_lang.building.outlines import keep_unnamed
 from aidl_lang.building.state import (
     Arguments,
@@ -51,6 +55,7 @@ from aidl_lang.building.values import (
     TextVal,
     Value,
     kind_of,
+    leaves,
     members,
     number,
     point,
@@ -352,7 +357,6 @@ def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: 
         case Structure():
             return _of_structure(it, value, copier.motion, node, env)
         case StructureCopy(source, first):
-            assert isinstance(first, Motion)
             return StructureCopy(source, after(first, copier.motion), node)
         case Instantiation():
             return StructureCopy(value, copier.motion, node)
@@ -380,12 +384,8 @@ def _of_structure(it: Interpreter, source: Structure, motion: Motion, node: ast.
     return StructureCopy(source, motion, node)
 
 
-def _geometry_in(value: Value | None) -> Iterator[Geometry]:
-    if isinstance(value, Geometry):
-        yield value
-    else:
-        for item in (members(value) or ()) if value is not None else ():
-            yield from _geometry_in(item)
+def _geometry_in(value: Value) -> list[Geometry]:
+    return [item for item in leaves(value) if isinstance(item, Geometry)]
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
@@ -468,7 +468,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
     if motion is None:
         return NOTHING
-    copied_things = list(_geometry_in(a["x"]))
+    copied_things = _geometry_in(a["x"])
     is_loose = any(g.name is None for g in copied_things) or isinstance(a["x"], Instantiation)
     # A part of an imported drawing is taken to another structure to be what that one is.
     drawn = [g for g in copied_things if not g.is_guide and (g.trace is None or g.owner is env.here)]

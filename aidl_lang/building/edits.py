@@ -11,10 +11,9 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.calls import bound, hoist_values
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
-from aidl_lang.building.curves import DIRECTIONS, xy
+from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, Place, after, turned, xy
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.motion import STILL, Motion, Place, after, turned
 from aidl_lang.building.overloads import arranged
 from aidl_lang.building.state import Env, Interpreter, Reach, Scope
 from aidl_lang.building.values import (

@@ -18,7 +18,6 @@ from aidl_lang.building.coerce import (
     numeric,
     whole,
 )
-from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.state import Env, Interpreter, LetBinding, Scope
@@ -38,6 +37,7 @@ from aidl_lang.building.values import (
     spliced,
     type_of,
 )
+from aidl_lang.building.wording import compare, conjunction, holds, negation
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.rules import shown

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from aidl_lang.building import coerce, copies, patterns
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, look, numeric
-from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.expression import DEGREE, Expression
-from aidl_lang.building.lettering import ink
-from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.patterns import lettered
@@ -26,6 +24,7 @@ from aidl_lang.building.values import (
     Num,
     PointVal,
     RangeVal,
+    RecordVal,
     TextVal,
     Value,
     kind_of,
@@ -33,6 +32,7 @@ from aidl_lang.building.values import (
     number,
     point,
 )
+from aidl_lang.building.wording import compare_numbers
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.colors import css_color, rgb, similar_colors
@@ -171,44 +171,13 @@ def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
     return result
 
 
-def _num(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> Num | None:
-    return numeric(it, a[name], node, env)
-
-
-def _of_angle(op: Callable[[Expression], Expression]) -> Function:
+def _of_one(
+    op: Callable[[Expression], Expression],
+    dimension: Callable[[MaybeDimension], MaybeDimension],
+    name: str = "value",
+) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        angle = _num(it, a, "angle", node, env)
-        if angle is None:
-            return NOTHING
-        return _checked(it, Num(op(angle.expression), PLAIN, angle.status), node)
-
-    return function
-
-
-def _to_angle(op: str) -> Function:
-    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = _num(it, a, "value", node, env)
-        if value is None:
-            return NOTHING
-        if op == "atan":
-            angle = ex.atan2(value.expression, ex.ONE)
-        else:
-            angle = ex.mul(ex.apply(op, value.expression), ex.constant(1 / DEGREE))
-        return _checked(it, Num(angle, ANGLE, value.status), node)
-
-    return function
-
-
-def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    y, x = _num(it, a, "y", node, env), _num(it, a, "x", node, env)
-    if x is None or y is None:
-        return NOTHING
-    return Num(ex.atan2(y.expression, x.expression), ANGLE, max(x.status, y.status))
-
-
-def _of_one(op: str, dimension: Callable[[MaybeDimension], MaybeDimension]) -> Function:
-    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = _num(it, a, "value", node, env)
+        value = numeric(it, a[name], node, env)
         if value is None:
             return NOTHING
         try:
@@ -216,13 +185,29 @@ def _of_one(op: str, dimension: Callable[[MaybeDimension], MaybeDimension]) -> F
         except ValueError as reason:
             it.report("E0308", f"`{node.callee.text}` has no meaning here: a {reason}", node)
             return NOTHING
-        return _checked(it, Num(ex.apply(op, value.expression), result, value.status), node)
+        return _checked(it, Num(op(value.expression), result, value.status), node)
 
     return function
 
 
+def _of_angle(op: Callable[[Expression], Expression]) -> Function:
+    return _of_one(op, lambda _: PLAIN, "angle")
+
+
+def _to_angle(op: str) -> Function:
+    degrees = ex.constant(1 / DEGREE)
+    return _of_one(lambda value: ex.mul(ex.apply(op, value), degrees), lambda _: ANGLE)
+
+
+def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    y, x = numeric(it, a["y"], node, env), numeric(it, a["x"], node, env)
+    if x is None or y is None:
+        return NOTHING
+    return Num(ex.atan2(y.expression, x.expression), ANGLE, max(x.status, y.status))
+
+
 def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    x, y = _num(it, a, "a", node, env), _num(it, a, "b", node, env)
+    x, y = numeric(it, a["a"], node, env), numeric(it, a["b"], node, env)
     if x is None or y is None:
         return NOTHING
     kind = _common(it, [x, y], node)
@@ -287,7 +272,7 @@ def _total(values: list[Num], dimension: MaybeDimension) -> Num:
 
 def _rounded(function: Callable[[float], float]) -> Function:
     def rounded(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = _num(it, a, "value", node, env)
+        value = numeric(it, a["value"], node, env)
         known = constant(it, value, node, f"what `{node.callee.text}` rounds") if value else None
         if value is None or known is None:
             return NOTHING
@@ -363,7 +348,7 @@ def _mark(status: Exactness) -> Function:
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the candidate nearest to a value as written, or if asked one further off, which is reported."""
-    value = _num(it, a, "value", node, env)
+    value = numeric(it, a["value"], node, env)
     candidates = _numbers(it, a, "candidates", node, env)
     if value is None or not candidates:
         return NOTHING
@@ -387,7 +372,7 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns one of two numbers by the sign of a third, which the solver may decide."""
-    test, yes, no = (_num(it, a, name, node, env) for name in ("value", "positive", "negative"))
+    test, yes, no = (numeric(it, a[name], node, env) for name in ("value", "positive", "negative"))
     if test is None or yes is None or no is None:
         return NOTHING
     kind = _common(it, [yes, no], node)
@@ -399,7 +384,7 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns a measure, negative in an overlap for the solver to get out of it; for a reader 0: no room."""
-    value = _num(it, a, "value", node, env)
+    value = numeric(it, a["value"], node, env)
     if value is None or env.reach is not Reach.READ:
         return value if value is not None else NOTHING
     return Num(ex.apply("maximum", value.expression, ex.ZERO), value.dimension, value.status)
@@ -422,6 +407,8 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
+
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):
@@ -438,17 +425,28 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return point(*found)
 
 
+def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the box of the letters around the start of the first line, in heights of a capital."""
+    from aidl_lang.building.lettering import typeset
+    from aidl_lang.common.lettering import box_around
+
+    if not (glyphs := typeset(it, a)):
+        return NOTHING
+    sides = zip(("left", "bottom", "right", "top"), box_around(glyphs), strict=True)
+    return RecordVal({name: number(value) for name, value in sides})
+
+
 FUNCTIONS: dict[str, Function] = {
     "sin": _of_angle(ex.sin),
     "cos": _of_angle(ex.cos),
     "tan": _of_angle(lambda angle: ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))),
     "asin": _to_angle("asin"),
     "acos": _to_angle("acos"),
-    "atan": _to_angle("atan"),
+    "atan": _of_one(lambda value: ex.atan2(value, ex.ONE), lambda _: ANGLE),
     "atan2": _atan2,
-    "sqrt": _of_one("sqrt", lambda d: units.power(d, 0.5)),
-    "abs": _of_one("abs", lambda d: d),
-    "square": _of_one("square", lambda d: units.multiply(d, d)),
+    "sqrt": _of_one(partial(ex.apply, "sqrt"), lambda d: units.power(d, 0.5)),
+    "abs": _of_one(partial(ex.apply, "abs"), lambda d: d),
+    "square": _of_one(partial(ex.apply, "square"), lambda d: units.multiply(d, d)),
     "hypot": _hypot,
     "min": _extreme("minimum"),
     "max": _extreme("maximum"),
@@ -461,7 +459,7 @@ FUNCTIONS: dict[str, Function] = {
     "choice": _choice,
     "rgb": _rgb,
     "channels": _channels,
-    "ink": ink,
+    "ink": _ink,
     "lettered": lettered,
     "traced_part": traced_part,
     "fixed": _mark(Exactness.FIXED),

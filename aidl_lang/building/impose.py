@@ -9,10 +9,8 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
 from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
-from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
-from aidl_lang.building.curves import defining
+from aidl_lang.building.curves import ask_to_turn, defining
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
-from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -22,7 +20,6 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.motion import ask_to_turn
 from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.values import (
     Array,
@@ -37,7 +34,21 @@ from aidl_lang.building.values import (
     number,
     type_of,
 )
-from aidl_lang.building.wording import Read, Wording, compared, differences, givens, rounding, sides
+from aidl_lang.building.wording import (
+    EXACT,
+    RELATIONS,
+    Read,
+    Wording,
+    all_of,
+    compare_numbers,
+    compared,
+    differences,
+    givens,
+    placed_by,
+    rounding,
+    sides,
+    value_unknowns,
+)
 from aidl_lang.checking import rules
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.units import LENGTH
@@ -234,6 +245,8 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     """Reports a condition on what is known once all is solved. Returns whether it did."""
     if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
         return False
+    from aidl_lang.building.measured import FORMULAS
+
     message = "areas, perimeters and clearances of outlines are known after solving only"
     instead = "put it in an `assert`, or constrain boxes and distances instead"
     apart = "`clearance` constrains between points, lines, circles, slots and convex shapes; name these"
@@ -307,6 +320,8 @@ def _by_formulas(
     """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
+    from aidl_lang.building.measured import OTHERWISE, formula
+
     sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):

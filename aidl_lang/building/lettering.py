@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.state import Arguments, Env, Interpreter
-from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, kind_of, number
+from aidl_lang.building.state import Arguments, Interpreter
+from aidl_lang.building.values import Num, TextVal, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
-from aidl_lang.common.font_files import SUFFIXES, FontError
+from aidl_lang.common.font_files import FontError
 from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
-from aidl_lang.common.world import FileError, ReadFailure, relative_to
+from aidl_lang.common.world import FONTS, FileError, ReadFailure, relative_to
 from aidl_lang.syntax import ast
 
 # --- The font that a text names: one that ships with the package, or a file beside the program.
@@ -44,7 +44,7 @@ def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
             message = "letters of single lines cannot be bold: they are as wide as the tool"
             raise NoFontError("E0359", message, "leave out `bold`, or the font")
         return lettering.single_line_font()
-    if PurePosixPath(name).suffix.lower() not in SUFFIXES:
+    if PurePosixPath(name).suffix.lower() not in FONTS:
         raise NoFontError(
             "E0359",
             f'there is no font "{name}"',
@@ -177,12 +177,3 @@ def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node, font: s
         return
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
     report_once(it, "E0350", f"the font has no {names}", node, [*instead, has])
-
-
-def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the box of the letters around the start of the first line, in heights of a capital."""
-    glyphs = typeset(it, a)
-    if not glyphs:
-        return NOTHING
-    sides = zip(("left", "bottom", "right", "top"), lettering.box_around(glyphs), strict=True)
-    return RecordVal({name: number(value) for name, value in sides})

@@ -51,16 +51,8 @@ class Arithmetic(Protocol[N]):
     def neg(self, a: N, /) -> N: ...
 
 
-class _Floats:
-    """The arithmetic of plain numbers."""
-
-    add = staticmethod(operator.add)
-    sub = staticmethod(operator.sub)
-    mul = staticmethod(operator.mul)
-    neg = staticmethod(operator.neg)
-
-
-FLOATS: Arithmetic[float] = _Floats()
+FLOATS: Arithmetic[float] = operator
+"""That of plain numbers."""
 
 
 class _Step(NamedTuple, Generic[N]):

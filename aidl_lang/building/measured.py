@@ -12,11 +12,9 @@ from functools import reduce
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.along import Cubic, way
-from aidl_lang.building.curves import clockwise, number, sweep, view, xy
+from aidl_lang.building.curves import Place, clockwise, gauss, number, sweep, view, xy
 from aidl_lang.building.expression import Expression
 from aidl_lang.building.model import Geometry, Measurement, Structure
-from aidl_lang.building.motion import Place
-from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 
 FORMULAS = (

@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, ClassVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
-from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
+from aidl_lang.building.values import Num, PointVal, leaves
 from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
-from aidl_lang.common.font_files import Curve
-from aidl_lang.common.lettering import Glyph, silhouette
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
-    from aidl_lang.common.drawings.drawing import Trace
+    from aidl_lang.common.drawings import Trace
+    from aidl_lang.common.font_files import Curve
+    from aidl_lang.common.lettering import Glyph
 
 SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
@@ -131,7 +131,11 @@ class Geometry:
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
         """The silhouette of a text or a drawing in its own units (see `lettering.silhouette`)."""
-        return silhouette(self.glyphs) if self.trace is None else self.trace.silhouette
+        if self.trace is not None:
+            return self.trace.silhouette
+        from aidl_lang.common.lettering import silhouette
+
+        return silhouette(self.glyphs)
 
     @property
     def value_type(self) -> Type:
@@ -314,15 +318,12 @@ class Structure:
 
 
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
-    """Yields the geometry among named values that belongs to the container, members of arrays and lists
+    """Returns the geometry among named values that belongs to the container, members of arrays and lists
     included; each once, however many names it has.
     """
-    seen: set[Geometry] = set()
-    for value in named.values():
-        for geometry in _geometry_in(value, container):
-            if geometry not in seen:
-                seen.add(geometry)
-                yield geometry
+    held = (item for value in named.values() for item in leaves(value))
+    own = (item for item in held if isinstance(item, Geometry) and item.container is container)
+    return iter(dict.fromkeys(own))
 
 
 def all_parts(g: Geometry) -> Iterator[Geometry]:
@@ -330,15 +331,6 @@ def all_parts(g: Geometry) -> Iterator[Geometry]:
     for part in own_geometry(g.parts, g):
         yield part
         yield from all_parts(part)
-
-
-def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:
-    if isinstance(value, Geometry):
-        if value.container is container:
-            yield value
-    elif isinstance(value, ListVal | Array):
-        for item in members(value) or ():
-            yield from _geometry_in(item, container)
 
 
 def chain(structure: Structure) -> list[Structure]:
@@ -416,7 +408,7 @@ class Comparison:
     moved    the unknowns that may move first if a call decides that; else those of the left side
     parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
              that place each of them, in the order of the arguments: none is held by its place. Once the whole
-             program is known, `moved` is what they have but for the anchor (see `building.anchors`)
+             program is known, `moved` is what they have but for the anchor (see `building.interp`)
     boxes    the structures whose boxes it mentions, each with the sides of it
     beside   the unknowns it mentions beside these; None if it mentions no structure's box
     """
@@ -555,10 +547,10 @@ class Model:
     """
 
     root: Structure
-    constraints: list[Constraint]
-    assertions: list[Assertion]
-    unknowns: list[Unknown]
-    knobs: list[Knob]
+    constraints: list[Constraint] = field(default_factory=list)
+    assertions: list[Assertion] = field(default_factory=list)
+    unknowns: list[Unknown] = field(default_factory=list)
+    knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)
     literals: list[Literal] = field(default_factory=list)
     by_hand: list[Constraint] = field(default_factory=list)

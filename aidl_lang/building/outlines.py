@@ -29,6 +29,7 @@ from aidl_lang.building.values import (
     TextVal,
     Value,
     kind_of,
+    leaves,
     length,
     members,
 )
@@ -142,7 +143,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
 
 def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env) -> list[Geometry] | None:
     found: list[Geometry] = []
-    for item in _flat(value):
+    for item in leaves(value):
         if isinstance(item, PointVal) and kind == "hull":
             item = _as_point(it, item, node, env)
         if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
@@ -157,15 +158,6 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
         it.report("E0337", f"`{node.callee.text}` got no outline", node)
         return None
     return found
-
-
-def _flat(value: Value) -> Iterator[Value]:
-    items = members(value)
-    if items is None:
-        yield value
-    else:
-        for item in items:
-            yield from _flat(item)
 
 
 _KEPT = {"offset": 0, "tiled": 1}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from aidl_lang.building.conditions import replace_placed, value_unknowns
 from aidl_lang.building.model import Condition
 from aidl_lang.building.state import Candidate, Env, Interpreter, Scope
 from aidl_lang.building.values import (
@@ -21,10 +20,11 @@ from aidl_lang.building.values import (
     spliced,
     type_of,
 )
+from aidl_lang.building.wording import replace_placed, value_unknowns
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CONNECTING, CUTS, DERIVING, FOLLOWED, OUTLINES, PATTERNS, is_word
-from aidl_lang.checking.resolving.imports import meant
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.imports import meant
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
     PEERS,

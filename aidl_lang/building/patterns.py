@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise, product
+from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import FREE_KINDS, KINDS, Way, reading_way, way_along, within
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
-from aidl_lang.building.curves import defining, xy
+from aidl_lang.building.curves import NOWHERE, Motion, Place, defining, turned, xy
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
-from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
@@ -37,10 +35,12 @@ from aidl_lang.building.values import (
     spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
-from aidl_lang.common import lettering
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.building.along import Way
 
 # --- `linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a
 # curve.
@@ -276,6 +276,8 @@ def _step(call: _Call, n: int) -> Expression:
 
 
 def _along(call: _Call) -> Value:
+    from aidl_lang.building.along import within
+
     way = _way(call)
     off: list[Expression] = []
     corners: list[Expression] = []
@@ -361,6 +363,8 @@ _MOST_ALONG = 20_000
 
 
 def _way(call: _Call) -> Way | None:
+    from aidl_lang.building.along import FREE_KINDS, KINDS, way_along
+
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]
@@ -415,6 +419,10 @@ _UPRIGHT = TextVal("upright")
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
+    from aidl_lang.building.along import KINDS, reading_way
+    from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
+    from aidl_lang.common.lettering import ALIGNMENTS
+
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
@@ -437,7 +445,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         return NOTHING
     assert isinstance(align, TextVal)
     assert isinstance(a["height"], Num)
-    share = 0.5 if way.is_closed else lettering.ALIGNMENTS[align.value]
+    share = 0.5 if way.is_closed else ALIGNMENTS[align.value]
     first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
     height: Expression | None = None
     reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)

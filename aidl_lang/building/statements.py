@@ -1,21 +1,23 @@
-"""The effect of each statement of a body when its line is reached."""
+"""The effect of each statement of a body when its line is reached, and the names given to values."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.assignment import Assignment, adopt, declare, give_name, index_values
-from aidl_lang.building.attributes import read_own_attributes
+from aidl_lang.building.attributes import read_attributes, read_own_attributes
 from aidl_lang.building.calls import declared_names, run_block
-from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.coerce import as_point, numeric, whole
 from aidl_lang.building.construct import loose_point, refuses_measure
+from aidl_lang.building.copies import Copier
+from aidl_lang.building.curves import STILL, Motion, of_frame
 from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
-from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.params import read_param
+from aidl_lang.building.members import read_param
+from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.state import (
     Env,
     Executor,
@@ -25,8 +27,9 @@ from aidl_lang.building.state import (
     Reach,
     Scope,
     VarBinding,
+    indexed,
 )
-from aidl_lang.building.structures import build_structure, place_of
+from aidl_lang.building.structures import build_structure, instantiate, place_of
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -42,7 +45,211 @@ from aidl_lang.building.values import (
     holds,
     kind_of,
 )
+from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
+
+# --- Names given to values: members of structures and shapes, with and without indices.
+
+
+def declare(
+    it: Interpreter,
+    scope: Scope,
+    name: ast.Identifier,
+    indices: tuple[int, ...],
+    value: Value | VarBinding,
+    node: ast.Node,
+) -> None:
+    """Gives a value a name in the structure or shape whose body this is."""
+    target = scope.declaring()
+    if name in it.program.rejected:
+        return
+    if not indices:
+        if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
+            message = f"`{name.text}` is declared in every turn of the loop"
+            hint = f"give it an index: `{name.text}[i] = …`"
+            it.report("E0208", message, name, label="the same name again", hints=[hint])
+            return
+        target.values[name.text] = value
+    else:
+        array = target.values.get(name.text)
+        if not isinstance(array, Array):
+            array = target.values[name.text] = Array(name.text)
+        if indices in array.members and not isinstance(value, Nothing):
+            shown = indexed(name.text, indices)
+            it.report("E0208", f"`{shown}` is declared twice", name, hints=["use another index"])
+            return
+        array.members[indices] = value  # type: ignore[assignment]
+        value = array
+    container = target.container
+    if isinstance(container, Structure):
+        container.members[name.text] = value  # type: ignore[assignment]
+        if isinstance(value, Geometry | Array | ListVal):
+            container.geometry[name.text] = value
+    elif isinstance(container, Geometry) and isinstance(value, Geometry | Array | ListVal):
+        container.parts[name.text] = value
+
+
+def index_values(
+    it: Interpreter, nodes: Sequence[ast.Expression], scope: Scope, here: Structure
+) -> tuple[int, ...] | None:
+    found: list[int] = []
+    for node in nodes:
+        index = whole(it, evaluate(it, node, Env(scope, here, Reach.OWN)), node, "an index")
+        if index is None:
+            return None
+        found.append(index)
+    return tuple(found)
+
+
+def give_name(
+    geometry: Geometry, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
+) -> None:
+    geometry.name = indexed(name, indices)
+    geometry.container = container
+    geometry.construction = geometry.construction or node.construction
+    if geometry.span is None or not isinstance(container, Geometry):
+        geometry.span = node.span
+
+
+def adopt(
+    value: Value, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
+) -> None:
+    """Gives nameless geometry the name it is assigned to; geometry with a name keeps it."""
+    if isinstance(value, Geometry):
+        if value.name is None:
+            give_name(value, name, indices, container, node)
+    elif isinstance(value, ListVal):
+        for i, item in enumerate(value.items):
+            adopt(item, name, (*indices, i), container, node)
+
+
+# --- Structures that wait for the name they are assigned to: instances of templates, and copies.
+
+_WAITING = Instantiation | StructureCopy | Pattern | ListVal
+
+
+@record(frozen=False)
+class Assignment:
+    """The making of the structures that one assignment names.
+
+    first  instances of templates that other members of a pattern are copies of, with the frame each had of
+           its own
+    """
+
+    it: Interpreter
+    node: ast.Assign
+    scope: Scope
+    here: Structure
+    first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
+
+    def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
+        """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
+        if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
+            self._stands(value)
+        return self.value(value, indices)
+
+    def value(self, value: Value, indices: tuple[int, ...]) -> Value:
+        match value:
+            case Instantiation():
+                return instantiate(self.it, self.node, value, self.scope, self.here, indices)
+            case StructureCopy():
+                return self._copy(value, indices)
+            case ListVal(items) if any(isinstance(i, _WAITING) for i in items):
+                return ListVal(tuple(self.value(item, (*indices, i)) for i, item in enumerate(items)))
+            case Pattern(settings=settings) if settings.name is None:
+                return self._pattern(value, indices)
+            case _:
+                return value
+
+    def _stands(self, value: StructureCopy | Pattern) -> None:
+        """Reports an `at` of a thing whose place follows from something else."""
+        name = self.node.name.text
+        if isinstance(value, Pattern):
+            message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
+        else:
+            made = value.source
+            source = made.name if isinstance(made, Structure) else made.signature.name
+            message = f"`{name}` is a copy, and its place follows from `{source}`"
+            hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
+        self.it.report("E0330", message, self.node.placement, hints=[hint])
+
+    def _pattern(self, pattern: Pattern, indices: tuple[int, ...]) -> Pattern:
+        container = self.scope.declaring().container or self.here
+        name = self.node.name.text
+        give_name(pattern.settings, name, indices, container, self.node)
+        pattern.name = indexed(name, indices)
+        for index, member in pattern.members.items():
+            place = (*indices, *index)
+            if isinstance(member, Geometry):
+                if member.name is None:
+                    give_name(member, name, place, container, self.node)
+            else:
+                pattern.members[index] = self.value(member, place)
+        self._moves_as_frame(pattern)
+        return pattern
+
+    def _moves_as_frame(self, pattern: Pattern) -> None:
+        """Makes the position of a pattern of structures a frame: it counts only if something mentions it."""
+        for structure, _ in self.first.values():
+            for unknown in ex.unknowns([structure.frame.x, structure.frame.y]):
+                if unknown.holder is pattern.settings and not unknown.kept:
+                    unknown.frame_of = structure
+
+    def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
+        motion, source = copy.motion, copy.source
+        if isinstance(source, Structure):
+            return self._of(source, _framed(source, self.here), motion, indices)
+        if (known := self.first.get(source)) is not None:
+            return self._of(known[0], known[1], motion, indices)
+        return self._instance(source, motion, indices, copy)
+
+    def _instance(
+        self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
+    ) -> Structure | Nothing:
+        if not (motion.scale.is_constant and motion.scale.value == 1.0):
+            message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
+            hint = "pass it other sizes, or name the structure first and scale a copy of it"
+            self.it.report("E0334", message, copy.node, hints=[hint])
+            return NOTHING
+        own: list[Frame] = []
+
+        def framed(frame: Frame) -> Frame:
+            if copy.is_laid:  # where it is written
+                frame = replace(frame, x=ex.constant(frame.x.value), y=ex.constant(frame.y.value))
+            own.append(frame)
+            return motion.frame(own[0])
+
+        made = instantiate(self.it, self.node, template, self.scope, self.here, indices, framed)
+        if isinstance(made, Structure):
+            self.first[template] = made, own[0]
+        return made
+
+    def _of(
+        self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]
+    ) -> Structure | Nothing:
+        outward = (g for g in self.it.following if not g.bound_to.is_within(source))
+        follower = next((g for g in outward if g.owner.is_within(source)), None)
+        if follower is not None:
+            why = f"`{follower.path}` is made of geometry of `{follower.bound_to.path}`"
+            message = f"`{source.name}` cannot be copied alone: {why}"
+            hint = f"copy `{follower.bound_to.name}` with all that it holds"
+            self.it.report("E0331", message, self.node.value, hints=[hint])
+            return NOTHING
+        scale = motion.scale
+        inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)
+        copier = Copier(self.it, None, inside, span=self.node.span)
+        name = indexed(self.node.name.text, indices)
+        made = copier.structure(source, self.here, name, motion.frame(frame))
+        read_attributes(self.it, made, self.node.attributes, self.scope)
+        return made
+
+
+def _framed(source: Structure, here: Structure) -> Frame:
+    """Returns the frame of a structure as one above it sees it."""
+    frame, around = source.frame, source.parent
+    while around is not None and around is not here:
+        frame, around = of_frame(around.frame).frame(frame), around.parent
+    return frame
 
 
 def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) -> None:

@@ -15,9 +15,8 @@ from aidl_lang.building.construct import hidden_constraints, loose_place, solvab
 from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.impose import read_constraint
-from aidl_lang.building.members import passed
+from aidl_lang.building.members import passed, read_param, report_unused
 from aidl_lang.building.model import Frame, Structure
-from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.state import (
     Candidate,
     Env,
@@ -48,8 +47,8 @@ from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.drawings import WHOLE
 from aidl_lang.common.source import Span
+from aidl_lang.common.world import WHOLE
 from aidl_lang.syntax import ast
 
 # --- Ready-made cuts that are written in a hole: there they are circles, without depth or thread.

@@ -29,6 +29,7 @@ from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
+    from aidl_lang.building.curves import Motion
     from aidl_lang.building.model import Condition, Geometry, Structure
 
 T = TypeVar("T")
@@ -203,13 +204,13 @@ class StructureCopy:
     """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
 
     source  a structure, or a template to instantiate
-    motion  its placement, in the frame of the structure that holds it (see building.motion)
+    motion  its placement, in the frame of the structure that holds it
     node    the call that asks for it
     is_laid the motion alone places the instance of a template
     """
 
     source: Structure | Instantiation
-    motion: object
+    motion: Motion
     node: ast.Call
     is_laid: bool = False
 
@@ -287,12 +288,19 @@ def each_of(value: Value, kind: type[T]) -> Iterator[T]:
         yield from (thing for things in found for thing in things if all(found))
 
 
+def leaves(value: Value) -> Iterator[Value]:
+    """Yields a value, or what a list or an array holds, at any depth."""
+    items = members(value)
+    if items is None:
+        yield value
+    else:
+        for item in items:
+            yield from leaves(item)
+
+
 def holds(value: Value, kind: type) -> bool:
     """Tells whether a value is of a kind, or a list with something of it."""
-    if isinstance(value, kind):
-        return True
-    items = members(value)
-    return items is not None and any(holds(item, kind) for item in items)
+    return any(isinstance(item, kind) for item in leaves(value))
 
 
 def type_of(value: Value) -> Type:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
+from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
     PARAMETER_TYPES,

@@ -16,8 +16,8 @@ from aidl_lang.checking import calls, facts, members, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolve import resolve
-from aidl_lang.checking.resolving.symbols import Resolution, Symbol
 from aidl_lang.checking.rules import TypeMisfit, shown
+from aidl_lang.checking.symbols import Resolution, Symbol
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

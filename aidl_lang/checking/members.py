@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins, rules, units
 from aidl_lang.checking.binding import FIELDS, MEMBERS
+from aidl_lang.checking.complaints import did_you_mean, renamed, respell
 from aidl_lang.checking.facts import (
     NOTHING_READ,
     UNKNOWN,
@@ -19,9 +20,8 @@ from aidl_lang.checking.facts import (
     of_symbol,
     part,
 )
-from aidl_lang.checking.resolving.complaints import did_you_mean, renamed, respell
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.rules import a, in_box, shown
+from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
+from aidl_lang.checking.complaints import called_field, did_you_mean, respell
 from aidl_lang.checking.facts import body_of, is_number, is_point
-from aidl_lang.checking.resolving.complaints import called_field, did_you_mean, respell
 from aidl_lang.checking.rules import shown
 from aidl_lang.checking.types import (
     Binding,

@@ -26,7 +26,6 @@ Vec = tuple[float, float]
 Curve = tuple[Vec, ...]
 """The two ends of a line, or the four control points of a cubic Bézier curve; a single point is a place."""
 
-SUFFIXES = (".ttf", ".otf")
 
 _KINDS = (b"\0\1\0\0", b"true", b"OTTO")
 """What a file with one font begins with."""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
-from aidl_lang.common.files import replace
+from aidl_lang.common.world import replace
 from aidl_lang.version import __version__
 
 # --- The places of the files that ship with the package: grammar, standard library, pages on diagnostics.

@@ -23,11 +23,10 @@ from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
+from aidl_lang.solver.conflicts import Reason, reasons
 from aidl_lang.solver.dependence import Redundancy
-from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op, mentioned
 from aidl_lang.solver.problem import Failure
-from aidl_lang.solver.questions import Reason, reasons
 
 # --- The sizes and frames that gave way unasked, with the constraints that ask for it: sizes that changed,
 # frames that moved though their content is exact or no constraint names them (language, "What gives way").

@@ -9,25 +9,23 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.boxes import SIDES, constrain_sources
-from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.building.wording import Wording, differences, givens, rounding
+from aidl_lang.building.wording import RELATIONS, Wording, differences, givens, holds, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.staying import leaving_notes
 from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region, area, perimeter
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.problem import Solution, Status
 
 if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Explanation
     from aidl_lang.explaining.giving import GaveWay
+    from aidl_lang.solver.analysis import Freedom
 
 _TOLERANCE = 1e-6
 """Violation that an assertion may have, relative to the values compared (and never less than this in mm)."""
@@ -51,6 +49,8 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
+    from aidl_lang.explaining.staying import leaving_notes
+
     found += leaving_notes(root, lowered, solution)
     found += _wishes(lowered, solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:

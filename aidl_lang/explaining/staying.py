@@ -288,7 +288,7 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
 
 def _fits(structure: Structure, lowered: Lowered) -> bool:
     """Tells whether a place is found for a structure as a whole, with all other positions free."""
-    from aidl_lang.solver.questions import nearby_solution
+    from aidl_lang.solver.conflicts import nearby_solution
 
     problem = lowered.problem
     start = {

@@ -15,16 +15,16 @@ import numpy as np
 
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import is_size
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has_errors
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.solver import Settings, Solution, solve
+from aidl_lang.solver.conflicts import equations, nearby_solution, residual, shortfall
+from aidl_lang.solver.expression import Floats
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import GroupFailure
-from aidl_lang.solver.questions import equations, nearby_solution, residual, shortfall
 from aidl_lang.syntax import ast
 
 _MOST = 12

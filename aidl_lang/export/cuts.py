@@ -32,7 +32,7 @@ from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
 from aidl_lang.geometry.region import Face, Loop, Region, loop_area, loop_points
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
-from aidl_lang.solver.gradients import connected
+from aidl_lang.solver.valuation import connected
 
 # --- Joins curves end to end, for machines that draw them in one go.
 

@@ -18,8 +18,7 @@ from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.nearness import from_sides, inside
-from aidl_lang.geometry.parts import COARSE
-from aidl_lang.geometry.region import Region, piece_points, region_polygons
+from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.

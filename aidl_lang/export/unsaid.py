@@ -78,12 +78,12 @@ def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
 
 def followed_notes(job: Job) -> list[Diagnostic]:
     """Returns notes on layers that a cutter's profile does not know, and on areas that are none."""
-    from aidl_lang.export.cuts import unfilled
-    from aidl_lang.export.profiles import PLAIN
-
     asked, profile = job.options.profile, job.options.followed
     if profile is None:
         return []
+    from aidl_lang.export.cuts import unfilled
+    from aidl_lang.export.profiles import PLAIN
+
     notes = []
     unknown = {
         str(s.attributes["layer"][0]): s.span

@@ -36,8 +36,6 @@ from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
-TOLERANCE = 0.01
-"""How far arcs may be from the curves that they stand for, mm, unless something else is asked for."""
 SHORTEST = 3.0
 """Pieces shorter than so many tolerances are not left where a machine is to follow."""
 JOINED = 10.0

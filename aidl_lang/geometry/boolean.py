@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
+from functools import lru_cache
 from itertools import accumulate, combinations, pairwise
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,16 +15,19 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry.curves import (
     Arc,
+    Bezier,
     Bounds,
     Circle,
     Floats,
     Line,
     Piece,
     Vec,
+    all_bounds,
     bounds,
     derivative,
     ends,
     is_closed,
+    larger_side,
     locate,
     nearest,
     part,
@@ -31,21 +35,28 @@ from aidl_lang.geometry.curves import (
     points,
     reverse,
     second_derivative,
+    union_bounds,
 )
 from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
 from aidl_lang.geometry.nearness import inside, near_pairs, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region, area, region_bounds, region_polygons
+from aidl_lang.geometry.region import Face, Loop, Region, area, loop_area, region_bounds, region_polygons
 from aidl_lang.geometry.sections import (
     NEGLIGIBLE,
     Section,
+    closed_loop,
     difference,
+    faces_of,
     filled,
+    first_point,
     intersection,
     is_nothing,
     trace,
     union,
 )
+
+if TYPE_CHECKING:
+    from aidl_lang.common.font_files import Curve
 
 # --- Least distances between outlines, exact for lines, arcs and circles.
 
@@ -483,3 +494,100 @@ def _compare(network: Network, a: Solid, b: Solid) -> Contact:
     closest = region_distance(a.region, b.region)
     gap = closest[0] if closest and closest[0] > network.tolerance else None
     return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)
+
+
+# --- The areas of letters that a drawing fills, with their counters open; letters with overlapping contours
+# united; letters of stencils, with bridges to what they enclose.
+
+
+def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
+    """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
+    other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
+    """
+    boxes = [union_bounds(all_bounds(letter)) for letter in letters]
+    tolerance = RELATIVE_TOLERANCE * larger_side(union_bounds(boxes))
+    if len(near_rows(boxes, tolerance)):
+        return None
+    faces: list[Face] = []
+    for letter in letters:
+        checkpoint()
+        contours = list(_contours(letter))
+        if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
+            return None
+        areas = [loop_area(Loop(contour)) for contour in contours]
+        sense = math.copysign(1.0, max(areas, key=abs))
+        turned = [c if sense > 0 else tuple(reverse(piece) for piece in reversed(c)) for c in contours]
+        loops = (closed_loop(contour, tolerance) for contour in turned)
+        faces += faces_of([(sense * area, loop) for area, loop in zip(areas, loops, strict=True)])
+    return Region(tuple(sorted(faces, key=lambda face: first_point(face.outer))))
+
+
+@lru_cache(maxsize=512)
+def united_character(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
+    """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
+    network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
+
+    def traced() -> Region:
+        return trace(network, filled(network, _contours(network.curves), 0, "NonZero")).region
+
+    return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
+
+
+_ROUNDS = 4
+"""How often what is still enclosed gets bridges: a ring in a ring needs two."""
+
+
+@lru_cache(maxsize=512)
+def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
+    """Returns the outline of a character through which bridges lead to all that it encloses: upright ones of
+    that width, above and below the middle of each counter, through the strokes next to it.
+    """
+    region = lettered_region([[Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]]) or Region()
+    for wider in range(_ROUNDS):
+        counters = [hole for face in region.faces for hole in face.holes]
+        if not counters:
+            break
+        beyond = width * 2**wider
+        region = without(region, *(bar for hole in counters for bar in _bridges(region, hole, width, beyond)))
+    return tuple(_points(piece) for piece in region.pieces)
+
+
+def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iterator[Region]:
+    """Yields the areas of a letter to be taken away for a counter. They reach `beyond` the far side of a
+    stroke, which may be slanted, but no further than half of the way to the next one.
+    """
+    left, low, right, high = region_bounds(Region((Face(counter),)))
+    x, middle = (left + right) / 2, (low + high) / 2
+    _, bottom, _, top = region_bounds(region)
+    line = _rectangle(x - 1e-3 * width, bottom - width, x + 1e-3 * width, top + width)
+    strokes = sorted(region_bounds(Region((face,)))[1::2] for face in common(region, line).faces)
+    above = [stroke for stroke in strokes if stroke[0] > middle]
+    below = [stroke for stroke in reversed(strokes) if stroke[1] < middle]
+    if above:
+        end = min([above[0][1] + beyond, *((above[0][1] + next_low) / 2 for next_low, _ in above[1:2])])
+        yield _rectangle(x - width / 2, middle, x + width / 2, end)
+    if below:
+        end = max([below[0][0] - beyond, *((below[0][0] + next_high) / 2 for _, next_high in below[1:2])])
+        yield _rectangle(x - width / 2, end, x + width / 2, middle)
+
+
+def _rectangle(left: float, bottom: float, right: float, top: float) -> Region:
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+    return Region((Face(Loop(tuple(Line(a, b) for a, b in pairwise((*corners, corners[0]))))),))
+
+
+def _points(piece: Piece) -> Curve:
+    if isinstance(piece, Bezier):
+        return piece.p0, piece.p1, piece.p2, piece.p3
+    assert isinstance(piece, Line)
+    return piece.start, piece.end
+
+
+def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
+    """Yields the runs of curves of which each begins where the one before it ends."""
+    first = 0
+    for k, piece in enumerate(outline):
+        is_closed = ends(outline[first])[0] == ends(piece)[1]
+        if is_closed or k + 1 == len(outline) or ends(outline[k + 1])[0] != ends(piece)[1]:
+            yield tuple(outline[first : k + 1])
+            first = k + 1

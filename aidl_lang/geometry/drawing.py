@@ -17,17 +17,22 @@ from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
     CoveredHoles,
+    Gap,
     IdleHole,
     InnerLoop,
     LooseCurves,
     Mass,
     clip_sections,
     clip_shapes,
+    effective,
     empty_clips,
     inner_seams,
+    open_gaps,
     visible_seams,
+    welded_gaps,
+    without_gaps,
 )
-from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts
+from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
 from aidl_lang.geometry.curves import (
     Bounds,
     Piece,
@@ -40,7 +45,6 @@ from aidl_lang.geometry.curves import (
     usable,
 )
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
@@ -50,7 +54,6 @@ from aidl_lang.geometry.legibility import (
     overhanging_notes,
     unseen_note,
 )
-from aidl_lang.geometry.letters import lettered_region
 from aidl_lang.geometry.network import GRID, Network, with_finer_chords
 from aidl_lang.geometry.notes import (
     detached_notes,

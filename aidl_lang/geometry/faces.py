@@ -6,10 +6,9 @@ import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.building.model import Geometry
-from aidl_lang.common.drawings.drawing import Bow, Element, Stroke
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import (
@@ -38,6 +37,9 @@ from aidl_lang.geometry.sections import (
 )
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
 
+if TYPE_CHECKING:
+    from aidl_lang.common.drawings import Element, Stroke
+
 # --- Outlines of drawings of other programs, as exact curves, and what they enclose.
 #
 # A shape of a file is filled by its own rule, and shapes that cross are united. What lies in another without
@@ -62,7 +64,7 @@ _FLAT = 1e-12
 
 def curve_of(stroke: Stroke) -> Piece:
     """Returns the exact curve of a stroke."""
-    if not isinstance(stroke, Bow):
+    if isinstance(stroke, tuple):
         return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
     (ux, uy), (vx, vy) = stroke.u, stroke.v
     # Conjugate half-diameters become those of the axes by a shift of the parameter.

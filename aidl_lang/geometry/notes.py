@@ -18,6 +18,7 @@ from aidl_lang.geometry.bodies import (
     CrossedOutline,
     FilledHole,
     Finding,
+    Gap,
     IdleHole,
     InnerLoop,
     LooseCurves,
@@ -26,7 +27,6 @@ from aidl_lang.geometry.bodies import (
 from aidl_lang.geometry.boolean import Contacts
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
 from aidl_lang.geometry.faces import is_winding
-from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 

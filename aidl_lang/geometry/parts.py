@@ -28,7 +28,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.legibility import Holders, owner
 from aidl_lang.geometry.notes import united_notes
-from aidl_lang.geometry.region import Region, face_polygons, length, region_bounds
+from aidl_lang.geometry.region import COARSE, Region, face_polygons, length, region_bounds
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
 # --- The parts of a drawing, each by itself, with what is engraved on it.
@@ -97,8 +97,6 @@ def _length(pieces: Sequence[Piece]) -> float:
 
 # --- The parts of a drawing, each by itself: laid flat by its own frame, with what is engraved on it.
 
-COARSE = 0.05
-"""Millimetres from an outline to the polygon that stands for it where places are sought."""
 _ALIKE = 1e-6
 """Relative difference of parts that are equal."""
 _OFF_BEAT = 0.2137

@@ -1,26 +1,57 @@
-"""Makes the drawing of a solution: names with places, regions, and diagnostics."""
+"""Makes the drawing of a solution: numbers read off, names with places, regions, and diagnostics."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-from aidl_lang.building.model import Model
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawing_time import blaming
-from aidl_lang.common.running import Stopwatch, working
+from aidl_lang.building import expression as ex
+from aidl_lang.building.attributes import FILLING
+from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
+from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
+from aidl_lang.building.lower import FLOATS, Lowered, Placing
+from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure, own_geometry
+from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.values import Num, PointVal, TextVal, Value
+from aidl_lang.checking.units import PLAIN
+from aidl_lang.common.diagnostics import Diagnostic, blaming
+from aidl_lang.common.records import record
+from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import Span
+from aidl_lang.geometry import curves
+from aidl_lang.geometry.boolean import stencilled, united_character
+from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec, is_finite
+from aidl_lang.geometry.drawing import Drawing, Findings, draw
+from aidl_lang.geometry.faces import edge_of, parts_of
+from aidl_lang.geometry.notes import unusable_note
+from aidl_lang.geometry.solved import (
+    Box,
+    Change,
+    ConstraintReport,
+    Dimension,
+    Frame,
+    Mobility,
+    Motion,
+    Reading,
+    Scalar,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+    Values,
+    described,
+)
+from aidl_lang.geometry.solved import Finish as SolvedFinish
+from aidl_lang.geometry.solved import Recipe as SolvedRecipe
+from aidl_lang.solver.problem import Solution
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.building.expression import Evaluator
-    from aidl_lang.building.lower import Lowered
-    from aidl_lang.geometry.drawing import Drawing, Findings
-    from aidl_lang.geometry.solved import Dimension, SolvedModel
+    from aidl_lang.common.lettering import Glyph
     from aidl_lang.solver.analysis import Freedom
-    from aidl_lang.solver.problem import Solution
 
 _HEAVY = "most of its curves are made here"
 
@@ -29,9 +60,6 @@ def pictured(
     built: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings]:
     """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
-    from aidl_lang.geometry.drawing import Findings, draw
-    from aidl_lang.geometry.readout import read_out, with_places
-
     with watch("read out"):
         model, evaluator = read_out(built, lowered, solution, freedom)
     with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
@@ -71,3 +99,460 @@ def _most_drawn(model: SolvedModel) -> Span | None:
             if geometry.span is not None:
                 made[geometry.span] += sum(1 for each in geometry.walk() if each.curve is not None)
     return max(made, key=lambda span: made[span], default=None)
+
+
+# --- Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root.
+
+_FULL_TURN = 2 * math.pi
+
+
+def read_out(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
+) -> tuple[SolvedModel, Evaluator]:
+    """Returns the solved model, with its `freedom` worked out on demand, and the evaluator of its values."""
+    values: dict[Unknown, float] = {
+        u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
+    }
+    evaluator = Evaluator(values)
+    changed = tuple(_changes(lowered, solution))
+    reports = tuple(_reports(model, lowered, solution))
+    root = _Reader(model, evaluator).structure(model.root)
+    readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
+    mobility = Later(partial(_mobility, model, lowered, solution, freedom))
+    return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
+
+
+def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]) -> Mobility:
+    found = freedom()
+    each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
+    return Mobility(
+        found.degrees,
+        tuple(lowered.unknowns[i].path for i in found.free),
+        tuple(_floating(lowered, found)),
+        {structure.path: (degrees, str(state)) for structure, degrees, state in each},
+        Later(partial(_motions, model, lowered, solution, found)),
+    )
+
+
+def _literal(model: Model, finish: Finish) -> ast.Number | None:
+    """Returns the number that is the size of a fillet or chamfer, if no constraint mentions it."""
+    if not finish.sizes:
+        return None
+    size, *more = finish.sizes
+    rows = (c for constraint in model.constraints for c in constraint.comparisons)
+    if more or size.expression.payload in set(ex.unknowns(side for c in rows for side in (c.left, c.right))):
+        return None
+    node = next((each.node for each in model.literals if each.became is size.expression), None)
+    return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
+
+
+def _motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+    """Returns the motions that are left, by code that is loaded when it is needed."""
+    from aidl_lang.geometry.freedom import motions
+
+    return motions(model, lowered, solution, freedom)
+
+
+def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
+    """Yields the paths of structures with guessed values that no constraint ties to what is around them."""
+    guessed: set[tuple[int, int]] = set()
+    problem = lowered.problem
+    if problem.axis is not None:
+        guessed.update(zip(problem.group.tolist(), problem.axis.tolist(), strict=True))
+    for group in freedom.loose:
+        if (group, 0) in guessed and (group, 1) in guessed:
+            yield lowered.groups[group]
+
+
+def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
+    for index in solution.changed:
+        unknown = lowered.unknowns[index]
+        solved, span = float(solution.values[index]), unknown.holder.span
+        yield Change(unknown.path, unknown.guess, solved, span, unknown.description, unknown.is_size)
+
+
+def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
+    number = {stated: index for index, stated in enumerate(lowered.stated)}
+    for stated in model.constraints:
+        if (index := number.get(stated)) is not None:
+            yield ConstraintReport(
+                stated.holder.path,
+                f"{stated.text} [{stated.label}]" if stated.label else stated.text,
+                stated.span,
+                solution.residuals[index],
+                solution.satisfied[index],
+                Later(partial(getattr, stated, "mentions")),
+                stated.weight is not None,
+                all(comparison.relation == "==" for comparison in stated.comparisons),
+            )
+
+
+@record(frozen=False)
+class _Reader:
+    model: Model
+    evaluate: Evaluator
+
+    @cached_property
+    def place(self) -> Placing[float]:
+        """Converts points to the frame of the root."""
+        return Placing(self.evaluate, FLOATS)
+
+    def structure(self, s: Structure) -> SolvedStructure:
+        geometry = tuple(map(self._named, s.own()))
+        children = tuple(self.structure(child) for child in s.children)
+        frame = s.frame
+        return SolvedStructure(
+            name=s.name,
+            path=s.path,
+            kind=s.kind,
+            orientation=self._orientation(s),
+            frame=Frame(
+                self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
+            ),
+            attributes=self._attributes(s),
+            params=dict(self._params(s)),
+            geometry=geometry,
+            structures=children,
+            box=self._box(s, geometry, children),
+            is_empty=s.is_empty,
+            span=s.span,
+            finishes=tuple(self._finish(s, f) for f in s.finishes),
+            doc=s.doc,
+            clip=tuple(map(self.geometry, s.clip)),
+            ground=s.ground.path if s.ground is not None else None,
+        )
+
+    def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:
+        """Yields every named number of a structure itself: its params, variables and arguments."""
+        assert isinstance(s.scope, Scope)
+        # The root shows the params of the file, too.
+        scopes = list(s.scope.chain()) if s is self.model.root else [s.scope]
+        for scope in reversed(scopes):
+            for name, binding in scope.values.items():
+                value: Value | None = None
+                match binding:
+                    case ParamBinding(known=known):
+                        value = known
+                    case VarBinding(value=known) if scope is s.scope:
+                        value = known
+                    case PassedBinding(tied=tied):
+                        # A copy shares those of its source.
+                        value = tied.get(s) or tied.get(binding.instance, binding.value)
+                    case TextVal() | bool() if scope is s.scope:
+                        value = binding
+                if isinstance(value, Num | TextVal | bool):
+                    yield name, self._scalar(value)
+
+    def _orientation(self, s: Structure) -> str:
+        """Returns the orientation of a structure: its own, else that of the structure around it."""
+        match s.attributes.get("orientation"):
+            case (TextVal(word, _),):
+                return word
+            case _:
+                return self._orientation(s.parent) if s.parent is not None else "top"
+
+    def _attributes(self, of: Structure | Geometry) -> dict[str, tuple[Scalar, ...]]:
+        return {name: tuple(map(self._scalar, values)) for name, values in of.attributes.items()}
+
+    def _looks(self, g: Geometry) -> dict[str, tuple[Scalar, ...]]:
+        """Returns the look of a solid in a solid, for its geometry: an area of the body that both are."""
+        looks: dict[str, tuple[Scalar, ...]] = {}
+        s = g.owner if g.container is g.owner else None
+        while s is not None and s.kind == "solid" and s.parent is not None and s.parent.kind == "solid":
+            looks = {n: v for n, v in self._attributes(s).items() if n in (*FILLING, "opacity")} | looks
+            s = s.parent
+        return looks
+
+    def _scalar(self, value: Value) -> Scalar:
+        match value:
+            case Num(expression, _, _):
+                return self.evaluate(expression)
+            case TextVal(text, _):
+                return text
+            case bool():
+                return value
+            case _:
+                return str(value)
+
+    def _box(
+        self, s: Structure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
+    ) -> Box | None:
+        corners: list[Bounds] = []
+        if s.plan:
+            left, bottom, width, height = s.plan
+            for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
+                x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
+                corners.append((x, y, x, y))
+        return Box.around((curve for g in geometry for curve in g.curves()), children, corners)
+
+    # --- Geometry ------------------------------------------------------------------------------
+
+    def _named(self, g: Geometry) -> SolvedGeometry:
+        with blaming(lambda: g.span, "it came as far as this"):
+            checkpoint()
+            return self.geometry(g)
+
+    def geometry(self, g: Geometry) -> SolvedGeometry:
+        if g.type == "glyphs":
+            return self._text(g)
+        if g.trace is not None:
+            return self._drawing(g)
+        recipe = self._recipe(g.recipe) if g.recipe is not None else None
+        is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
+        curve = self._curve(g) if is_plain else None
+        if is_plain and curve is None:
+            parts = tuple(
+                edge_of(g, f"edge[{i}]", _through(points)) for i, points in enumerate(self._pieces(g))
+            )
+        else:
+            parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
+        return self._solved(g, self._own_values(g, curve), parts, curve, recipe)
+
+    def _solved(
+        self,
+        g: Geometry,
+        values: Values,
+        parts: tuple[SolvedGeometry, ...],
+        curve: Curve | None = None,
+        recipe: SolvedRecipe | None = None,
+    ) -> SolvedGeometry:
+        source = g.source.path if g.source is not None else None
+        known = (
+            g.type,
+            values,
+            curve,
+            parts,
+            g.construction,
+            g.span,
+            recipe,
+            source,
+            self._looks(g) | self._attributes(g),
+        )
+        return SolvedGeometry(g.name or g.type, g.path, *known)
+
+    def _recipe(self, recipe: Recipe) -> SolvedRecipe:
+        return SolvedRecipe(
+            recipe.kind,
+            tuple(tuple(self.geometry(g) for g in group) for group in recipe.operands),
+            {name: self._number(value) for name, value in recipe.numbers.items()},
+            recipe.words,
+        )
+
+    def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
+        at = self._at(finish.at, s) if finish.at is not None else None
+        of = tuple(g.path for g in finish.of)
+        sizes = tuple(map(self._number, finish.sizes))
+        literal = Later(partial(_literal, self.model, finish))
+        return SolvedFinish(
+            finish.kind, of, at, sizes, finish.text, finish.span, run=finish.run, literal=literal
+        )
+
+    def _text(self, g: Geometry) -> SolvedGeometry:
+        """Returns a text with its characters as parts, and the curves of each as theirs."""
+        height = self._number(g.fields["height"])
+        start, turn, _, at = self._placing(g, height)
+        bridge = self._bridge(g, height)
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph, bridge, at) for i, glyph in enumerate(g.glyphs))
+        return self._solved(g, {"start": start, "height": height, "angle": math.degrees(turn)}, glyphs)
+
+    def _placing(self, g: Geometry, unit: float) -> tuple[Vec, float, float, Callable[[Vec], Vec]]:
+        """Returns the start of a text or a drawing, its turn in radians, -1 if it is turned over and else 1,
+        and where its points in units of its own lie.
+        """
+        x, y = start = self._at(g.fields["start"], g.owner)
+        c, s = ex.exact_turn(self._direction(g))
+        sense = -1.0 if clockwise(g, self.model.root) else 1.0
+
+        def at(p: Vec) -> Vec:
+            u, v = unit * p[0], sense * unit * p[1]
+            return x + u * c - v * s, y + u * s + v * c
+
+        return start, math.atan2(s, c), sense, at
+
+    def _bridge(self, text: Geometry, height: float) -> float:
+        """Returns the width of the bridges of a text in units of its height; 0 for none."""
+        if text.bridge is None or height <= 0:
+            return 0.0
+        return text.bridge.value if text.bridge.dimension == PLAIN else text.bridge.value / height
+
+    def _drawing(self, g: Geometry) -> SolvedGeometry:
+        """Returns a drawing of another program, with its shapes as parts and the curves of each as theirs."""
+        unit = self._number(g.fields["unit"])
+        start, turn, sense, at = self._placing(g, unit)
+        shapes = parts_of(g, at, unit, turn, sense)
+        return self._solved(g, {"start": start, "unit": unit, "angle": math.degrees(turn)}, shapes)
+
+    def _at(self, value: Value, owner: Structure) -> Vec:
+        """Returns a point of `owner` in the frame of the root."""
+        x, y = xy(value)
+        return self.place(self.evaluate(x), self.evaluate(y), owner)
+
+    def _direction(self, g: Geometry) -> float:
+        """Returns the angle of an ellipse or a text in the frame of the root, in degrees."""
+        return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
+
+    def _number(self, value: Value) -> float:
+        return self.evaluate(number(value))
+
+    def _own_values(self, g: Geometry, curve: Curve | None) -> Values:
+        if curve is not None:
+            return described(curve)[1]
+        if g.is_compound:
+            assert isinstance(g.scope, Scope)
+            return self._values({name: g.scope.values[name] for name in g.arguments}, g.owner)
+        return self._values(g.recipe.numbers if g.recipe and g.is_drawn_later else g.fields, g.owner)
+
+    def _values(self, values: Mapping[str, NameBinding], owner: Structure) -> Values:
+        """Returns the numbers and points among values of `owner`."""
+        found: Values = {}
+        for name, value in values.items():
+            if isinstance(value, PointVal):
+                found[name] = self._at(value, owner)
+            elif isinstance(value, Num):
+                found[name] = self._number(translate(name, value, owner, self.model.root))
+        return found
+
+    def _curve(self, g: Geometry) -> Curve | None:
+        """Returns the curve of a primitive; None for one made of lines and cubics."""
+        core, at = g.fields, partial(self._at, owner=g.owner)
+        match g.type:
+            case "line" | "bezier":
+                (points,) = self._pieces(g)
+                return _through(points)
+            case "circle":
+                return curves.Circle(at(core["center"]), self._number(core["radius"]))
+            case "ellipse":
+                rx, ry = self._number(core["rx"]), self._number(core["ry"])
+                return curves.Ellipse(at(core["center"]), rx, ry, self._direction(g) * DEGREE)
+            case "arc":
+                return self._arc(g)
+            case _:
+                return None
+
+    def _pieces(self, g: Geometry) -> Iterator[list[Vec]]:
+        """Yields the ends of the lines and the control points of the cubics that a primitive is made of."""
+        for piece in pieces(g, g.owner):
+            yield [self.place(self.evaluate(x), self.evaluate(y), g.owner) for x, y in piece]
+
+    def _arc(self, g: Geometry) -> Curve:
+        center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
+        first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
+        is_clockwise = clockwise(g, self.model.root)
+        sweep = (first - last if is_clockwise else last - first) % _FULL_TURN
+        if sweep < 1e-12:
+            sweep = _FULL_TURN
+        return curves.Arc(
+            center, self._number(g.fields["radius"]), start, end, -sweep if is_clockwise else sweep
+        )
+
+
+def _glyph(
+    text: Geometry, name: str, glyph: Glyph, bridge: float, at: Callable[[Vec], Vec]
+) -> SolvedGeometry:
+    """Returns a character, its curves as parts; `bridge`: the width of bridges per height, 0 for none."""
+    checkpoint()
+    outline = glyph.curves if glyph.is_nested else united_character(glyph.curves)
+    outline = stencilled(outline, bridge) if bridge else outline
+    edges = tuple(
+        edge_of(text, f"{name}.edge[{i}]", _through([at(p) for p in c])) for i, c in enumerate(outline)
+    )
+    path, filled = f"{text.path}.{name}", text.filled
+    made = SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
+    return replace(made, stroked=glyph.is_stroked)
+
+
+def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:
+    return curves.Line(*points) if len(points) == 2 else curves.Bezier(*points)
+
+
+# --- Leaves curves and values without a place out of a solved model, so that all later numbers can be drawn,
+# measured and written.
+
+
+def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """Returns the model without curves and numbers that have no place, and diagnostics on them."""
+    if all(map(_is_sound, model.root.walk())):
+        return model, []
+    cleaner = _Cleaner()
+    return replace(model, root=cleaner.structure(model.root)), cleaner.notes
+
+
+def _is_sound(structure: SolvedStructure) -> bool:
+    frame, box = structure.frame, structure.box
+    return (
+        _is_within((frame.x, frame.y, frame.rotation))
+        and (box is None or _is_within(box.bounds))
+        and all(map(_has_place, structure.geometry))
+    )
+
+
+def _has_place(geometry: SolvedGeometry) -> bool:
+    """Tells whether all of a geometry, with its parts, can be drawn."""
+    return (
+        (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
+        and all(map(_has_place, geometry.parts))
+        and (geometry.recipe is None or _is_possible(geometry))
+    )
+
+
+def _is_possible(outline: SolvedGeometry) -> bool:
+    assert outline.recipe is not None
+    return _is_within(outline.recipe.numbers.values()) and all(
+        _has_place(g) for operand in outline.recipe.operands for g in operand
+    )
+
+
+def _is_within(value: object) -> bool:
+    """Tells whether every number in a value can be drawn."""
+    if isinstance(value, float):
+        return abs(value) <= LARGEST
+    return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
+
+
+@record(frozen=False)
+class _Cleaner:
+    notes: list[Diagnostic] = field(default_factory=list)
+
+    def structure(self, s: SolvedStructure) -> SolvedStructure:
+        geometry = tuple(self._drawable(s, g) for g in s.geometry)
+        children = tuple(map(self.structure, s.structures))
+        frame, box = s.frame, s.box
+        if not _is_within((frame.x, frame.y, frame.rotation)):
+            frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
+        if box is None or not s.is_empty:
+            curves = (curve for g in geometry for curve in g.curves() if is_finite(curve))
+            box = Box.around(curves, children)
+        elif not _is_within(box.bounds):
+            box = None
+        return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
+
+    def _drawable(self, s: SolvedStructure, whole: SolvedGeometry) -> SolvedGeometry:
+        if _has_place(whole):
+            return whole
+        lost = list(_lost(whole))
+        is_whole = all(g in lost for g in whole.walk() if not g.parts)
+        self.notes.append(unusable_note(s, lost[0], whole if is_whole else lost[0]))
+        return _stripped(whole)
+
+
+def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    """Yields the innermost parts that have no place."""
+    inside = [lost for part in geometry.parts for lost in _lost(part)]
+    yield from inside
+    if not inside and not _has_place(geometry):
+        yield geometry
+
+
+def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
+    """Returns a geometry with those of its parts and values that have a place; its name stays."""
+    if _has_place(geometry):
+        return geometry
+    values = {name: value for name, value in geometry.values.items() if _is_within(value)}
+    is_primitive = len(values) < len(geometry.values) and not geometry.parts
+    return replace(
+        geometry,
+        values=values,
+        curve=None if is_primitive else geometry.curve,
+        parts=tuple(map(_stripped, geometry.parts)),
+        recipe=geometry.recipe if geometry.recipe is not None and _is_possible(geometry) else None,
+    )

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from aidl_lang.common.quadrature import gauss
+from aidl_lang.building.curves import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import (
@@ -267,6 +267,8 @@ def _quadrature(spans: int = 8) -> tuple[Floats, Floats, Floats]:
 Polygon = Floats
 """Vertices in order, shape (n, 2), mm; the first is not repeated at the end."""
 
+COARSE = 0.05
+"""Millimetres from an outline to the polygon that stands for it where places are sought."""
 COARSEST = TAU / 16
 """Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
 SLACK = 1e-9

@@ -17,8 +17,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.drawing import Drawing, Stroke
-from aidl_lang.geometry.parts import COARSE, Motion, Part, Size, drawn, gathered, parts_of, upright_turn
-from aidl_lang.geometry.region import Polygon, face_polygons, polygon_area
+from aidl_lang.geometry.parts import Motion, Part, Size, drawn, gathered, parts_of, upright_turn
+from aidl_lang.geometry.region import COARSE, Polygon, face_polygons, polygon_area
 from aidl_lang.geometry.sections import widened
 from aidl_lang.geometry.solved import SolvedStructure
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
+from aidl_lang.building.curves import gauss
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.materials import density, similar
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
-from aidl_lang.common.quadrature import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact, region_distance

@@ -1,11 +1,11 @@
 """The constraint solver: `solve(problem) -> Solution`. It knows nothing of the language.
 
-In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing` (some rows,
-on numbers); `array_program` (many rows, on arrays); `linear`, `sparse`; `newton` (one smooth system),
-`branches` (one attempt); `tiers` (what is free when), `loosening` (who gives way), `group` (one structure),
-`levels` (all groups of a depth), `riding`, `hierarchy` (`solve`); `refuting`, `conflicts`. What is asked
-besides is in `questions`, what is said of a solution afterwards in `analysis`. What stands at this door is
-loaded when it is asked for: a program is checked without the solver and without numpy.
+In the order of reading: `expression` (operations, and the tape), `problem`; `valuation`, `freezing` (some
+rows, on numbers); `array_program` (many rows, on arrays); `linear`, `sparse`; `newton` (one smooth system),
+`branches` (one attempt); `loosening` (what is free when, who gives way), `group` (one structure), `levels`
+(all groups of a depth), `hierarchy` (`solve`); `refuting`, `conflicts` (and what is asked besides). What is
+said of a solution afterwards is in `analysis`. What stands here is loaded when asked for: a program is
+checked without the solver and without numpy.
 """
 
 from __future__ import annotations
@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING, Any
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.hierarchy import solve
+    from aidl_lang.solver.hierarchy import Memory, solve
     from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, Solution, Status
-    from aidl_lang.solver.riding import Memory
 
 __all__ = ["Constraint", "Memory", "Problem", "Relation", "Row", "Settings", "Solution", "Status", "solve"]
 
-_HOME = {"Memory": "riding", "solve": "hierarchy"}
+_HOME = {"Memory": "hierarchy", "solve": "hierarchy"}
 
 
 def __getattr__(name: str) -> Any:
@@ -34,7 +33,7 @@ def __getattr__(name: str) -> Any:
 
 
 class Stages(Enum):
-    """The stages at which unknowns become free (see `tiers`). All but the first are for comparison."""
+    """The stages at which unknowns become free (see `loosening`). All but the first are for comparison."""
 
     FULL = "full"
     PAPER = "paper"

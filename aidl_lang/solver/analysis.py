@@ -13,11 +13,11 @@ import numpy as np
 from aidl_lang.common.arrays import each_once, others
 from aidl_lang.common.records import record
 from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
-from aidl_lang.solver.gradients import LARGE, Sorted, connected, linearise
-from aidl_lang.solver.matrix import DOUBT, RANK, Sparse
-from aidl_lang.solver.operations import Bools, Floats, Ints
+from aidl_lang.solver.expression import Bools, Floats, Ints
+from aidl_lang.solver.hierarchy import Riding, groups_riding
+from aidl_lang.solver.linear import DOUBT, RANK, Sparse
 from aidl_lang.solver.problem import Problem, Solution
-from aidl_lang.solver.riding import Riding, groups_riding
+from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
 # --- The motions that leave every equation as it is, as far as a reader can see them.
 #
@@ -330,7 +330,7 @@ def _stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: 
 # A motion is a direction in the null space of the Jacobian of the equations that hold, over all unknowns
 # that are not kept sizes. Only what can be seen counts: degrees of freedom are the rank of the observables'
 # Jacobian on that space, so that a frame and its contents moving against each other do not count. An
-# inequality takes no freedom away. What no constraint names rides along, and adds none (see `riding`).
+# inequality takes no freedom away. What no constraint names rides along, and adds none (see `hierarchy`).
 
 SINGULAR = 1e-7
 """Slope of a row, in units of its scale, below which it counts as none and says nothing of the constraint."""

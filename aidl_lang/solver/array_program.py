@@ -16,10 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.expression import Tape
-from aidl_lang.solver.linear import Matrix
-from aidl_lang.solver.newton import GOLDEN
-from aidl_lang.solver.operations import (
+from aidl_lang.solver.expression import (
     BRANCHING,
     IDENTITY,
     LINEAR,
@@ -27,9 +24,12 @@ from aidl_lang.solver.operations import (
     Floats,
     Ints,
     Op,
+    Tape,
     partials_of,
     values_of,
 )
+from aidl_lang.solver.linear import Matrix
+from aidl_lang.solver.newton import GOLDEN
 
 DENSE = 4096
 """Entries of a Jacobian up to which it is a dense matrix."""

@@ -22,11 +22,10 @@ import numpy as np
 
 from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
-from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.gradients import LARGE, Sorted, connected, linearise
-from aidl_lang.solver.matrix import DOUBT, RANK, Sparse
-from aidl_lang.solver.operations import Floats, Ints
+from aidl_lang.solver.expression import Floats, Ints, mentioned
+from aidl_lang.solver.linear import DOUBT, RANK, Sparse
 from aidl_lang.solver.problem import Problem
+from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
 OWN = 1e-3
 """Least entry of a unit row by which an unknown of its own makes the row independent beyond doubt."""

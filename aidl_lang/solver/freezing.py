@@ -24,8 +24,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, TIE, ZERO, ArrayFreezing, ArrayProgram
-from aidl_lang.solver.gradients import components
-from aidl_lang.solver.operations import BRANCHING, PARTIALS, Floats, Op
+from aidl_lang.solver.expression import BRANCHING, PARTIALS, Floats, Op
 from aidl_lang.solver.valuation import (
     Affine,
     Compiled,
@@ -37,6 +36,7 @@ from aidl_lang.solver.valuation import (
     branched,
     combined,
     compiled,
+    components,
     run,
     scaled,
 )

@@ -1,7 +1,7 @@
 """How a group is solved: few parts give way, of these few things, and these by the shortest way.
 
 The paper (appendix B) solves a structure in two stages: translations of its children first, then the
-geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`tiers`) that says
+geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`loosening`) that says
 how dear it is to move: what the constraints place; what else is the group's own, the frames of its
 children among it; frames further down; what lies inside of parts; what rides along with its part, because
 constraints name one thing of that part at most; sizes as written. But no stage frees a whole tier:
@@ -33,10 +33,20 @@ import numpy as np
 
 from aidl_lang.solver import Stages
 from aidl_lang.solver.branches import Task, attempt, violation_of
-from aidl_lang.solver.loosening import givers, spare_sizes, thin
+from aidl_lang.solver.loosening import (
+    ENDLESS,
+    OWN,
+    POSITIONS,
+    Scope,
+    Tier,
+    Tiers,
+    givers,
+    spare_sizes,
+    stage_name,
+    thin,
+)
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Concession, GroupFailure, StageReport
-from aidl_lang.solver.tiers import ENDLESS, OWN, POSITIONS, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.hierarchy import Hierarchy

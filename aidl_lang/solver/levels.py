@@ -24,14 +24,13 @@ from aidl_lang.common.records import record
 from aidl_lang.solver import newton
 from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
-from aidl_lang.solver.gradients import Sorted, components
+from aidl_lang.solver.expression import Bools, Floats, Ints
+from aidl_lang.solver.hierarchy import riding_depths
 from aidl_lang.solver.linear import stacked_least_norm
-from aidl_lang.solver.loosening import MOST, STILL
+from aidl_lang.solver.loosening import MOST, NAMES, STILL
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
-from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
-from aidl_lang.solver.riding import riding_depths
-from aidl_lang.solver.tiers import NAMES
+from aidl_lang.solver.valuation import Sorted, components
 
 ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
@@ -167,7 +166,7 @@ class Levels:
         return labels[:count], labels[count:]
 
     def _tiers(self, depth: int, held: Bools) -> Ints:
-        """Returns the tier (see `tiers`) of each unknown (n,) below a group at `depth`, as one number."""
+        """Returns the tier (see `loosening`) of each unknown (n,) below a group at `depth`, as one number."""
         problem = self.problem
         level = self._unknown_depth - depth
         pairs = self.problem.placed[:, held[problem.placed[0]]]

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
+from aidl_lang.solver.expression import Floats
 from aidl_lang.solver.linear import DampedSteps, Matrix, nearest, with_slacks
-from aidl_lang.solver.operations import Floats
 
 GAIN = 0.1
 """A step must bring this part of the decrease that the linearised rows promise."""

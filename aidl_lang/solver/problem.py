@@ -98,7 +98,7 @@ class Problem:
     placed   (2, k) pairs of a constraint and an unknown that may move first to satisfy it, by constraint
     whole    (2, k) pairs of a constraint and a group that it names as a whole, by its box or its place
     inside   (2, k) pairs of a constraint and a group in which it names something
-    named    whether these pairs are known; else there is nothing but what the rows mention (see `riding`)
+    named    whether these pairs are known; else there is nothing but what the rows mention (see `hierarchy`)
     standing (n,) True for a frame that was written where its content counts as exact: held when others can
              move
     spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch

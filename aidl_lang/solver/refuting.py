@@ -9,11 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.gradients import gradients
+from aidl_lang.solver.expression import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.linear import nearest, plainly_hold
-from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.problem import Relation, Row
-from aidl_lang.solver.valuation import Affine, Form, Valuation, add_terms, applied, branched, combined, scaled
+from aidl_lang.solver.valuation import (
+    Affine,
+    Form,
+    Valuation,
+    add_terms,
+    applied,
+    branched,
+    combined,
+    gradients,
+    scaled,
+)
 
 if TYPE_CHECKING:
     from aidl_lang.solver.hierarchy import Hierarchy

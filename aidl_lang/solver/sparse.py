@@ -28,9 +28,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
-from aidl_lang.solver.linear import CONSISTENT, NOISE, LeastNorm
-from aidl_lang.solver.matrix import DOUBT, RANK, Sparse
-from aidl_lang.solver.operations import Bools, Floats, Ints
+from aidl_lang.solver.expression import Bools, Floats, Ints
+from aidl_lang.solver.linear import CONSISTENT, DOUBT, NOISE, RANK, LeastNorm, Sparse
 
 REGULAR = 1e-9
 """ε relative to the greatest square of a row."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, dataclass_transform
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
@@ -14,9 +14,16 @@ from aidl_lang.common.source import SourceFile, Span
 # by content, leaving places and comments aside.
 
 
-@record(eq=False, repr=False, kw_only=True)
-class Node:
-    span: Span = field(repr=False)
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+class _Recorded:
+    """What makes a record of each class of nodes."""
+
+    def __init_subclass__(cls) -> None:
+        record(eq=False, repr=False)(cls)
+
+
+class Node(_Recorded):
+    span: Span = field(repr=False, kw_only=True)
 
     def __repr__(self) -> str:
         """Returns what dataclasses print, without the span; one for all, as many would slow the start."""
@@ -24,14 +31,12 @@ class Node:
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-@record(eq=False, repr=False)
 class Identifier(Node):
     """A name at the place where it is written (a definition, a member, an argument's name)."""
 
     text: str
 
 
-@record(eq=False, repr=False)
 class Number(Node):
     """`value` is the number as written, without its unit applied; `text` its digits, for the printer."""
 
@@ -40,22 +45,18 @@ class Number(Node):
     text: str
 
 
-@record(eq=False, repr=False)
 class String(Node):
     value: str
 
 
-@record(eq=False, repr=False)
 class Boolean(Node):
     value: bool
 
 
-@record(eq=False, repr=False)
 class Name(Node):
     text: str
 
 
-@record(eq=False, repr=False)
 class Member(Node):
     """`value.name`"""
 
@@ -63,7 +64,6 @@ class Member(Node):
     name: Identifier
 
 
-@record(eq=False, repr=False)
 class Index(Node):
     """`value[index]`"""
 
@@ -71,13 +71,11 @@ class Index(Node):
     index: Expression
 
 
-@record(eq=False, repr=False)
 class Argument(Node):
     name: Identifier | None
     value: Expression
 
 
-@record(eq=False, repr=False)
 class Call(Node):
     """`callee(…)`, or `receiver.callee(…)`, which is the same call with the receiver as first argument."""
 
@@ -86,7 +84,6 @@ class Call(Node):
     arguments: tuple[Argument, ...]
 
 
-@record(eq=False, repr=False)
 class Point(Node):
     """`(x, y)`"""
 
@@ -94,14 +91,12 @@ class Point(Node):
     y: Expression
 
 
-@record(eq=False, repr=False)
 class List(Node):
     """`[a, b, …]`; with two numbers where a point is expected it is a point."""
 
     items: tuple[Expression, ...]
 
 
-@record(eq=False, repr=False)
 class Comprehension(Node):
     """`[element for variable in iterable if condition]`. A further `for` in the brackets is the element of
     the one before it, and `is_joined`: its members are members of the whole.
@@ -122,14 +117,12 @@ class Comprehension(Node):
         return inner
 
 
-@record(eq=False, repr=False)
 class ArgumentBlock(Node):
     """`{ arguments }` in a call; the names that its `let`s give are its own."""
 
     items: tuple[Let | Expression, ...]
 
 
-@record(eq=False, repr=False)
 class ForArguments(Node):
     """`for variable in iterable { arguments }` among the arguments of a call."""
 
@@ -138,7 +131,6 @@ class ForArguments(Node):
     body: ArgumentBlock
 
 
-@record(eq=False, repr=False)
 class IfArguments(Node):
     """`if test { arguments } else { arguments }` among the arguments of a call; `else if` holds one more."""
 
@@ -147,7 +139,6 @@ class IfArguments(Node):
     otherwise: ArgumentBlock | None
 
 
-@record(eq=False, repr=False)
 class Unary(Node):
     """`operator` is `-`, `+` or `not`."""
 
@@ -155,7 +146,6 @@ class Unary(Node):
     operand: Expression
 
 
-@record(eq=False, repr=False)
 class Binary(Node):
     """`operator` is one of `+ - * / % ^ and or`."""
 
@@ -164,7 +154,6 @@ class Binary(Node):
     right: Expression
 
 
-@record(eq=False, repr=False)
 class Comparison(Node):
     """A chain `a <= b < c`: one operand more than operators (`== != <= >= < >`)."""
 
@@ -172,7 +161,6 @@ class Comparison(Node):
     operators: tuple[str, ...]
 
 
-@record(eq=False, repr=False)
 class Membership(Node):
     """`value in range`"""
 
@@ -180,7 +168,6 @@ class Membership(Node):
     container: Expression
 
 
-@record(eq=False, repr=False)
 class Range(Node):
     """`start..end` (both ends) or `start..<end` (without the last); for a `for` it may have a `step`."""
 
@@ -190,7 +177,6 @@ class Range(Node):
     step: Expression | None = None
 
 
-@record(eq=False, repr=False)
 class Conditional(Node):
     """`if test then a else b`, also written `a if test else b`."""
 
@@ -221,7 +207,6 @@ Expression: TypeAlias = (
 )
 
 
-@record(eq=False, repr=False)
 class Parameter(Node):
     """A parameter of a template, shape, constraint or function: `name: type = default`."""
 
@@ -230,7 +215,6 @@ class Parameter(Node):
     default: Expression | None
 
 
-@record(eq=False, repr=False)
 class Placement(Node):
     """`at POINT` and `rotated ANGLE`, each at most once."""
 
@@ -242,7 +226,6 @@ ALLOW = "allow"
 """The attribute that silences notes and warnings, which may stand before any statement."""
 
 
-@record(eq=False, repr=False)
 class Attribute(Node):
     """`@name(arguments)`"""
 
@@ -250,21 +233,18 @@ class Attribute(Node):
     arguments: tuple[Argument, ...]
 
 
-@record(eq=False, repr=False, kw_only=True)
 class Allowing(Node):
     """A statement before which no attributes stand but `@allow(…)`."""
 
-    allowing: tuple[Attribute, ...] = field(default=(), repr=False)
+    allowing: tuple[Attribute, ...] = field(default=(), repr=False, kw_only=True)
 
 
-@record(eq=False, repr=False)
 class Block(Node):
     """`{ statements }`"""
 
     statements: tuple[Statement, ...]
 
 
-@record(eq=False, repr=False)
 class Structure(Node):
     """`KIND NAME[index] { … }`; with `parameters` (even an empty list) it is a template.
 
@@ -282,7 +262,6 @@ class Structure(Node):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Param(Allowing):
     """`param name = value in domain step step`"""
 
@@ -293,21 +272,18 @@ class Param(Allowing):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Var(Allowing):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Let(Allowing):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Assign(Node):
     """`name[index] = value at … rotated …`, or `construction name = value`."""
 
@@ -320,14 +296,12 @@ class Assign(Node):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class ExpressionStatement(Allowing):
     """A bare expression: a constraint without its keyword, or an operation such as `rotate(r, 30deg)`."""
 
     value: Expression
 
 
-@record(eq=False, repr=False)
 class Constrain(Allowing):
     """`constrain EXPR` (one item, no block) or `constrain { … }`.
 
@@ -338,7 +312,6 @@ class Constrain(Allowing):
     braces: bool
 
 
-@record(eq=False, repr=False)
 class Equation(Allowing):
     """`left = right` inside `constrain`, which means `==`."""
 
@@ -350,26 +323,22 @@ class Equation(Allowing):
         return Comparison((self.left, self.right), ("==",), span=self.span)
 
 
-@record(eq=False, repr=False)
 class Prefer(Allowing):
     value: Expression
     weight: Expression | None
 
 
-@record(eq=False, repr=False)
 class Assert(Allowing):
     test: Expression
     message: Expression | None
 
 
-@record(eq=False, repr=False)
 class For(Allowing):
     variables: tuple[Identifier, ...]
     iterable: Expression
     body: Block
 
 
-@record(eq=False, repr=False)
 class If(Allowing):
     """`otherwise` is a Block; `else if` is a block that holds one If."""
 
@@ -378,7 +347,6 @@ class If(Allowing):
     otherwise: Block | None
 
 
-@record(eq=False, repr=False)
 class Import(Allowing):
     """`import "path"`, `import "path" as alias`, `import a, b from "path"` (`names`)."""
 
@@ -387,7 +355,6 @@ class Import(Allowing):
     names: tuple[Identifier, ...]
 
 
-@record(eq=False, repr=False)
 class FunctionDefinition(Allowing):
     """`fn name(parameters) = value`"""
 
@@ -397,7 +364,6 @@ class FunctionDefinition(Allowing):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class ShapeDefinition(Allowing):
     """`shape name(parameters) { … }`"""
 
@@ -407,7 +373,6 @@ class ShapeDefinition(Allowing):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class ConstraintDefinition(Allowing):
     """`constraint name(parameters) { … }`; the items of the body are those of `constrain`."""
 
@@ -417,7 +382,6 @@ class ConstraintDefinition(Allowing):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Alias(Allowing):
     """`alias name = target`"""
 
@@ -426,7 +390,6 @@ class Alias(Allowing):
     doc: str | None
 
 
-@record(eq=False, repr=False)
 class Todo(Allowing):
     """`todo`: a body that its author knows is still to be filled in."""
 
@@ -466,7 +429,6 @@ class Comment:
     text: str
 
 
-@record(eq=False, repr=False)
 class Module(Node):
     """A whole file. `comments` are all comments in text order, `///` ones included."""
 

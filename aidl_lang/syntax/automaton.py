@@ -282,6 +282,9 @@ def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:
     return Fix(title, (Edit(span, text),), is_sure)
 
 
+CLOSE_BLOCK = "close the block"
+"""The title of the fix for a block that is not closed."""
+
 LONGEST = 500
 """Characters and tokens beyond which nobody wrote a head or a line by hand."""
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
+from aidl_lang.syntax import foreign, missing, rewriting, spelling
 from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
 from aidl_lang.syntax.tables import END, Token, describe
 
@@ -22,7 +22,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     spelling.unknown_unit,
     spelling.foreign_character,
     foreign.foreign_loop,
-    functions.arrow_function,
+    rewriting.arrow_function,
     foreign.object_literal,
     foreign.loose_point,
     foreign.word_for_sign,
@@ -36,19 +36,19 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     missing.placement_in_expression,
     spelling.reserved_word,
     missing.else_without_if,
-    brackets.unclosed_arguments,
-    brackets.comma_before_block,
-    brackets.name_in_block,
-    brackets.choice_in_block,
-    brackets.wrong_closer,
-    brackets.unclosed_block,
+    missing.unclosed_arguments,
+    missing.comma_before_block,
+    missing.name_in_block,
+    missing.choice_in_block,
+    missing.wrong_closer,
+    missing.unclosed_block,
     missing.equation_for_definition,
     missing.definition_for_equation,
     missing.colon_for_equals,
-    brackets.semicolons,
-    brackets.unclosed_bracket,
-    brackets.three_coordinates,
-    brackets.missing_comma,
+    missing.semicolons,
+    missing.unclosed_bracket,
+    missing.three_coordinates,
+    missing.missing_comma,
     missing.missing_equals,
     missing.typed_definition,
     missing.choice_without_parentheses,
@@ -58,8 +58,8 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     missing.missing_block,
     missing.bare_value,
     missing.attribute_out_of_place,
-    brackets.stray_closer,
-    brackets.stray_comma,
+    missing.stray_closer,
+    missing.stray_comma,
 )
 
 # Names of what could come next, the most useful first.

@@ -14,11 +14,10 @@ from functools import cached_property
 
 from aidl_lang.checking import library
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
-from aidl_lang.common.files import is_data
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import FileError, ReadFailure, World
+from aidl_lang.common.world import FileError, ReadFailure, World, is_data
 from aidl_lang.explaining.failures import Conflict, Party
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import parse

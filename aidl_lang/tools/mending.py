@@ -9,7 +9,7 @@ from functools import cache
 
 from aidl_lang import pipeline
 from aidl_lang.checking import library
-from aidl_lang.checking.resolving.complaints import IDLE
+from aidl_lang.checking.complaints import IDLE
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record

@@ -17,7 +17,7 @@ from statistics import median
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 
 TELEPHONE = Path(__file__).resolve().parents[2] / "examples" / "telephone.aidl"
 

@@ -11,7 +11,7 @@ from aidl_eval.agreement import alpha
 from aidl_eval.judgements import Answer, Answers, Sheet, sheets
 from aidl_eval.statistics import Case, by_prompt
 from aidl_eval.store import Record, Store
-from aidl_lang.common.files import csv_text
+from aidl_lang.common.world import csv_text
 
 Numbers = list[tuple[str, float | None]]
 

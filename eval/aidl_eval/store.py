@@ -16,7 +16,7 @@ from aidl_eval.plan import VARIANTS, Job, Plan
 from aidl_eval.recordings import GUIDE, RecordedPlan
 from aidl_eval.requirements import Prompt
 from aidl_lang import Diagnostic, __version__
-from aidl_lang.common.files import replace
+from aidl_lang.common.world import replace
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
 from aidl_lang.tools.llm.messages import Usage, Verdict

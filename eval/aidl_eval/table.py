@@ -9,8 +9,8 @@ from math import sqrt
 from aidl_eval.preference import Study
 from aidl_eval.statistics import RESAMPLES, SEED, Interval
 from aidl_eval.summary import MEANINGS, Figure, Mean, Pair, Row, Share, Total, names
-from aidl_lang.common.files import csv_text
 from aidl_lang.common.prose import counted
+from aidl_lang.common.world import csv_text
 
 _NONE = "–"
 _BY_PROMPT = ("valid", "requirements", "editability")

@@ -50,7 +50,7 @@ STAGES = {
     f"aidl_lang.{name}"
     for name in ("syntax", "checking", "building", "solver", "geometry", "export", "parser", "pipeline")
 }
-MOST_LOADED = 150
+MOST_LOADED = 110
 """Modules of this package that the way from a text to its picture takes."""
 WEB = {"email", "http", "socket", "ssl", "urllib.request"}
 

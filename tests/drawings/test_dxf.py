@@ -14,8 +14,7 @@ from ezdxf.document import Drawing
 from ezdxf.layouts import Modelspace
 from shapely.geometry import LineString, MultiLineString
 
-from aidl_lang.common.drawings import outlines
-from aidl_lang.common.drawings.drawing import OutlineFile
+from aidl_lang.common.drawings import OutlineFile, outlines
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, bounds
 from aidl_lang.geometry.faces import curve_of
 from aidl_lang.geometry.region import length

@@ -13,8 +13,7 @@ from ezdxf.document import Drawing
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.common.drawings import MOST_NAMES, outlines
-from aidl_lang.common.drawings.drawing import DrawingError
+from aidl_lang.common.drawings import MOST_NAMES, DrawingError, outlines
 from aidl_lang.common.running import limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.common.drawings.drawing import (
+from aidl_lang.common.drawings import (
     Bow,
     Matrix,
     Stroke,

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from svgelements import SVG, Shape
 
-from aidl_lang.common.drawings import outlines
-from aidl_lang.common.drawings.drawing import Element, OutlineFile
+from aidl_lang.common.drawings import Element, OutlineFile, outlines
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.faces import curve_of
 from tests.amount import tries

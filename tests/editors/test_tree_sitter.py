@@ -21,8 +21,8 @@ from tree_sitter import Node
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
 from aidl_lang.syntax import ast
+from aidl_lang.syntax.rewriting import begins_with_sign
 from aidl_lang.syntax.tables import END, Token, load_tables, tokenize
-from aidl_lang.syntax.warnings import begins_with_sign
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.amount import TRIES_ALL, large
 from tests.documents import ROOT, programs

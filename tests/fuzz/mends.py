@@ -19,7 +19,7 @@ from pathlib import Path
 
 from aidl_lang import pipeline
 from aidl_lang.building.state import BuildingLimits
-from aidl_lang.checking.resolving.complaints import IDLE
+from aidl_lang.checking.complaints import IDLE
 from aidl_lang.common.names import fold
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse

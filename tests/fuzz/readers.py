@@ -30,13 +30,11 @@ from pygls.exceptions import JsonRpcInternalError
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawings import outlines
-from aidl_lang.common.drawings.drawing import DrawingError
-from aidl_lang.common.files import Reads
+from aidl_lang.common.drawings import DrawingError, outlines
 from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
+from aidl_lang.common.world import MemoryWorld, Reads
 from aidl_lang.tools.lsp import serve
 from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.sweeping.plan import read_table

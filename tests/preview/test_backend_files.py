@@ -17,9 +17,9 @@ import ezdxf.bbox
 import pytest
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.files import Reads
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import Reads
 from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.preview import files

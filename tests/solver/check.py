@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from aidl_lang.solver import Problem, Relation, Row, Solution
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op
 
 ROUNDING = 1e-9
 """Operands of roots, asin and acos may be so far outside."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from aidl_lang.solver import Constraint, Problem, Relation, Row
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op
 
 from .check import jacobian, values_of
 

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
 from aidl_lang.solver import Settings, Solution, solve
-from aidl_lang.solver.conflicts import WORK
+from aidl_lang.solver.conflicts import WORK, shortfall
 from aidl_lang.solver.problem import GroupFailure
-from aidl_lang.solver.questions import shortfall
 from tests.amount import TRIES_ALL, tries
 
 from .build import E, Model, distance

@@ -10,12 +10,11 @@ import pytest
 from hypothesis import assume, given, note
 from hypothesis import strategies as st
 
-from aidl_lang.solver import Problem, operations
+from aidl_lang.solver import Problem, expression
 from aidl_lang.solver.array_program import ArrayFreezing, Schedule
+from aidl_lang.solver.expression import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.gradients import linearise
-from aidl_lang.solver.operations import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
-from aidl_lang.solver.valuation import Valuation, evaluate
+from aidl_lang.solver.valuation import Valuation, evaluate, linearise
 
 from .check import values_of
 from .kinds import KINDS
@@ -156,7 +155,7 @@ def same(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def values_both_ways(op: int, places: list[tuple[float, ...]]) -> tuple[np.ndarray, np.ndarray]:
     """By numbers and by arrays."""
     with np.errstate(all="ignore"):
-        found = operations.values_of(op, tuple(np.array(column) for column in zip(*places, strict=True)))
+        found = expression.values_of(op, tuple(np.array(column) for column in zip(*places, strict=True)))
     return np.array([evaluate(op, place) for place in places]), found
 
 
@@ -178,7 +177,7 @@ def test_arrays_mean_what_numbers_mean(op: int, data: st.DataObject) -> None:
     padded = [place if len(place) > 1 else place * 2 for place in places]
     slopes = np.array([PARTIALS[op](*p, v) for p, v in zip(padded, expected.tolist(), strict=True)])
     with np.errstate(all="ignore"):
-        partials = np.array(operations.partials_of(op, operands, expected)).T
+        partials = np.array(expression.partials_of(op, operands, expected)).T
     note((partials, slopes))
     assert np.isfinite(partials).all()
     assert same(partials[:, : ARITY[op]], slopes[:, : ARITY[op]]).all()

@@ -15,10 +15,10 @@ import pytest
 from hypothesis import given, reject
 from hypothesis import strategies as st
 
-from aidl_lang.solver import Problem, Solution, Status, dependence, gradients, solve
+from aidl_lang.solver import Problem, Solution, Status, dependence, solve, valuation
 from aidl_lang.solver import analysis as mobility
 from aidl_lang.solver.analysis import Freedom, analyse
-from aidl_lang.solver.operations import Op
+from aidl_lang.solver.expression import Op
 from tests.amount import tries
 
 from .build import E, Model, distance
@@ -222,7 +222,7 @@ def test_a_large_frame_of_bars(columns: int, rows: int, extra: float) -> None:
     m, slopes = frame_of_bars(columns, rows, extra)
     problem, solution = unsolved(m)
     count = len(problem.initial)
-    assert count > gradients.LARGE
+    assert count > valuation.LARGE
     freedom = analyse(problem, solution)
     assert_right_for(problem, freedom, slopes, np.eye(count), np.ones(count, dtype=bool))
     assert freedom.degrees == 3

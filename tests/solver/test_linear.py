@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
-from aidl_lang.solver import gradients, linear
+from aidl_lang.solver import linear, valuation
 from aidl_lang.solver.sparse import SparseMatrix
 from tests.amount import tries
 
@@ -138,7 +138,7 @@ def test_many_inequalities_enter_together_and_end_at_the_same_point(seed: int) -
 def test_components(count: int, links: list[tuple[int, int]]) -> None:
     links = [(a % count, b % count) for a, b in links]
     pairs = np.array(links, dtype=np.int64).reshape(-1, 2)
-    labels = gradients.components(pairs[:, 0], pairs[:, 1], count).tolist()
+    labels = valuation.components(pairs[:, 0], pairs[:, 1], count).tolist()
     sets = [{i} for i in range(count)]
     for a, b in links:
         joined = next(s for s in sets if a in s) | next(s for s in sets if b in s)

@@ -9,8 +9,8 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.files import Reads
 from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import Reads
 from aidl_lang.tools.sweeping.plan import axis, from_values, planned, read_table
 
 PROGRAM = """\

@@ -2,24 +2,435 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
+from functools import cached_property, lru_cache
+from itertools import pairwise
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from aidl_lang.common.drawings.drawing import (
-    WHOLE,
-    Collector,
-    DrawingError,
-    Element,
-    OutlineFile,
-    Remark,
-    Trace,
-)
+from aidl_lang.common.font_files import Curve, Vec, point_of
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.records import record
+from aidl_lang.common.running import checkpoint
+from aidl_lang.common.world import WHOLE
 
-__all__ = ["WHOLE", "outlines"]
+if TYPE_CHECKING:
+    from ezdxf.math import BSpline
+
+# --- The curves of a drawing file: lines and cubic Bézier curves by their points, and arcs of ellipses, of
+# which circles are a kind. An affine map of each is one of the same sort, exactly.
+
+TURN = 2 * math.pi
+
+Matrix: TypeAlias = tuple[float, float, float, float, float, float]
+"""a, b, c, d, e, f of the map (x, y) → (a x + c y + e, b x + d y + f), as SVG writes it."""
+
+STILL: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+
+
+@record(slots=True)
+class Bow:
+    """An arc of an ellipse: the points center + u cos t + v sin t, for t from `first` to `first + sweep`.
+
+    u, v  any two conjugate half-diameters: an affine map of the arc maps them
+    start, end  are stored, so that curves that follow one another share them to the last digit
+    """
+
+    center: Vec
+    u: Vec
+    v: Vec
+    first: float
+    sweep: float
+    start: Vec
+    end: Vec
+
+    @property
+    def is_whole(self) -> bool:
+        return abs(self.sweep) >= TURN
+
+    def at(self, t: float) -> Vec:
+        """Returns the point at a parameter."""
+        c, s = math.cos(t), math.sin(t)
+        return (
+            self.center[0] + self.u[0] * c + self.v[0] * s,
+            self.center[1] + self.u[1] * c + self.v[1] * s,
+        )
+
+
+Stroke: TypeAlias = Curve | Bow
+
+
+def ellipse(center: Vec, u: Vec, v: Vec) -> Bow:
+    """Returns a whole ellipse by two conjugate half-diameters."""
+    start = center[0] + u[0], center[1] + u[1]
+    return Bow(center, u, v, 0.0, TURN, start, start)
+
+
+def circle(center: Vec, radius: float) -> Bow:
+    return ellipse(center, (radius, 0.0), (0.0, radius))
+
+
+def product(outer: Matrix, inner: Matrix) -> Matrix:
+    """Returns the map that does `inner` first."""
+    a, b, c, d, e, f = outer
+    g, h, i, j, k, m = inner
+    return (
+        a * g + c * h,
+        b * g + d * h,
+        a * i + c * j,
+        b * i + d * j,
+        a * k + c * m + e,
+        b * k + d * m + f,
+    )
+
+
+def mapped(stroke: Stroke, matrix: Matrix) -> Stroke:
+    """Returns the image of a stroke."""
+    a, b, c, d, e, f = matrix
+
+    def at(p: Vec) -> Vec:
+        return a * p[0] + c * p[1] + e, b * p[0] + d * p[1] + f
+
+    if not isinstance(stroke, Bow):
+        return tuple(map(at, stroke))
+    u, v = ((a * x + c * y, b * x + d * y) for x, y in (stroke.u, stroke.v))
+    return Bow(at(stroke.center), u, v, stroke.first, stroke.sweep, at(stroke.start), at(stroke.end))
+
+
+def ends(stroke: Stroke) -> tuple[Vec, Vec]:
+    if isinstance(stroke, Bow):
+        return stroke.start, stroke.end
+    return stroke[0], stroke[-1]
+
+
+def numbers(stroke: Stroke) -> Iterator[float]:
+    """Yields every coordinate, to be checked."""
+    if isinstance(stroke, Bow):
+        stroke = stroke.start, stroke.end, stroke.u, stroke.v, stroke.center
+    for p in stroke:
+        yield from p
+
+
+def has_length(stroke: Stroke) -> bool:
+    """Tells whether a stroke is more than a single point."""
+    if isinstance(stroke, Bow):
+        return stroke.sweep != 0.0 and math.hypot(*stroke.u, *stroke.v) > 0.0
+    return len(set(stroke)) > 1
+
+
+# --- How far strokes reach -------------------------------------------------------------------------
+
+
+def furthest(strokes: Iterable[Stroke], way: Vec) -> float:
+    """Returns the greatest product of a point of the strokes with a vector."""
+    return max(_furthest(stroke, way) for stroke in strokes)
+
+
+def box(strokes: Iterable[Stroke]) -> tuple[float, float, float, float]:
+    """Returns left, bottom, right and top of the strokes, tight."""
+    strokes = tuple(strokes)
+    left, bottom = (-furthest(strokes, way) for way in ((-1.0, 0.0), (0.0, -1.0)))
+    right, top = (furthest(strokes, way) for way in ((1.0, 0.0), (0.0, 1.0)))
+    return left, bottom, right, top
+
+
+def _furthest(stroke: Stroke, way: Vec) -> float:
+    def along(p: Vec) -> float:
+        return p[0] * way[0] + p[1] * way[1]
+
+    best = max(map(along, ends(stroke)))
+    if isinstance(stroke, Bow):
+        across, up = along(stroke.u), along(stroke.v)
+        if _passes(stroke, math.atan2(up, across)):
+            best = max(best, along(stroke.center) + math.hypot(across, up))
+        return best
+    if len(stroke) < 4:
+        return best
+    a, b, c, d = map(along, stroke)
+    for t in _turning_points(a, b, c, d):
+        s = 1.0 - t
+        best = max(best, s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d)
+    return best
+
+
+def _passes(bow: Bow, t: float) -> bool:
+    """Tells whether an arc goes through a parameter."""
+    ahead = (t - bow.first) * math.copysign(1.0, bow.sweep) % TURN
+    return ahead <= abs(bow.sweep)
+
+
+def _turning_points(a: float, b: float, c: float, d: float) -> Iterator[float]:
+    """Yields where the derivative of a cubic Bézier function is 0, between its ends."""
+    p, q, r = d - 3 * c + 3 * b - a, 2 * (c - 2 * b + a), b - a
+    if p == 0.0:
+        roots = [-r / q] if q else []
+    else:
+        inside = q * q - 4 * p * r
+        if inside < 0.0:
+            return
+        # The sum that does not cancel gives one root, and the product of both the other.
+        half = -0.5 * (q + math.copysign(math.sqrt(inside), q))
+        roots = [half / p, *([r / half] if half else [])]
+    yield from (t for t in roots if 0.0 < t < 1.0)
+
+
+# --- In cubics -------------------------------------------------------------------------------------
+
+_FINE = TURN / 24
+"""Turn of an arc that a cubic follows to 6e-9 of its radius."""
+
+
+def as_curves(stroke: Stroke) -> tuple[Curve, ...]:
+    """Returns a stroke in lines and cubics, which follow an arc to 6e-9 of its size."""
+    if not isinstance(stroke, Bow):
+        return (stroke,)
+    count = max(1, math.ceil(abs(stroke.sweep) / _FINE))
+    step = stroke.sweep / count
+    handle = 4 / 3 * math.tan(step / 4)
+    found: list[Curve] = []
+    for k in range(count):
+        first, last = stroke.first + k * step, stroke.first + (k + 1) * step
+        start, end = stroke.at(first), stroke.at(last)
+        one, two = (
+            _moved(start, _heading(stroke, first), handle),
+            _moved(end, _heading(stroke, last), -handle),
+        )
+        found.append((start, one, two, end))
+    return tuple(found)
+
+
+def _heading(bow: Bow, t: float) -> Vec:
+    c, s = math.cos(t), math.sin(t)
+    return bow.v[0] * c - bow.u[0] * s, bow.v[1] * c - bow.u[1] * s
+
+
+def _moved(p: Vec, way: Vec, by: float) -> Vec:
+    return p[0] + way[0] * by, p[1] + way[1] * by
+
+
+# --- B-splines as cubic Bézier curves.
+
+_NEAR = 1e-7
+"""Distance of a cubic from the curve that it follows, relative to the size of that."""
+_HALVINGS = 10
+
+
+def cubics(entity: Any) -> tuple[list[Curve], bool]:
+    """Returns the cubics of a SPLINE, and whether they are the same curve."""
+    spline: BSpline = entity.construction_tool()
+    if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
+        return [_raised([flat(p) for p in piece]) for piece in spline.bezier_decomposition()], True
+    points = [flat(p) for p in spline.control_points]
+    size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
+    knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
+    found = [
+        curve
+        for first, last in pairwise(knots)
+        for curve in _followed(spline, first, last, _NEAR * size, _HALVINGS)
+    ]
+    # Each begins where the one before it ends, to the last digit.
+    return [(found[k - 1][-1], *curve[1:]) if k else curve for k, curve in enumerate(found)], False
+
+
+def flat(p: Any) -> Vec:
+    return float(p[0]), float(p[1])
+
+
+def _raised(points: list[Vec]) -> Curve:
+    """Returns a Bézier curve of a degree up to 3 as a line or a cubic."""
+    while 2 < len(points) < 4:
+        n = len(points)
+        inner = [
+            tuple((k * a + (n - k) * b) / n for a, b in zip(points[k - 1], points[k], strict=True))
+            for k in range(1, n)
+        ]
+        points = [points[0], *((x, y) for x, y in inner), points[-1]]
+    return tuple(points)
+
+
+def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
+    """Yields cubics with the ends and the derivatives of a part of a spline, halved until they are near."""
+    checkpoint()
+    step = last - first
+    inside = [first + 1e-12 * step, last - 1e-12 * step]  # of the part, should its ends be corners
+    (start, heading), (end, arrival) = ((flat(p), flat(d)) for p, d in spline.derivatives(inside, 1))
+    one = start[0] + heading[0] * step / 3, start[1] + heading[1] * step / 3
+    two = end[0] - arrival[0] * step / 3, end[1] - arrival[1] * step / 3
+    middle = (first + last) / 2
+    off = max(
+        math.dist(point_of((start, one, two, end), k / 4), flat(spline.point(first + k / 4 * step)))
+        for k in (1, 2, 3)
+    )
+    if off <= near or halvings == 0:
+        yield start, one, two, end
+        return
+    yield from _followed(spline, first, middle, near, halvings - 1)
+    yield from _followed(spline, middle, last, near, halvings - 1)
+
+
+# --- A drawing that was read: its outlines and their names.
+
+MOST_CURVES = 30_000
+MOST_NUMBERS = 7 * MOST_CURVES
+"""Numbers in the outlines of a file: no curve takes more."""
+FURTHEST = 1e8
+"""Millimetres from the origin beyond which nothing is read: a hundred kilometres."""
+
+
+_DIGITS = re.compile(r"\d+\.?\d*")
+
+
+class DrawingError(Exception):
+    """Raised for a file that cannot be read as a drawing: a diagnostic's code, message and hints."""
+
+    def __init__(self, code: str, message: str, *hints: str) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.hints = hints
+
+
+@record()
+class Engraving:
+    """What files of AIDL say of an outline that is engraved and not cut: its layer and its colour, where it
+    has them, and whether it is the border of an area.
+    """
+
+    layer: str | None = None
+    color: str | None = None
+    is_area: bool = False
+
+
+@record(eq=False)
+class Element:
+    """One outline of a file, or some that belong together, contour by contour.
+
+    names    those by which the file calls it, from the outermost group to its own
+    is_winding  what it encloses goes by the non-zero rule; otherwise nested contours alternate
+    engraving   None for what bounds material, as far as the file says
+    """
+
+    names: tuple[str, ...]
+    strokes: tuple[Stroke, ...]
+    is_winding: bool = False
+    engraving: Engraving | None = None
+
+
+@record(eq=False)
+class Trace:
+    """The outlines of a drawing, or of a part of it, as one thing that moves and turns as a whole.
+
+    name  that of the part, for messages
+    """
+
+    name: str
+    elements: tuple[Element, ...]
+
+    @cached_property
+    def strokes(self) -> tuple[Stroke, ...]:
+        return tuple(stroke for element in self.elements for stroke in element.strokes)
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        return box(self.strokes)
+
+    def furthest(self, way: Vec) -> float:
+        """Returns the greatest product of a point of it with a vector."""
+        return furthest(self.strokes, way)
+
+    @cached_property
+    def silhouette(self) -> tuple[Curve, ...]:
+        """The corners and curves of which some point is the furthest in every direction."""
+        from aidl_lang.common.lettering import silhouette_of
+
+        return silhouette_of([curve for stroke in self.strokes for curve in as_curves(stroke)])
+
+
+@record(eq=False)
+class Remark:
+    """A thing to be told of a drawing: the code of a diagnostic, its message and hints."""
+
+    code: str
+    message: str
+    hints: tuple[str, ...] = ()
+
+
+@record(eq=False)
+class OutlineFile:
+    """A drawing file that was read.
+
+    parts  what can be named in it: name in AIDL → outlines
+    """
+
+    whole: Trace
+    parts: Mapping[str, Trace]
+    remarks: tuple[Remark, ...] = ()
+
+    def trace(self, name: str) -> Trace:
+        """Returns the outlines under a name."""
+        return self.whole if name == WHOLE else self.parts[name]
+
+
+@record(frozen=False)
+class Collector:
+    """The elements read so far, counted and checked.
+
+    left_out  what was not read: how it is called → how many there were
+    """
+
+    what: str
+    elements: list[Element] = field(default_factory=list)
+    left_out: dict[str, int] = field(default_factory=dict)
+    curves: int = 0
+    numbers: int = 0
+
+    def add(
+        self,
+        names: Sequence[str],
+        strokes: Iterable[Stroke],
+        *,
+        is_winding: bool = False,
+        engraving: Engraving | None = None,
+    ) -> None:
+        """Adds an element. Raises DrawingError for one that has no place on a plane, or one too many."""
+        found = tuple(strokes)
+        kept = tuple(stroke for stroke in found if has_length(stroke))
+        self.curves += len(kept)
+        self.check()
+        for number in (n for stroke in found for n in numbers(stroke)):
+            if not math.isfinite(number) or abs(number) > FURTHEST:
+                named = f" in `{names[-1]}`" if names else ""
+                raise DrawingError(
+                    "E0364",
+                    f"`{self.what}` reaches further than {FURTHEST / 1e6:g} km from its origin{named}",
+                    "look whether a coordinate or a transform in it is what was meant",
+                )
+        if kept:
+            self.elements.append(Element(tuple(names), kept, is_winding, engraving))
+
+    def count_numbers(self, text: str) -> None:
+        """Counts the numbers of an attribute before it is read. Raises DrawingError."""
+        self.numbers += sum(1 for _ in _DIGITS.finditer(text))
+        self.check()
+
+    def check(self) -> None:
+        if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
+            raise DrawingError(
+                "E0363",
+                f"`{self.what}` has more than {MOST_CURVES:,} curves",
+                "simplify it in the program that drew it, or export fewer of its layers",
+            )
+
+    def leave_out(self, kind: str, count: int = 1) -> None:
+        self.left_out[kind] = self.left_out.get(kind, 0) + count
+
+
+# --- Reading of a drawing file, by the suffix of its name, and the names in it made names of AIDL.
+
 
 MOST_NAMES = 250
 _LONGEST_NAME = 60

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang.common.drawings.drawing import (
+from aidl_lang.common.drawings import (
     TURN,
     Bow,
     Collector,

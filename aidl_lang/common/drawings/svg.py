@@ -11,8 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.drawings import svg_values as xml
-from aidl_lang.common.drawings.drawing import (
+from aidl_lang.common.drawings import (
     STILL,
     Collector,
     DrawingError,
@@ -24,6 +23,7 @@ from aidl_lang.common.drawings.drawing import (
     mapped,
     product,
 )
+from aidl_lang.common.drawings import svg_values as xml
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
     SHAPES,

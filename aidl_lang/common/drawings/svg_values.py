@@ -9,7 +9,7 @@ from dataclasses import field
 from itertools import pairwise
 from xml.parsers import expat
 
-from aidl_lang.common.drawings.drawing import STILL, TURN, Bow, DrawingError, Matrix, Stroke, ellipse, product
+from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, ellipse, product
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint

@@ -36,7 +36,7 @@ from aidl_lang.export.drafting.tables import (
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, widened
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, bounds, point, union_bounds
-from aidl_lang.geometry.dimensions.completing import mirror_levels
+from aidl_lang.geometry.dimensions import mirror_levels
 from aidl_lang.geometry.dimensions.sketch import is_half_round
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedStructure

@@ -12,8 +12,7 @@ from aidl_lang.export.dimension_marks import Pen, Sheet
 from aidl_lang.export.dimensioning import visible
 from aidl_lang.geometry.boolean import Contacts
 from aidl_lang.geometry.curves import Circle, Piece, Vec, bounds, point, union_bounds
-from aidl_lang.geometry.dimensions import dimensions, overall
-from aidl_lang.geometry.dimensions.completing import completed
+from aidl_lang.geometry.dimensions import completed, dimensions, overall
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.parts import engraved, gathered, shape_of
 from aidl_lang.geometry.solved import (

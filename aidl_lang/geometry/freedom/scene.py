@@ -17,10 +17,9 @@ from aidl_lang.common.arrays import each_once, scattered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
 from aidl_lang.solver.analysis import Motions, Part
-from aidl_lang.solver.gradients import linearise
-from aidl_lang.solver.matrix import Sparse
+from aidl_lang.solver.linear import Sparse
 from aidl_lang.solver.problem import Problem, Solution
-from aidl_lang.solver.valuation import Valuation
+from aidl_lang.solver.valuation import Valuation, linearise
 
 # --- Tests whether a motion goes on as it begins: a slide along a line may be the first of a way around
 # something.

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 from aidl_lang import pipeline
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common import resources
-from aidl_lang.common.diagnostics import has_errors
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import TooLongError, has_errors
 from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact

@@ -32,7 +32,7 @@ def to_build123d(compiled: Compiled, thickness: float | None) -> Compound:
     from build123d import Color, Compound, Curve, Part, RigidJoint, Shape, Sketch, Solid
 
     from aidl_lang.common.colors import rgb
-    from aidl_lang.common.drawing_time import within
+    from aidl_lang.common.diagnostics import within
     from aidl_lang.export.mesh import placed_bodies
     from aidl_lang.export.step import Product, products
 

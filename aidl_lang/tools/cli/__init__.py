@@ -18,8 +18,7 @@ from importlib import import_module
 from io import BufferedWriter, FileIO, TextIOWrapper
 from typing import Any
 
-from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import AidlError, Diagnostic, TooLongError
 from aidl_lang.tools.cli import files
 from aidl_lang.version import __version__
 

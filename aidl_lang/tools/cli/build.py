@@ -10,12 +10,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.drawing_time import TooLongError
-from aidl_lang.common.files import is_data, may_be_read
+from aidl_lang.common.diagnostics import AidlError, TooLongError
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
+from aidl_lang.common.world import is_data, may_be_read
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export.job import Options
     from aidl_lang.pipeline import Compiled
+    from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import StageReport
-    from aidl_lang.solver.riding import Memory
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -92,7 +91,7 @@ class BuildResult:
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     """Returns the outputs asked for; refuses those whose format or directory does not exist."""
-    from aidl_lang.export.cut_list import is_pattern
+    from aidl_lang.export.job import is_pattern
 
     names = arguments.output or [_beside(arguments.file, _DEFAULT_FORMAT)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
@@ -132,7 +131,7 @@ def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
     """Writes all outputs once all could be made, over nothing that was read. Returns names and remarks."""
-    from aidl_lang.export.cut_list import contents, is_pattern
+    from aidl_lang.export.job import contents, is_pattern
 
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
@@ -274,7 +273,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
     if arguments.file == files.STANDARD:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
-    from aidl_lang.solver.riding import Memory
+    from aidl_lang.solver.hierarchy import Memory
 
     targets(arguments)
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
-from aidl_lang.common.files import MAX_BYTES, Reads, replace, require_fitting
 from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MAX_BYTES, Reads, replace, require_fitting
 
 if TYPE_CHECKING:
     from aidl_lang.common.world import DiskWorld

@@ -329,7 +329,7 @@ def _refusal(name: str, compiled: Compiled) -> Diagnostic:
 def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -> None:
     if not outputs:
         return
-    from aidl_lang.common.drawing_time import within
+    from aidl_lang.common.diagnostics import within
     from aidl_lang.export import render
     from aidl_lang.export.comparison.picture import overlay
     from aidl_lang.export.job import Options

@@ -10,9 +10,8 @@ from itertools import pairwise
 from textwrap import dedent, indent
 
 from aidl_lang import parser
-from aidl_lang.checking.allowing import IDLE
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind
+from aidl_lang.checking.symbols import IDLE, UNKNOWNS, Symbol, SymbolKind
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from aidl_lang.checking.builtins import ATTRIBUTES, PATTERNS
-from aidl_lang.checking.resolving.symbols import SymbolKind, word_meant
+from aidl_lang.checking.symbols import SymbolKind, word_meant
 from aidl_lang.checking.types import PUBLIC
 from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.common.names import fold, is_spelled_in

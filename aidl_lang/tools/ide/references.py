@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import find, fold

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from aidl_lang.checking.binding import PAIRS, PARAMETERS
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.resolving.symbols import SymbolScope
+from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.checking.types import AnyType, ListType, NumberType, PointType, Signature, Type, accepts
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
 
-from aidl_lang.checking.resolving.symbols import SymbolScope
+from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.parser import Parsed, parse, standing_before

@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.allowing import audible
-from aidl_lang.checking.resolving.imports import SUFFIX, ImportedDrawing, digest
-from aidl_lang.checking.resolving.symbols import Resolution
+from aidl_lang.checking.imports import SUFFIX, ImportedDrawing, digest
+from aidl_lang.checking.symbols import Resolution, audible
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.common.names import fold
@@ -25,7 +24,7 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, normalize
 from aidl_lang.parser import Parsed
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Tokens, tokenize
 from aidl_lang.typecheck import Program

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.files import Reads
 from aidl_lang.common.records import record
+from aidl_lang.common.world import Reads
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture

@@ -18,7 +18,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Label, Severity
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.tools.ide.workspace import Positions, Unit, View
 
 _HALVES = re.compile("[\ud800-\udfff]")

@@ -17,10 +17,9 @@ from typing import Any, Generic, Protocol, TypeVar
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.common import resources
-from aidl_lang.common.files import is_data
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
-from aidl_lang.common.world import MemoryWorld
+from aidl_lang.common.world import MemoryWorld, is_data
 from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete

@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from aidl_lang.common.files import DATA, PROGRAM
+from aidl_lang.common.world import DATA, PROGRAM
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.lsp.documents import Settings, path_of
 from aidl_lang.tools.lsp.requests.navigation import register_appearance, register_navigation

@@ -7,9 +7,9 @@ from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.files import Reads, may_be_read
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import Reads, may_be_read
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import applied
 

@@ -14,10 +14,10 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.files import Reads, csv_text, replace
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
+from aidl_lang.common.world import Reads, csv_text, replace
 from aidl_lang.export import FORMATS, suffix_of
 from aidl_lang.export.job import file_names, require
 from aidl_lang.tools.sweeping.bundle import MEASURES, OF_KIND, Fault, Measures, Outcome

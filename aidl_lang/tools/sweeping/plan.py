@@ -16,10 +16,10 @@ from typing import TypeAlias
 from aidl_lang.building.model import Knob
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
-from aidl_lang.common.files import Reads
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import did_you_mean, first_few, named, ticked
 from aidl_lang.common.records import record
+from aidl_lang.common.world import Reads
 
 Value: TypeAlias = float | str | bool
 

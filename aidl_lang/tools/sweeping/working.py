@@ -17,7 +17,7 @@ from aidl_lang.compiled import Compiled
 from aidl_lang.export.job import Options
 from aidl_lang.geometry.survey import NothingThereError, Part
 from aidl_lang.pipeline import Front
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.tools.sweeping.bundle import Bundle, Carried, Change, Measures, Outcome, fault
 
 library.load()  # where processes are forked from one that has loaded this, none of them has to

@@ -11,7 +11,7 @@ from aidl_lang.checking import builtins
 from aidl_lang.checking.builtins import EDITS
 from aidl_lang.checking.facts import Fact, body_of, of_symbol
 from aidl_lang.checking.members import member_of
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
+from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     AnyType,
     BoxType,

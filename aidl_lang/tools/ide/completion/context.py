@@ -8,7 +8,7 @@ from functools import cached_property
 
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
+from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

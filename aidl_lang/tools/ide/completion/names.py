@@ -11,8 +11,8 @@ from functools import cache, lru_cache, partial
 from aidl_lang.checking import builtins
 from aidl_lang.checking.facts import Fact, result
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolving.declare import is_definition
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.resolve import is_definition
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
     AnyType,

@@ -17,8 +17,7 @@ from aidl_lang import pipeline
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Knob, Model
-from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.diagnostics import Edit, TooLongError
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import first_few, shortest, ticked
 from aidl_lang.common.records import record

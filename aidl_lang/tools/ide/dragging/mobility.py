@@ -24,8 +24,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.solver.array_program import Schedule
-from aidl_lang.solver.gradients import components, linearise
 from aidl_lang.solver.problem import violations
+from aidl_lang.solver.valuation import components, linearise
 
 MOST_PARTS = 16
 """Points of one shape; of a shape with more, only those that it is made by."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import AnyType
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.records import record

@@ -11,7 +11,6 @@ from aidl_lang.building import boxes
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.calls import call
-from aidl_lang.building.conditions import holds
 from aidl_lang.building.evaluate import evaluate, iterate, turn_scope
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Condition, Geometry, Model, Structure, own_geometry
@@ -28,6 +27,7 @@ from aidl_lang.building.values import (
     Value,
     members,
 )
+from aidl_lang.building.wording import holds
 from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.diagnostics import has_errors

@@ -10,8 +10,7 @@ from dataclasses import replace
 from aidl_lang.building.expression import Evaluator, Expression, Unknown, add, sub
 from aidl_lang.building.lower import seen
 from aidl_lang.building.model import Model, Structure, convert
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.common.diagnostics import Diagnostic, TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Job, Options
@@ -22,7 +21,7 @@ from aidl_lang.geometry.curves import Bounds, Circle, Piece, Vec, bounds, is_fin
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.solver.riding import Memory
+from aidl_lang.solver.hierarchy import Memory
 from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,

@@ -8,7 +8,7 @@ from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 
-from aidl_lang.checking.resolving.symbols import Resolution
+from aidl_lang.checking.symbols import Resolution
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record

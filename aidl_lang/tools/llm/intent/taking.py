@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.checking.resolving.symbols import Resolution, SymbolKind
+from aidl_lang.checking.symbols import Resolution, SymbolKind
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span

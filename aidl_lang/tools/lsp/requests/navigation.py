@@ -7,7 +7,7 @@ from itertools import count
 
 from lsprotocol import types
 
-from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.symbols import SymbolKind
 from aidl_lang.tools.ide.outline import (
     MODIFIERS,
     TYPES,

@@ -7,22 +7,23 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.builtins import COPYING, CUTS, OUTLINES, PATTERNS
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolving.symbols import SymbolScope
+from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.drawings import WHOLE, outlines
-from aidl_lang.common.drawings.drawing import DrawingError, OutlineFile, Trace
-from aidl_lang.common.files import PROGRAM, is_drawing
 from aidl_lang.common.names import fold, folded
 from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import FileError, ReadFailure, World, relative_to
+from aidl_lang.common.world import PROGRAM, WHOLE, FileError, ReadFailure, World, is_drawing, relative_to
 from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.common.drawings import DrawingError, OutlineFile, Trace
 
 # --- Ready-made cuts, such as `clearance_hole("m3")`: holes in a solid or an assembly, elsewhere outlines.
 #
@@ -229,9 +230,10 @@ def nameless(statement: ast.Import, name: str) -> Diagnostic:
 
 def read(path: str, data: bytes) -> ImportedDrawing:
     """Returns a drawing file. Raises DrawingError."""
-    found = outlines(path, data)
+    from aidl_lang.common.drawings import outlines
     from aidl_lang.parser import parse
 
+    found = outlines(path, data)
     parsed = parse(SourceFile(path, " ".join(_definitions(found))))
     assert not parsed.diagnostics
     statements = (
@@ -394,6 +396,8 @@ class _Loader:
         if self.world is None:
             self._unread(statement)
             return None
+        from aidl_lang.common.drawings import DrawingError
+
         try:
             data = self.world.read_bytes(path)
             self.bytes += len(data)

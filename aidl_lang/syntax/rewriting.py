@@ -1,11 +1,15 @@
-"""Functions as other languages write them, and words too many, recognised by their tokens alone."""
+"""What is put right in the tokens before they are parsed: functions as other languages write them, words too
+many, lists that begin statements; and lines that begin with a sign.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
@@ -13,11 +17,15 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    opening,
     replaced,
     statement_end,
     wrong,
 )
-from aidl_lang.syntax.tables import END, Token, begins_line
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, begins_line
+
+if TYPE_CHECKING:
+    from aidl_lang.parser import Parsed
 
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
@@ -194,3 +202,171 @@ def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token
     for i, parameter in enumerate(parameters):
         tokens += [Token(",", ",", *place), parameter] if i else [parameter]
     return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]
+
+
+# --- Lists that begin statements.
+
+
+def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
+    """Puts `constrain` before each list that begins a statement, such as `[a, b].above(c)`, where the grammar
+    wants it. Among constraints that says nothing new; elsewhere E0125 tells of a line that would go on with
+    the one above as an index, and E0101 of another statement that begins with a list.
+    """
+    found: list[tuple[int, Diagnostic | None]] = []
+    among_constraints: list[bool] = []  # for each open block
+    opened: list[str] = []  # a block in a call is one of arguments, which may be lists
+    asserting = False  # the comma before the message of an `assert` ends nothing
+    for n, token in enumerate(tokens):
+        asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
+        begins = token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened
+        if begins and len(found) < _MOST_LISTS:
+            before = tokens[n - 1].kind if n else ";"
+            joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
+            ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
+            close = closing(tokens, n) if joined or ends else -1
+            after = [t.kind for t in tokens[close + 1 : close + 3]]
+            among = among_constraints[-1:] == [True]
+            may_go_on = not joined or (among and tokens[n + 1].kind != "NUMBER")
+            if close > 0 and (after == [".", "CALL"] or (may_go_on and after[0] in _GO_ON)):
+                found.append((n, None if among else _list_as_statement(source, token, joined)))
+        if token.nesting > 0:
+            if token.kind == "{":
+                among_constraints.append(among_constraints[-1:] == [True] or _holds_constraints(tokens, n))
+            opened.append(token.kind)
+        elif token.nesting < 0 and opened and opened.pop() == "{":
+            among_constraints.pop()
+    for n, _ in reversed(found):
+        tokens.insert(n, Token("constrain", "constrain", tokens[n].start, tokens[n].start))
+    return [diagnostic for _, diagnostic in found if diagnostic is not None]
+
+
+def _holds_constraints(tokens: list[Token], brace: int) -> bool:
+    """Tells whether a block is that of `constrain { … }` or of the definition of a constraint."""
+    if brace and tokens[brace - 1].kind == "constrain":
+        return True
+    if not brace or tokens[brace - 1].kind != ")":
+        return False
+    n = opening(tokens, brace - 1)
+    return n > 0 and tokens[n].kind == "CALL" and tokens[n - 1].kind == "constraint"
+
+
+_MOST_LISTS = 100
+_STATEMENT_ENDS = ("{", "}", ";", ",")
+_GO_ON = (".", "==", "<=", ">=", "<", ">", "in")
+
+
+def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagnostic:
+    span, place = Span(source, token.start, token.end), Span(source, token.start, token.start)
+    fix = replaced("put `constrain` before it", place, "constrain ")
+    if not joined:
+        return Diagnostic("E0101", "a statement cannot begin with `[`", span, fix=fix)
+    message = "a line that begins with `[` continues the line above"
+    label = "read as an index of the expression above"
+    hint = "newlines end no statement; with `constrain` before it a list begins one"
+    return Diagnostic("E0125", message, span, label, hints=(hint,), fix=fix)
+
+
+# --- Lines of `constrain { }` that begin with a sign, and the question if one begins a constraint of its
+# own.
+#
+# Newlines mean nothing to the grammar, so `-` goes on with the line above. If it touches its operand, and
+# the line compares, people read it as the next constraint.
+
+_COMPARING = frozenset({"==", "<=", ">=", "<", ">", "!=", "=", "in"})
+_ENDING = STATEMENT_WORDS | {END, ";", ",", "{", "}", "and", "or", "&&", "||", "else"}
+_OPERANDS = frozenset({"NAME", "NUMBER", "STRING"})
+
+
+def begins_with_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
+    """Tells whether a token is a `-` that begins a line, touches its operand and precedes a comparison."""
+    if not _is_sign(text, tokens, position):
+        return False
+    depth, after_operand = 0, False
+    for place in range(position + 1, min(len(tokens), position + LONGEST)):
+        kind = tokens[place].kind
+        if depth == 0:
+            if kind in _COMPARING:
+                return True
+            begins_operand = kind in _OPERANDS or kind in ("CALL", "(")
+            if kind in _ENDING or (after_operand and begins_operand) or _is_sign(text, tokens, place):
+                return False
+        depth += (kind in ("(", "[", "CALL")) - (kind in (")", "]"))
+        if depth < 0:
+            return False
+        after_operand = kind in _OPERANDS or kind in (")", "]")
+    return False
+
+
+def _is_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
+    token = tokens[position]
+    return token.kind == "-" and tokens[position + 1].start == token.end and begins_line(text, token.start)
+
+
+_MOST_PLACES, _LONGEST = 100, 2000  # beyond this many lines and characters nobody wrote it by hand
+
+
+def lines_joined_by_sign(
+    module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], Parsed]
+) -> list[Diagnostic]:
+    """Returns W0101 for each line that begins with a sign if it and what is above read as statements."""
+    source, text = module.source, module.source.text
+    signs = (t.start for t in tokens if t.kind in "+-" and begins_line(text, t.start))
+    places = [start for start in signs if text[:start].strip()]
+    if not places:
+        return []
+    found = []
+    leaves = list(_leaves(module.statements))
+    for place in places[:_MOST_PLACES]:
+        leaf = next((s for s in leaves if s.span.start < place < s.span.end), None)
+        if leaf is None or leaf.span.end - leaf.span.start > _LONGEST:
+            continue
+        above, below = text[leaf.span.start : place], text[place : leaf.span.end].lstrip("+")
+        inside = isinstance(leaf, ast.ExpressionStatement | ast.Equation)
+        whole = f"constrain {{ {above}\n}}" if inside else above
+        if _is_whole(whole, read) and _says_something(below, read):
+            found.append(_warning(source, place, "" if inside and text[place] == "+" else "constrain "))
+    return found
+
+
+def _leaves(statements: Sequence[ast.Statement]) -> list[ast.Node]:
+    """Returns the statements that hold no others, at any depth."""
+    leaves: list[ast.Node] = []
+    stack: list[ast.Node] = list(statements)
+    while stack:
+        node = stack.pop()
+        blocks = [child for child in ast.children(node) if isinstance(child, ast.Block)]
+        if not blocks or (isinstance(node, ast.Constrain) and not node.braces):
+            leaves.append(node)
+        else:
+            stack += [statement for block in blocks for statement in block.statements]
+    return leaves
+
+
+def _is_whole(text: str, read: Callable[[SourceFile], Parsed]) -> bool:
+    parsed = read(SourceFile("", text))
+    return not parsed.diagnostics and len(parsed.module.statements) == 1
+
+
+def _says_something(text: str, read: Callable[[SourceFile], Parsed]) -> bool:
+    """Tells whether an expression would constrain anything by itself."""
+    parsed = read(SourceFile("", f"constrain {text}\n"))
+    if parsed.diagnostics or len(parsed.module.statements) != 1:
+        return False
+    statement = parsed.module.statements[0]
+    if not isinstance(statement, ast.Constrain) or len(statement.items.statements) != 1:
+        return False
+    item = statement.items.statements[0]
+    return isinstance(item, ast.Equation) or (
+        isinstance(item, ast.ExpressionStatement) and isinstance(item.value, ast.Comparison | ast.Membership)
+    )
+
+
+def _warning(source: SourceFile, place: int, begun: str) -> Diagnostic:
+    sign = Span(source, place, place + 1)
+    begun += sign.text.strip("+")
+    before = len(source.text[:place].rstrip())
+    message = f"a line that begins with `{sign.text}` continues the line above"
+    label = f"this {'subtracts from' if sign.text == '-' else 'adds to'} the expression above"
+    hint = "if it was meant as a statement of its own, end the line above with `;`"
+    fix = Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"), Edit(sign, begun)))
+    return Diagnostic("W0101", message, sign, label, hints=(hint,), fix=fix)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aidl_lang.checking.binding import FIELDS, PARAMETERS
 from aidl_lang.checking.builtins import WORDS
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
+from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.names import fold, is_like, is_slip, nearest

@@ -1,1 +1,0 @@
-"""Parts of name resolution: symbols and scopes, declarations, imports. `resolve` is the pass."""
