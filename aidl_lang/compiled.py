@@ -15,7 +15,6 @@ from aidl_lang.common.source import SourceFile, Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
-    from aidl_lang.building.interp import Settings
     from aidl_lang.checking.symbols import Allowance
     from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
+    from aidl_lang.interp import Settings
     from aidl_lang.solver.problem import StageReport
 
 

@@ -11,7 +11,6 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import parser
-from aidl_lang.building.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.resolve import resolve
@@ -23,6 +22,7 @@ from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
 from aidl_lang.compiled import Asked, Compiled, Facts
+from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck

@@ -27,11 +27,11 @@ from pathlib import Path
 from statistics import median
 
 from aidl_lang import parser, pipeline
-from aidl_lang.building.interp import interpret
 from aidl_lang.checking import library
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
+from aidl_lang.interp import interpret
 from aidl_lang.typecheck import check as typecheck
 
 HERE = Path(__file__).resolve().parent

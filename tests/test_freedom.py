@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.building.expression import DEGREE
-from aidl_lang.building.interp import interpret
 from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Model
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.freedom import motions, report
 from aidl_lang.geometry.freedom.scene import Bending, Scene, X, Y
 from aidl_lang.geometry.solved import Motion, SolvedModel
+from aidl_lang.interp import interpret
 from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.valuation import linearise

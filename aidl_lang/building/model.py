@@ -408,7 +408,7 @@ class Comparison:
     moved    the unknowns that may move first if a call decides that; else those of the left side
     parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
              that place each of them, in the order of the arguments: none is held by its place. Once the whole
-             program is known, `moved` is what they have but for the anchor (see `building.interp`)
+             program is known, `moved` is what they have but for the anchor (see `interp`)
     boxes    the structures whose boxes it mentions, each with the sides of it
     beside   the unknowns it mentions beside these; None if it mentions no structure's box
     """

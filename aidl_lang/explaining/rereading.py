@@ -12,7 +12,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import replace
 
 from aidl_lang.building.expression import Evaluator, Unknown, unknowns
-from aidl_lang.building.interp import Interpretation
 from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Constraint, Model
 from aidl_lang.checking.units import UNITS
@@ -22,6 +21,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import Trials
+from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.conflicts import nearby_solution
 from aidl_lang.solver.newton import Clock

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.curves import Bounds, Floats, Ints, Mask
+from aidl_lang.solver.linear import each_once
 
 _AT_ONCE = 1 << 20
 """Number of candidates looked at in one step, which bounds the memory."""

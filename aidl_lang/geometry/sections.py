@@ -12,7 +12,6 @@ from typing import Any, Literal, Protocol, Self, TypeVar
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import (
@@ -38,6 +37,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, loop_area, polygon_area
+from aidl_lang.solver.linear import each_once
 
 # --- A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`).
 

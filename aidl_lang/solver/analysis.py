@@ -10,12 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once, others
 from aidl_lang.common.records import record
 from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import Riding, groups_riding
-from aidl_lang.solver.linear import DOUBT, RANK, Sparse
+from aidl_lang.solver.linear import DOUBT, RANK, Sparse, each_once, others
 from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 

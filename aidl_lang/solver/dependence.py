@@ -20,10 +20,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Floats, Ints, mentioned
-from aidl_lang.solver.linear import DOUBT, RANK, Sparse
+from aidl_lang.solver.linear import DOUBT, RANK, Sparse, each_once, others, scattered
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 

@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.arrays import each_once
 from aidl_lang.common.records import record
 from aidl_lang.solver import Stages, expression
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import Bools, Floats, Ints, Op, mentioned
 from aidl_lang.solver.group import Group
-from aidl_lang.solver.linear import Sparse
+from aidl_lang.solver.linear import Sparse, each_once
 from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier, stage_name
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (

@@ -14,10 +14,10 @@ import numpy as np
 from aidl_eval.statistics import Floats
 from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.expression import Evaluator
-from aidl_lang.building.interp import interpret
 from aidl_lang.building.lower import Lowered, lower, seen
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.common.world import World
+from aidl_lang.interp import interpret
 from aidl_lang.solver import Problem, Stages, solve
 from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.problem import violations

@@ -22,7 +22,6 @@ from aidl_eval.things import Thing, origins
 from aidl_eval.whole import MEASURES
 from aidl_lang import SourceFile, parser
 from aidl_lang.building.expression import Evaluator, Unknown
-from aidl_lang.building.interp import interpret
 from aidl_lang.building.model import Assertion, Condition, Measurement, Model, Structure
 from aidl_lang.building.values import TextVal
 from aidl_lang.common.prose import first_few
@@ -31,6 +30,7 @@ from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import Region, region_bounds
 from aidl_lang.geometry.solved import Box, SolvedModel
+from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled, front
 from aidl_lang.syntax import ast
 

@@ -20,11 +20,11 @@ import pytest
 
 import aidl_lang
 from aidl_lang import pipeline
-from aidl_lang.building.interp import interpret
 from aidl_lang.building.lower import lower
 from aidl_lang.building.model import Structure
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
+from aidl_lang.interp import interpret
 from tests.compiled import EXAMPLES, model
 
 ROOT = Path(__file__).resolve().parents[2]

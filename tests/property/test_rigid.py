@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.building.interp import interpret
 from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.common.source import SourceFile
+from aidl_lang.interp import interpret
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.conflicts import nearby_solution
 from tests.amount import tries

@@ -22,7 +22,6 @@ import numpy as np
 from aidl_lang.building.expression import DEGREE, quoted
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Model
-from aidl_lang.common.arrays import each_once, scattered
 from aidl_lang.common.prose import counted, listed, short
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
@@ -42,6 +41,7 @@ from aidl_lang.geometry.freedom.scene import (
 )
 from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.solver.analysis import Freedom, Part
+from aidl_lang.solver.linear import each_once, scattered
 from aidl_lang.solver.problem import Solution
 from aidl_lang.solver.valuation import connected
 

@@ -13,11 +13,10 @@ from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered, seen
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure
 from aidl_lang.building.wording import Wording
-from aidl_lang.common.arrays import each_once, scattered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
 from aidl_lang.solver.analysis import Motions, Part
-from aidl_lang.solver.linear import Sparse
+from aidl_lang.solver.linear import Sparse, each_once, scattered
 from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import Valuation, linearise
 
