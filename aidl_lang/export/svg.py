@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import singledispatch
 from xml.etree.ElementTree import Element, tostring
 
 import numpy as np
@@ -304,25 +303,26 @@ def _clean(text: str) -> str:
     return _NOT_XML.sub("\ufffd", text)
 
 
-@singledispatch
 def _drawn(mark: Mark) -> Element:
-    raise TypeError(mark)
-
-
-@_drawn.register
-def _(mark: Area) -> Element:
-    looks = {"d": face_path(mark.face), "fill": mark.fill or "none", "fill-rule": "evenodd"}
-    if mark.opacity != 1:
-        looks["fill-opacity"] = fixed(mark.opacity)
-    looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
-    return _element("path", looks | _role(mark.role))
-
-
-@_drawn.register
-def _(mark: Curves) -> Element:
-    return _element(
-        "path", {"d": open_path(mark.pieces), "fill": "none"} | _looks(mark.ink) | _role(mark.role)
-    )
+    match mark:
+        case Area():
+            looks = {"d": face_path(mark.face), "fill": mark.fill or "none", "fill-rule": "evenodd"}
+            if mark.opacity != 1:
+                looks["fill-opacity"] = fixed(mark.opacity)
+            looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
+            return _element("path", looks | _role(mark.role))
+        case Curves():
+            line = {"d": open_path(mark.pieces), "fill": "none"}
+            return _element("path", line | _looks(mark.ink) | _role(mark.role))
+        case Text():
+            return _text(mark)
+        case Dot():
+            place = {"cx": fixed(mark.at[0]), "cy": fixed(-mark.at[1]), "r": fixed(mark.radius)}
+            rim = {"stroke": "#ffffff", "stroke-width": fixed(0.3 * mark.radius)}
+            return _element("circle", place | rim | {"fill": mark.color})
+        case Frame():
+            ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
+            return _rectangle(mark.box, {"fill": "none"} | _looks(ink))
 
 
 def _role(role: str) -> dict[str, str]:
@@ -342,8 +342,7 @@ def _looks(ink: Ink, *, closed: bool = False) -> dict[str, str]:
     return looks
 
 
-@_drawn.register
-def _(mark: Text) -> Element:
+def _text(mark: Text) -> Element:
     x, y = fixed(mark.at[0]), fixed(-mark.at[1])
     looks = {"x": x, "y": y, "font-size": fixed(mark.size), "font-family": FONT, "fill": mark.color}
     if mark.anchor != "start":
@@ -361,19 +360,6 @@ def _(mark: Text) -> Element:
     halo = _element("text", looks | {"stroke-linejoin": "round", "aria-hidden": "true"})
     halo.text = text.text
     return _element("g", {}, halo, text)
-
-
-@_drawn.register
-def _(mark: Dot) -> Element:
-    place = {"cx": fixed(mark.at[0]), "cy": fixed(-mark.at[1]), "r": fixed(mark.radius)}
-    rim = {"stroke": "#ffffff", "stroke-width": fixed(0.3 * mark.radius)}
-    return _element("circle", place | rim | {"fill": mark.color})
-
-
-@_drawn.register
-def _(mark: Frame) -> Element:
-    ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
-    return _rectangle(mark.box, {"fill": "none"} | _looks(ink))
 
 
 def _rectangle(box: Bounds, looks: Mapping[str, str]) -> Element:
