@@ -188,7 +188,6 @@ def translated(key: Key, paths: Mapping[Path, Path]) -> Key:
 
 
 def things_in(key: Key) -> Iterator[Path]:
-    """Yields the things in a key."""
     if key[:1] == ("ref",) and len(key) == 3:
         yield key[1]  # type: ignore[misc]
         return
@@ -271,7 +270,6 @@ class Item:
 
     @cached_property
     def things(self) -> frozenset[Path]:
-        """The paths of the things in it."""
         return frozenset(things_in(self.key))
 
     @cached_property
