@@ -224,13 +224,12 @@ STATED = frozenset({Kind.CONSTRAINT, Kind.ROTATION, Kind.OPERATION, Kind.ASSERT}
 class Step:
     """A block between a structure's body and a statement in it: a loop, a branch, `constrain { }`.
 
-    opening, closing  what stands around its contents
-    key               equal for blocks that are the same
+    opening  what stands before its contents, and ends with the brace
+    key      equal for blocks that are the same
     """
 
     block: ast.Block
     opening: str
-    closing: str
     key: Key
 
 
