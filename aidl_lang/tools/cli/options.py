@@ -465,7 +465,6 @@ def profile(name: str | None) -> Profile | None:
     if name in PROFILES:
         return PROFILES[name]
     if not (name.endswith(".toml") or Path(name).is_file()):
-        near = did_you_mean(nearest(name, PROFILES))
-        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
-        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
+        told = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
+        raise UseError("E0956", f"there is no profile `{name}`", *did_you_mean(nearest(name, PROFILES)), told)
     return parsed(files.read(name).text, Path(name).name)

@@ -81,7 +81,8 @@ def listen(host: str, port: int, code: str, hint: str) -> socket.socket:
     """Returns a socket that accepts connections already. Raises UseError with a code if there can be none."""
     try:
         family, *_, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        return socket.create_server(at, family=family)
+        is_both = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
+        return socket.create_server(at, family=family, dualstack_ipv6=is_both)
     except OSError as error:
         where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
         why = (error.strerror or str(error)).partition(" (while")[0].lower()  # of which address is said
