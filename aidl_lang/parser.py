@@ -86,7 +86,7 @@ def _read(source: SourceFile, limits: TextLimits, closed: tuple[int, ...] = ()) 
             parsed, read = _read(source, limits, (*closed, found.fix.edits[0].span.start))
             return Parsed(parsed.module, ordered([found, *parsed.diagnostics])), read
     if reader.may_be_deep:
-        deep = [s for s in statements if _depth(s) > limits.max_nesting]
+        deep = [s for s in statements if depth_of(s) > limits.max_nesting]
         diagnostics += [_too_deep(s.span, limits) for s in deep]
         statements = tuple(s for s in statements if s not in deep)
     module = ast.Module(source, statements, tuple(tokens.comments), span=everything)
@@ -345,9 +345,9 @@ def _follow(depths: list[int], kind: str) -> None:
         depths[-1] = max(0, depths[-1] - 1)
 
 
-def _depth(root: ast.Node) -> int:
-    deepest = 0
-    stack: list[tuple[ast.Node, int]] = [(root, 1)]
+def depth_of(root: ast.Node) -> int:
+    """Returns how deep nodes lie in each other."""
+    deepest, stack = 0, [(root, 1)]
     while stack:
         node, depth = stack.pop()
         deepest = max(deepest, depth)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
@@ -144,16 +144,21 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
         )
 
 
-def suffix_of(name: str, fallback: str | None = None) -> str:
-    """Returns a file name's own suffix, else the format asked for (`svg`). Raises ExportError if unknown."""
+def suffix_of(
+    name: str, fallback: str | None, known: Collection[str] = (), unknown: str = "there is no format `{}`"
+) -> str:
+    """Returns a file name's own suffix, else the format asked for (`svg`), of those that are `known`: all
+    formats unless said. Raises ExportError, in words of its own where the format is `unknown`.
+    """
+    known = known or FORMATS
     own = PurePath(name).suffix.lower()
     said = f".{fallback.lower().lstrip('.')}" if fallback else ""
     for suffix in (own, said):
-        if suffix in FORMATS:
+        if suffix in known:
             return suffix
     asked = (said or own).lstrip(".")
-    message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
-    raise ExportError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
+    message = unknown.format(asked) if asked else f"the name `{name}` does not tell a format"
+    raise ExportError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in known))}")
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:

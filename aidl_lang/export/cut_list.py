@@ -77,7 +77,6 @@ class CutList:
 
 
 def cut_list(job: Job) -> CutList:
-    """Returns the list of all bodies of a drawing."""
     found, _ = parts_of(job.model.root, job.drawing)
     groups = sorted(alike(found), key=lambda group: group[0].stock)
     names = _Names(job)
@@ -136,7 +135,6 @@ class Sheet:
 
 
 def sheets(found: CutList, jobs: Sequence[Job]) -> Iterator[Sheet]:
-    """Yields what is on each sheet."""
     by_number = {item.number: item for item in found.items}
     for number, job in enumerate(jobs, 1):
         pieces = Counter(found.numbers[body.path] for body in job.drawing.bodies)
@@ -182,7 +180,6 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
 
 
 def pages(jobs: Sequence[Job]) -> list[Picture]:
-    """Returns the list as pages."""
     found = jobs[0].cut_list
     return [
         *_pages(

@@ -107,6 +107,10 @@ class Outline:
     hole: str | None = None
     clockwise: bool = False
 
+    @property
+    def loop(self) -> Loop:
+        return Loop(self.pieces, self.clockwise)
+
 
 def outlines(model: SolvedModel, drawing: Drawing, profile: Profile = PLAIN) -> list[Outline]:
     """Returns all outlines of a drawing in the order of drawing and cutting."""
@@ -177,7 +181,7 @@ def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
 
 
 def _region(area: Sequence[Outline]) -> Region:
-    first, *others = (Loop(outline.pieces, outline.clockwise) for outline in area)
+    first, *others = (outline.loop for outline in area)
     return Region((Face(first, tuple(others)),))
 
 
@@ -193,10 +197,10 @@ def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float
 
 def _is_closed(pieces: Sequence[Piece], tolerance: float) -> bool:
     start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
-    return math.dist(start, end) <= tolerance < _extent(pieces)
+    return math.dist(start, end) <= tolerance < extent(pieces)
 
 
-def _extent(pieces: Iterable[Piece]) -> float:
+def extent(pieces: Iterable[Piece]) -> float:
     return larger_side(union_bounds([bounds(piece) for piece in pieces]))
 
 
@@ -250,7 +254,7 @@ def _late(faces: Sequence[tuple[Face, Body]]) -> set[tuple[int, int]]:
 def _holds(loop: Loop, face: Face) -> bool:
     """Tells whether most of an outline lies in a loop, on which it may end."""
     spots = np.array([point(piece, t) for piece in face.outer.pieces for t in (0.25, 0.5, 0.75)])
-    polygon = loop_points(loop, 0.01 * _extent(loop.pieces))
+    polygon = loop_points(loop, 0.01 * extent(loop.pieces))
     return bool(inside([polygon], spots).mean() > 0.5)
 
 

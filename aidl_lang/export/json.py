@@ -102,7 +102,7 @@ def to_dict(
         "regions": {
             path: _region(drawing.regions[path], m, tolerance) for path, m in drawing.measures.items()
         },
-        "pairs": [_pair(p) for p in drawing.pairs],
+        "pairs": [*map(contact, drawing.pairs)],
         "diagnostics": [diagnostic_dict(d) for d in diagnostics],
     }
     if model.readings:
@@ -196,10 +196,6 @@ def _geometry(g: SolvedGeometry) -> Json:
     return entry
 
 
-def _pair(pair: Contact) -> Json:
-    entry: Json = {"a": pair.a, "b": pair.b, "relation": pair.relation}
-    if pair.gap is not None:
-        entry["gap"] = pair.gap
-    if pair.area is not None:
-        entry["area"] = pair.area
-    return entry
+def contact(pair: Contact, fields: Iterable[str] = ("a", "b", "relation", "gap", "area")) -> Json:
+    """Returns the fields that a contact has."""
+    return {name: value for name in fields if (value := getattr(pair, name)) is not None}

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
-from typing import TypeGuard
+from textwrap import wrap
+from typing import TypeAlias, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export import themes
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
-from aidl_lang.geometry.curves import Bounds, Piece, Vec, are_near, bounds, union_bounds
+from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
@@ -93,13 +94,7 @@ MANY = 150
 LINE_LENGTH = 58
 """Characters in a line of a list."""
 
-
-@record(frozen=False)
-class Overlay:
-    """Marks by layer, and the box that holds the drawing with all of them."""
-
-    box: Bounds
-    layers: dict[str, list[Mark]] = field(default_factory=dict)
+_Thing: TypeAlias = SolvedStructure | SolvedGeometry
 
 
 class Taken:
@@ -153,28 +148,31 @@ class Explainer:
         return chosen
 
 
-def explain(model: SolvedModel, drawing: Drawing, show: frozenset[str], box: Bounds, size: float) -> Overlay:
-    """Returns the layers asked for, in a fixed order from the back to the front."""
-    overlay = Overlay(box)
+def explain(
+    model: SolvedModel, drawing: Drawing, show: frozenset[str], box: Bounds, size: float
+) -> tuple[Bounds, dict[str, list[Mark]]]:
+    """Returns the box that holds the drawing with the layers asked for, and the marks of these, in a fixed
+    order from the back to the front.
+    """
+    layers: dict[str, list[Mark]] = {}
     if not show:
-        return overlay
+        return box, layers
     at = Explainer(model, drawing, box, size)
     makers = {"plan": _plans, "bbox": _boxes, "points": _points, "names": _names}
     for name, make in makers.items():
         if name in show:
-            overlay.layers[name] = list(make(at))
+            layers[name] = list(make(at))
     # Lists stand beside a tall drawing and below a wide one, where they cost the least of its size.
     wide = box[2] - box[0] > 1.25 * (box[3] - box[1])
     corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
     for name, lists in (("constraints", _constraints), ("dof", _degrees)):
         if name in show:
             marks = lists(at, corner)
-            overlay.layers[name] = marks
+            layers[name] = marks
             listed = [m.box[2] for m in marks if isinstance(m, Text) and not m.halo]
             corner = (max(listed, default=corner[0]) + 2 * at.font, corner[1])
-    texts = [m.box for marks in overlay.layers.values() for m in marks if isinstance(m, Text | Frame)]
-    overlay.box = union_bounds([box, *texts])
-    return overlay
+    texts = [m.box for marks in layers.values() for m in marks if isinstance(m, Text | Frame)]
+    return union_bounds([box, *texts]), layers
 
 
 def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
@@ -287,10 +285,11 @@ def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns numbers near what the constraints mention, and their texts in a list; violated ones in red."""
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
+    things = _things(at.model.root)
     for number, constraint in enumerate(at.model.constraints, 1):
         checkpoint()
         color = themes.GOOD if constraint.satisfied else themes.BAD
-        spot = _spot(at.model, constraint)
+        spot = _spot(things, constraint)
         if spot is not None:
             marks.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
         for k, line in enumerate(_constraint_lines(number, constraint)):
@@ -303,25 +302,14 @@ def _constraint_lines(number: int, constraint: ConstraintReport) -> list[str]:
     text = " ".join(constraint.text.split())
     holds = "" if constraint.satisfied else f"  ✗ off by {constraint.residual:.3g}"
     soft = "prefer " if constraint.soft and not text.startswith("prefer") else ""
-    return _wrapped(f"{number}  {soft}{text}{holds}")
+    return wrap(f"{number}  {soft}{text}{holds}", LINE_LENGTH, break_long_words=False, break_on_hyphens=False)
 
 
-def _wrapped(text: str) -> list[str]:
-    lines, line = [], ""
-    for word in text.split(" "):
-        if line and len(line) + len(word) >= LINE_LENGTH:
-            lines.append(line)
-            line = word
-        else:
-            line = f"{line} {word}" if line else word
-    return [*lines, line]
-
-
-def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
+def _spot(things: Mapping[str, _Thing], constraint: ConstraintReport) -> Bounds | None:
     """Returns a place between the things that a constraint mentions."""
-    boxes = [box for path in constraint.mentions() if (box := _box_of(model.root, path)) is not None]
+    boxes = [box for path in constraint.mentions() if (box := _box_of(things, path)) is not None]
     if not boxes:
-        boxes = [box for box in [_box_of(model.root, constraint.path)] if box is not None]
+        boxes = [box for box in [_box_of(things, constraint.path)] if box is not None]
     if not boxes:
         return None
     x = sum(b[0] + b[2] for b in boxes) / (2 * len(boxes))
@@ -329,36 +317,25 @@ def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
     return x, y, x, y
 
 
-def _box_of(structure: SolvedStructure, path: str) -> Bounds | None:
+def _things(root: SolvedStructure) -> dict[str, _Thing]:
+    """Returns all structures and geometry with its parts, by their paths."""
+    found: list[_Thing] = [*root.walk(), *root.walk_geometry()]
+    return {thing.path: thing for thing in reversed(found)}
+
+
+def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
     """Returns the box of what a path leads to, or of its last known element."""
-    if path != structure.path and not path.startswith((structure.path + ".", structure.path + "[")):
-        return None
-    for child in structure.structures:
-        if path == child.path or path.startswith(child.path + "."):
-            return _box_of(child, path)
-    for geometry in structure.geometry:
-        if path == geometry.path or path.startswith(geometry.path + "."):
-            return _geometry_box(geometry, path)
-    return _bounds(structure)
-
-
-def _geometry_box(geometry: SolvedGeometry, path: str) -> Bounds | None:
-    field_name = path.removeprefix(geometry.path).lstrip(".")
-    value = geometry.values.get(field_name if field_name else "at")
+    known = path
+    while known and known not in things:
+        known = known[: max(known.rfind("."), known.rfind("["), 0)]
+    thing = things.get(known)
+    if thing is None or isinstance(thing, SolvedStructure):
+        return None if thing is None else _bounds(thing)
+    value = thing.values.get(path.removeprefix(known).lstrip(".") or "at")
     if _is_point(value):
         return value[0], value[1], value[0], value[1]
-    for part in geometry.parts:
-        if path == part.path or path.startswith(part.path + "."):
-            return _geometry_box(part, path)
-    boxes = [bounds(c) for c in _all_curves(geometry)]
+    boxes = [bounds(part.curve) for part in thing.walk() if part.curve is not None]
     return union_bounds(boxes) if boxes else None
-
-
-def _all_curves(geometry: SolvedGeometry) -> Iterator[Piece]:
-    if geometry.curve is not None:
-        yield geometry.curve
-    for part in geometry.parts:
-        yield from _all_curves(part)
 
 
 def _degrees(at: Explainer, corner: Vec) -> list[Mark]:

@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import singledispatchmethod
 from typing import Any
 
 import numpy as np
@@ -193,12 +192,29 @@ class _Pen:
         yield
         self._canvas.restoreState()
 
-    @singledispatchmethod
     def _draw(self, mark: Mark) -> None:
-        raise TypeError(mark)
+        match mark:
+            case Area():
+                self._area(mark)
+            case Curves():
+                path = self._canvas.beginPath()
+                _add_pieces(path, mark.pieces)
+                self._ink(mark.ink)
+                self._canvas.drawPath(path)
+            case Text():
+                self._lettering(mark)
+            case Dot():
+                self._fill(mark.color)
+                self._ink(Ink(_WHITE, 0.3 * mark.radius))
+                path = self._canvas.beginPath()
+                _add_pieces(path, [Circle(mark.at, mark.radius)])
+                self._canvas.drawPath(path, fill=1)
+            case Frame():
+                dash = (mark.dash, 0.7 * mark.dash) if mark.dash else None
+                self._ink(Ink(mark.color, mark.width, dash))
+                self._canvas.drawPath(self._frame_path(mark.box))
 
-    @_draw.register
-    def _(self, mark: Area) -> None:
+    def _area(self, mark: Area) -> None:
         path = self._canvas.beginPath()
         for loop in mark.face.loops:
             _add_pieces(path, loop.pieces)
@@ -267,15 +283,7 @@ class _Pen:
         path.close()
         return path
 
-    @_draw.register
-    def _(self, mark: Curves) -> None:
-        path = self._canvas.beginPath()
-        _add_pieces(path, mark.pieces)
-        self._ink(mark.ink)
-        self._canvas.drawPath(path)
-
-    @_draw.register
-    def _(self, mark: Text) -> None:
+    def _lettering(self, mark: Text) -> None:
         canvas = self._canvas
         canvas.translate(*mark.at)
         canvas.rotate(mark.angle)
@@ -286,20 +294,6 @@ class _Pen:
                 self._text(mark, left, _WHITE, Ink(_WHITE, 0.22 * mark.size, is_round=True))
         # The font has one weight: a line of its own colour around it makes it bold.
         self._text(mark, left, mark.color, Ink(mark.color, 0.04 * mark.size) if mark.bold else None)
-
-    @_draw.register
-    def _(self, mark: Dot) -> None:
-        self._fill(mark.color)
-        self._ink(Ink(_WHITE, 0.3 * mark.radius))
-        path = self._canvas.beginPath()
-        _add_pieces(path, [Circle(mark.at, mark.radius)])
-        self._canvas.drawPath(path, fill=1)
-
-    @_draw.register
-    def _(self, mark: Frame) -> None:
-        dash = (mark.dash, 0.7 * mark.dash) if mark.dash else None
-        self._ink(Ink(mark.color, mark.width, dash))
-        self._canvas.drawPath(self._frame_path(mark.box))
 
     def _frame_path(self, box: Bounds) -> Any:
         path = self._canvas.beginPath()

@@ -95,14 +95,12 @@ class _Row:
         return [self.start(k) + self.window * share for k in range(self.count) for share in (0.25, 0.75)]
 
 
-def tiled(
-    picture: Picture, page: Size, margin: float = PAGE_MARGIN, overlap: float = OVERLAP
-) -> list[Picture]:
+def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Picture]:
     """Returns the pages on which something is drawn, in reading order; the box of each is that of the paper.
 
     Raises ExportError if the page is too small, or too many would be needed.
     """
-    window = page[0] - 2 * margin, page[1] - 2 * margin
+    window = page[0] - 2 * PAGE_MARGIN, page[1] - 2 * PAGE_MARGIN
     _check(page, window, overlap)
     left, bottom, right, top = picture.box
     across = _Row.over(left, right, window[0], overlap)
@@ -131,7 +129,7 @@ def tiled(
     made = []
     for k, (sight, groups, place) in enumerate(found, 1):
         added = _page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")
-        made.append(Picture(widened(sight, margin), (*groups, Group("page-marks", tuple(added)))))
+        made.append(Picture(widened(sight, PAGE_MARGIN), (*groups, Group("page-marks", tuple(added)))))
     return made
 
 
@@ -259,17 +257,15 @@ def _whole(job: Job) -> Picture:
         from aidl_lang.export.dimensioning import dimensioned
 
         seen, dimensions = dimensioned(job.model, job.drawing, box)
-    overlay = explain(job.model, job.drawing, options.show, seen, size)
+    shown, layers = explain(job.model, job.drawing, options.show, seen, size)
     groups = [*_drawn(job, size, shadows)]
     groups += dimensions
-    groups += [
-        Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
-    ]
+    groups += [Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in layers.items()]
     # Pages have margins of their own.
     margin = max(
         0.0 if options.tile else MARGIN * size, 0.0 if options.for_cutter else _overhang(job.drawing)
     )
-    return Picture(widened(overlay.box, margin), tuple(groups))
+    return Picture(widened(shown, margin), tuple(groups))
 
 
 def _drawn(job: Job, size: float, shadows: Iterable[tuple[str, Area]] = ()) -> Iterator[Group]:

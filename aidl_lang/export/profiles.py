@@ -85,7 +85,6 @@ class Profile:
         return self.looks[operation] if found is None or found.look is None else found.look
 
     def color(self, outline: Outline) -> str:
-        """Returns the colour of an outline."""
         if self.keeps_colors and outline.operation not in CUTS and outline.style.color is not None:
             return hexadecimal(rgb(outline.style.color))
         return self.look(outline.style.layer, outline.operation).color

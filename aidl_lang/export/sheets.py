@@ -48,21 +48,17 @@ def _marks(run: Sequence[Outline], profile: Profile) -> Iterator[Mark]:
     for area, bounding in groupby(run, key=lambda o: o.area):
         if area:
             first, *others = bounding
-            loops = tuple(_loop(outline) for outline in others)
-            yield Area(Face(_loop(first), loops), profile.color(first), None, FILL)
+            face = Face(first.loop, tuple(outline.loop for outline in others))
+            yield Area(face, profile.color(first), None, FILL)
             continue
         for outline in bounding:
             width = profile.look(outline.style.layer, outline.operation).width
             ink = Ink(profile.color(outline), width)
             role = "cut" if outline.operation in CUTS else outline.operation
             if outline.closed:
-                yield Area(Face(_loop(outline)), None, ink, role)
+                yield Area(Face(outline.loop), None, ink, role)
             else:
                 yield Curves(outline.pieces, ink, role)
-
-
-def _loop(outline: Outline) -> Loop:
-    return Loop(outline.pieces, outline.clockwise)
 
 
 # --- Jobs for cutters: outlines widened by the cut, parts laid out on sheets, one job for each sheet.

@@ -109,7 +109,6 @@ class Shapes:
             yield from map(self.solid, of.region.faces)
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
-        """Returns an edge for each piece."""
         self._vertices.clear()
         return [self._edge(piece, *map(self._vertex, ends(piece))) for piece in map(_upright, pieces)]
 
@@ -346,7 +345,6 @@ class _File:
             self._root = self._assembly()
 
     def data(self) -> bytes:
-        """Returns the content of the file."""
         with _refusals(self._name):
             out = io.BytesIO()
             if self._transferred().WriteStream(out) != IFSelect_ReturnStatus.IFSelect_RetDone:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import singledispatch
 
 from aidl_lang.common.colors import hexadecimal, rgb
 from aidl_lang.common.records import record
@@ -126,34 +125,20 @@ def themed(picture: Picture, name: str) -> Picture:
     return replace(picture, groups=tuple(groups))
 
 
-@singledispatch
 def _reduced(mark: Mark, theme: Theme) -> Mark:
-    raise TypeError(mark)
-
-
-@_reduced.register
-def _(mark: Area, theme: Theme) -> Mark:
-    if mark.role == HALO:
-        return replace(mark, fill=theme.paper)
-    if mark.is_sign:
-        return replace(mark, fill=theme.line)
-    ink = None if mark.ink is None else replace(mark.ink, color=theme.line)
-    fill = theme.fill if mark.fill and mark.opacity == 1.0 and not mark.fades else None
-    return replace(mark, fill=fill, ink=ink, opacity=1.0, gradient=None)
-
-
-@_reduced.register
-def _(mark: Curves, theme: Theme) -> Mark:
-    if mark.role == HALO:
-        return replace(mark, ink=replace(mark.ink, color=theme.paper))
-    return replace(mark, ink=replace(mark.ink, color=theme.line))
-
-
-@_reduced.register
-def _(mark: Text, theme: Theme) -> Mark:
-    return replace(mark, color=theme.line, halo=False)
-
-
-@_reduced.register
-def _(mark: Dot | Frame, theme: Theme) -> Mark:
-    return replace(mark, color=theme.line)
+    match mark:
+        case Area() if mark.role == HALO:
+            return replace(mark, fill=theme.paper)
+        case Area() if mark.is_sign:
+            return replace(mark, fill=theme.line)
+        case Area(ink=ink):
+            line = None if ink is None else replace(ink, color=theme.line)
+            fill = theme.fill if mark.fill and mark.opacity == 1.0 and not mark.fades else None
+            return replace(mark, fill=fill, ink=line, opacity=1.0, gradient=None)
+        case Curves(ink=ink):
+            color = theme.paper if mark.role == HALO else theme.line
+            return replace(mark, ink=replace(ink, color=color))
+        case Text():
+            return replace(mark, color=theme.line, halo=False)
+        case Dot() | Frame():
+            return replace(mark, color=theme.line)

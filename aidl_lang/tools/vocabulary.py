@@ -129,12 +129,10 @@ class Vocabulary:
 
     @property
     def keywords(self) -> tuple[str, ...]:
-        """The keywords of the grammar."""
         return tuple(word for name in _KEYWORDS for word in getattr(self, name))
 
     @property
     def signs(self) -> tuple[str, ...]:
-        """The signs of the grammar."""
         return tuple(sign for name in _SIGNS for sign in getattr(self, name))
 
     def to_dict(self) -> dict[str, object]:

@@ -131,14 +131,6 @@ def test_no_value_of_another_text() -> None:
     assert "60 mm, param" not in at("width: wi¦dth", PLATE, waiting)
 
 
-def test_a_selected_expression() -> None:
-    start = PLATE.index("0.1 + 0.2")
-    found = hover(solved(), start - 1, start + len("0.1 + 0.2"))
-    assert found is not None
-    assert found.text == "- `0.1 + 0.2 = 0.3`"
-    assert found.span.text == "0.1 + 0.2"
-
-
 @pytest.mark.parametrize("path", LIGHTER)
 def test_values_are_those_of_the_model(path: Path) -> None:
     """Radii as they are told where circles are made, beside those of the drawing."""

@@ -89,5 +89,5 @@ def test_examples(example: View) -> None:
     assert view.outcome.model is not None
     said = lenses(view)
     assert any(lens.title.startswith("solved") for lens in said)
-    paths = {path for lens in said for path in lens.paths}
-    assert paths <= {s.path for s in view.outcome.model.root.walk()}
+    names = {lens.span.text for lens in said}
+    assert names <= {s.name.partition("[")[0] for s in view.outcome.model.root.walk()}

@@ -37,7 +37,6 @@ _LARGE = ("scipy", "openblas")
 """Those that large programs ask for: they stay as they are."""
 _PURE = {
     "lark": "later",
-    "svgwrite": "later",
     "attrs": "later",
     "cattrs": "later",
     "lsprotocol": "later",

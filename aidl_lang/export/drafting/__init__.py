@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, groupby
 
@@ -25,7 +25,6 @@ from aidl_lang.export.drafting.tables import (
     Paper,
     Standard,
     Table,
-    Title,
     lines,
     papers,
     scale_text,
@@ -182,7 +181,6 @@ def center_line(start: Vec, end: Vec, factor: float) -> Curves:
 
 
 def _black(mark: Mark) -> Mark:
-    """Returns a mark of a dimension in black."""
     match mark:
         case Area(ink=None):
             return replace(mark, fill=BLACK)
@@ -346,7 +344,7 @@ def _list_of_parts(content: Content) -> Table:
     return Table("parts", ("Item", "Name", "Qty", "Material", "Size"), rows, frozenset({0, 2}))
 
 
-def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) -> Title:
+def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) -> dict[str, str]:
     root, subject = job.model.root, content.subject
 
     def said(name: str, of: SolvedStructure = root) -> str:
@@ -357,19 +355,20 @@ def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) ->
         title = f"{said('title') or _plain(root.name)}: {title}"
     if content.count > 1:
         title = f"{title} ({content.count}×)"
-    thickness = content.style.thickness
-    return Title(
-        title,
-        said("number", subject) or said("number"),
-        said("revision", subject) or said("revision"),
-        said("author"),
-        draft.date,
-        "see list" if content.items else content.style.material or "",
-        "see list" if content.items else f"{fixed(thickness, 3)} mm" if thickness is not None else "",
-        scale_text(laid.scale),
-        laid.paper.label,
-        sheet,
-    )
+    thickness = "" if content.style.thickness is None else f"{fixed(content.style.thickness, 3)} mm"
+    return {
+        "title": title,
+        "number": said("number", subject) or said("number"),
+        "revision": said("revision", subject) or said("revision"),
+        "author": said("author"),
+        "date": draft.date,
+        "material": "see list" if content.items else content.style.material or "",
+        "thickness": "see list" if content.items else thickness,
+        "scale": scale_text(laid.scale),
+        "paper": laid.paper.label,
+        "sheet": sheet,
+        "unit": "mm, degrees",
+    }
 
 
 def _named(doc: str | None, name: str) -> str:
@@ -384,7 +383,7 @@ def _plain(name: str) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _page(content: Content, laid: _Laid, title: Title, standard: Standard) -> Picture:
+def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
     left, bottom, right, top = laid.paper.frame
     around = (left, bottom), (right, bottom), (right, top), (left, top)
     frame = lines([*zip(around, (*around[1:], around[0]), strict=True)], 2 * WIDE, "frame")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 
 from aidl_lang.common.materials import PAPERS
@@ -31,19 +31,18 @@ _MARGIN = 10.0
 
 @record()
 class Standard:
-    """The habits of a country: its paper from the smallest, the margin on which sheets are bound, where views
-    from the side stand, and the language of the measure in the title block.
+    """The habits of a country: its paper from the smallest, the margin on which sheets are bound, and where
+    views from the side stand.
     """
 
-    name: str
     papers: tuple[str, ...]
     binding: float
     is_first_angle: bool
 
 
 STANDARDS = {
-    "iso": Standard("iso", ("a4", "a3", "a2", "a1", "a0"), 20.0, True),
-    "ansi": Standard("ansi", ("letter", "tabloid", "a2", "a1", "a0"), 10.0, False),
+    "iso": Standard(("a4", "a3", "a2", "a1", "a0"), 20.0, True),
+    "ansi": Standard(("letter", "tabloid", "a2", "a1", "a0"), 10.0, False),
 }
 
 
@@ -131,22 +130,6 @@ _AIR = 1.2
 
 
 @record()
-class Title:
-    """The fields of a title block; what is not known is left empty, to be filled in by hand."""
-
-    title: str
-    number: str = ""
-    revision: str = ""
-    author: str = ""
-    date: str = ""
-    material: str = ""
-    thickness: str = ""
-    scale: str = ""
-    paper: str = ""
-    sheet: str = ""
-
-
-@record()
 class Table:
     """A table: heads, rows, and how its width is divided; columns of numbers stand to the right."""
 
@@ -215,8 +198,10 @@ _PLAN = (
 )
 
 
-def title_block(title: Title, left: float, bottom: float, is_first_angle: bool) -> Group:
-    """Returns the title block with its lower left corner at a place."""
+def title_block(title: Mapping[str, str], left: float, bottom: float, is_first_angle: bool) -> Group:
+    """Returns the title block with its lower left corner at a place. `title` has its fields by name; what is
+    not known is empty, to be filled in by hand.
+    """
     marks: list[Mark] = []
     segments: list[tuple[Vec, Vec]] = []
     for row, cells in enumerate(_PLAN):
@@ -229,7 +214,7 @@ def title_block(title: Title, left: float, bottom: float, is_first_angle: bool) 
             if name == "projection":
                 marks += _projection((x + width / 2, top - _CELL / 2), is_first_angle)
             else:
-                value = "mm, degrees" if name == "unit" else str(getattr(title, name))
+                value = title[name]
                 marks.append(written(label, (x + _AIR, top - _AIR - SMALL + 0.2), SMALL, room=room))
                 height = LARGE if name == "title" else SMALL
                 marks.append(written(value, (x + _AIR, top - _CELL + 1.3), height, room=room))

@@ -16,12 +16,12 @@ from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.explaining import failures
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.survey import Part, some_of
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.tools.agents.results import (
     Body,
     Conflict,
-    Contact,
     Drawn,
     Export,
     Given,
@@ -197,7 +197,6 @@ class Remedies:
 
 
 def in_lines(conflict: Conflict) -> str:
-    """Returns a conflict in lines."""
     lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
     told = [line for p in conflict.parties for line in _told(p)]
     return "\n".join([f"{conflict.headline}; {lead}:", *told, *map(_exact, conflict.givens)])
@@ -243,12 +242,13 @@ def drawn(
     files = [f for f in dict.fromkeys(formats) if f not in ("png", "model")]
     exports = [export for f in files if (export := making.export(f)) is not None]
     png = making.png() if "png" in formats else None
-    bodies, contacts = _bodies(compiled), _contacts(compiled)
-    drawing = compiled.drawing
+    drawing, bodies = compiled.drawing, _bodies(compiled)
+    pairs = drawing.pairs if drawing else ()
+    contacts = list(pairs[:MOST_LISTED])
     counts = {
         "params": len(compiled.knobs),
         "bodies": len(drawing.bodies) if drawing else 0,
-        "contacts": len(drawing.pairs) if drawing else 0,
+        "contacts": len(pairs),
     }
     left = [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
     diagnostics = [*compiled.diagnostics, *reader.diagnostics(making.notes)]
@@ -394,11 +394,6 @@ def _body(body: Body) -> str:
     return f"{body.path}: {width} × {height} mm, {at}, area {short(body.area)} mm²"
 
 
-def _contacts(compiled: Compiled) -> list[Contact]:
-    pairs = compiled.drawing.pairs if compiled.drawing is not None else ()
-    return [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in pairs[:MOST_LISTED]]
-
-
 def contact(pair: Contact) -> str:
     how = {
         "touching": "touch",
@@ -420,7 +415,6 @@ def left_out(what: str, count: int) -> str:
 
 
 def measured(part: Part) -> str:
-    """Returns a part in a line."""
     left, bottom, right, top = part.box
     facts = [
         f"area {short(part.area)} mm²",

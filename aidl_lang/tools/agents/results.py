@@ -14,6 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Fix
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
+from aidl_lang.geometry.boolean import Contact
 from aidl_lang.tools.reference.collect import Entry, search
 from aidl_lang.tools.reference.pages import forms
 
@@ -203,19 +204,6 @@ class Body:
     right: float
     top: float
     area: float
-
-
-@record()
-class Contact:
-    """How two bodies lie to each other: with the `gap` in mm where they are apart, the shared `area` in mm²
-    where they overlap.
-    """
-
-    a: str
-    b: str
-    relation: Literal["touching", "apart", "overlapping"]
-    gap: float | None
-    area: float | None
 
 
 @record()

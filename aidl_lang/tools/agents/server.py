@@ -63,26 +63,19 @@ def _add_resources(server: Server) -> None:
         name = uri.removeprefix("aidl://").partition("/{")[0]
         server.resource(uri, name=name, title=title, mime_type=kind)(read)
 
-    add("aidl://guide", "The language on a few pages", _MARKDOWN, _guide)
+    add("aidl://guide", "The language on a few pages", _MARKDOWN, lambda: Tools().guide().text)
     for path in sorted(resource("examples").glob("*.aidl")):
         title = f"Example: {path.stem.replace('_', ' ')}"
-        add(f"aidl://examples/{path.stem}", title, _AIDL, _reader(path.stem))
-    add("aidl://model.schema.json", "JSON Schema of the solved model", "application/json", _schema)
+        add(f"aidl://examples/{path.stem}", title, _AIDL, _reader(path))
+    schema = _reader(resource("docs/model.schema.json"))
+    add("aidl://model.schema.json", "JSON Schema of the solved model", "application/json", schema)
     add("aidl://diagnostics", "All codes of diagnostics", _MARKDOWN, _codes)
     add("aidl://diagnostics/{code}", "What a code means", _MARKDOWN, _page)
     add("aidl://reference/{name}", "All about a name of the library", _MARKDOWN, _page_of_name)
 
 
-def _guide() -> str:
-    return Tools().guide().text
-
-
-def _reader(name: str) -> Callable[[], str]:
-    return lambda: resource(f"examples/{name}.aidl").read_text("utf-8")
-
-
-def _schema() -> str:
-    return resource("docs/model.schema.json").read_text("utf-8")
+def _reader(file: Path) -> Callable[[], str]:
+    return lambda: file.read_text("utf-8")
 
 
 def _codes() -> str:

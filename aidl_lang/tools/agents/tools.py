@@ -25,7 +25,6 @@ from aidl_lang.tools.agents import drawing, results, workspace
 from aidl_lang.tools.agents.results import (
     Checked,
     Conflicts,
-    Contact,
     Drawn,
     Edited,
     Hits,
@@ -185,7 +184,7 @@ class Tools:
             raise RefusalError(*compiled.errors)
         found = compiled.surveyed([path] if path else [])
         most = drawing.MOST_LISTED
-        pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
+        pairs = list(found.pairs[:most])
         parts, whole = found.parts[:most], found.whole
         is_all = not found.is_partial and len(found.pairs) <= most
         diagnostics = [*compiled.diagnostics, *reader.diagnostics(found.notes)]

@@ -159,16 +159,22 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         if verb in words:
             register = registering(verb)
             own.description = register.__doc__
+            own.set_defaults(run=_of_module("run", verb))
             register(own)
     return parser
 
 
 def registering(verb: str) -> Callable[[argparse.ArgumentParser], None]:
     """Returns what gives a parser the options of a verb; its docstring describes the verb."""
+    register: Callable[[argparse.ArgumentParser], None] = _of_module("register", verb)
+    return register
+
+
+def _of_module(what: str, verb: str) -> Any:
+    """Returns a function of the module of a verb; None for one that it does not have."""
     name = verb.replace("-", "_")
     module = import_module(f"aidl_lang.tools.cli.{_MODULES.get(verb, name)}")
-    register: Callable[[argparse.ArgumentParser], None] = getattr(module, f"register_{name}")
-    return register
+    return getattr(module, f"{what}_{name}", None)
 
 
 def _seldom_search() -> None:

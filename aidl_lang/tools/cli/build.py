@@ -77,7 +77,6 @@ class BuildResult:
         return [] if model is None or not self.compiled.ok else report(model, most)
 
     def line(self, program: str) -> str:
-        """Returns the result in a line."""
         model = self.compiled.model
         freedom = ""
         if model is not None and model.degrees is not None and self.compiled.ok:
@@ -222,7 +221,6 @@ def register_compile(parser: argparse.ArgumentParser) -> None:
     flag(parser, "--quiet", "say nothing but errors")
     flag(parser, "--timings", "tell how long each stage took")
     flag(parser, "--trace-solve", "tell which structures were solved in which stages")
-    parser.set_defaults(run=run_compile)
 
 
 def run_compile(arguments: argparse.Namespace) -> int:
@@ -263,7 +261,7 @@ def register_watch(parser: argparse.ArgumentParser) -> None:
     add_drawing(parser)
     add_variant(parser)
     add_strict(parser)
-    parser.set_defaults(run=run_watch, timings=False)
+    parser.set_defaults(timings=False)
 
 
 def run_watch(arguments: argparse.Namespace) -> int:
@@ -325,7 +323,6 @@ def register_sheet(parser: argparse.ArgumentParser) -> None:
     value(parser, "--date", "TEXT", "the date in the title block (default: none)", str, "")
     choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)", "iso")
     add_pixels(parser)
-    parser.set_defaults(run=run_sheet)
 
 
 def run_sheet(arguments: argparse.Namespace) -> int:
@@ -360,15 +357,11 @@ def run_sheet(arguments: argparse.Namespace) -> int:
 
 
 def sheet_suffix(name: str) -> str:
-    """Returns the format of a sheet; raises UseError for one that has none."""
-    from aidl_lang.export import PICTURES
+    """Returns the format of a sheet. Raises ExportError for one that has none."""
+    from aidl_lang.export import PICTURES, suffix_of
 
-    suffix = _SHEET if name == files.STANDARD else Path(name).suffix.lower()
-    if suffix not in PICTURES:
-        asked = suffix.lstrip(".")
-        message = f"there are no sheets of the format `{asked}`" if asked else f"`{name}` tells no format"
-        raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
-    return suffix
+    fallback = _SHEET * (name == files.STANDARD)
+    return suffix_of(name, fallback, PICTURES, "there are no sheets of the format `{}`")
 
 
 def _paper(text: str) -> str:

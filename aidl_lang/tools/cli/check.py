@@ -12,7 +12,7 @@ from aidl_lang.common.prose import counted, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
 from aidl_lang.tools.cli.options import add_program, add_variant, flag
 
 if TYPE_CHECKING:
@@ -146,7 +146,6 @@ def register_check(parser: argparse.ArgumentParser) -> None:
     )
     flag(parser, "--json", "print the diagnostics as JSON")
     add_variant(parser)
-    parser.set_defaults(run=run_check)
 
 
 def run_check(arguments: argparse.Namespace) -> int:
@@ -165,8 +164,6 @@ def run_check(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             _tell(name, checked, arguments)
     if arguments.json:
-        import json
-
         from aidl_lang.common.render import to_dict
 
         document = {
@@ -180,7 +177,7 @@ def run_check(arguments: argparse.Namespace) -> int:
             **({"ends": swept} if arguments.ends else {}),
             **({"range": swept} if arguments.range else {}),
         }
-        print(json.dumps(document, indent=2, ensure_ascii=False))
+        print_json(document)
     return exit_code(found) or (0 if is_well else 1)
 
 
@@ -246,7 +243,6 @@ def register_fmt(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
     flag(parser, "--check", "write nothing; exit with 1 if a file would change")
     flag(parser, "--diff", "write nothing; print what would change")
-    parser.set_defaults(run=run_fmt)
 
 
 def run_fmt(arguments: argparse.Namespace) -> int:
@@ -293,7 +289,6 @@ def register_params(parser: argparse.ArgumentParser) -> None:
     """`aidl params`: the knobs of a program, with their ranges and values."""
     add_program(parser)
     flag(parser, "--json", "print the list as JSON")
-    parser.set_defaults(run=run_params)
 
 
 def run_params(arguments: argparse.Namespace) -> int:
@@ -302,11 +297,8 @@ def run_params(arguments: argparse.Namespace) -> int:
     knobs, diagnostics = pipeline.knobs(files.read(arguments.file), files.world(arguments.file))
     show(diagnostics, quiet=True)
     if arguments.json:
-        import json
-
         names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
-        data = [{name: getattr(knob, name) for name in names} for knob in knobs]
-        print(json.dumps(data, indent=2, ensure_ascii=False))
+        print_json([{name: getattr(knob, name) for name in names} for knob in knobs])
     else:
         _print_table(knobs)
     return exit_code(diagnostics)

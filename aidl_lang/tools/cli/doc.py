@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.common.names import nearest
 from aidl_lang.common.prose import did_you_mean, listed, ticked
-from aidl_lang.tools.cli import files, registering
-from aidl_lang.tools.cli.files import UseError, say
+from aidl_lang.tools.cli import VERBS, files, registering
+from aidl_lang.tools.cli.files import UseError, print_json, say
 from aidl_lang.tools.cli.options import add_variant, choice, flag, value
 from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS
 
@@ -36,23 +36,23 @@ _PLAIN = {
 """Words that somebody new asks with, by verb or option."""
 
 
-def commands_about(query: str, verbs: dict[str, str]) -> list[tuple[str, str]]:
+def commands_about(query: str) -> list[tuple[str, str]]:
     """Returns the verbs and options with every word of a query, each with its line; those named so first."""
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
     found = []
-    for name, usage, line in _all(verbs):
+    for name, usage, line in _all():
         named = set(stems(f"{name} {_PLAIN.get(name, '')}"))
         if wanted and wanted <= named | set(stems(line)):
             found.append((not wanted <= set(stems(name)), not wanted <= named, usage, line))
     return [(usage, line) for *_, usage, line in sorted(found, key=lambda each: each[:2])]
 
 
-def _all(verbs: dict[str, str]) -> Iterator[tuple[str, str, str]]:
+def _all() -> Iterator[tuple[str, str, str]]:
     """Yields the verbs, and each option once, at the first verb that has it: name, usage and line."""
     seen: set[str] = set()
-    for verb, line in verbs.items():
+    for verb, line in VERBS.items():
         yield verb, f"aidl {verb}", line
         parser = argparse.ArgumentParser(add_help=False)
         registering(verb)(parser)
@@ -80,7 +80,6 @@ def register_doc(parser: argparse.ArgumentParser) -> None:
     )
     flag(parser, "--json", "print as JSON")
     value(parser, "--picture", "OUT.svg", "draw the example of NAME; - is standard output")
-    parser.set_defaults(run=run_doc)
 
 
 def run_doc(arguments: argparse.Namespace) -> int:
@@ -102,7 +101,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
             raise UseError("E0912", f"`{words}` is no name; `--picture` draws one of these: {listed(names)}")
         if arguments.json:
             of_command = [{"name": usage, "sort": "command", "line": line} for usage, line in commands]
-            _print_json([*(to_dict(entry) for entry in found), *of_command])
+            print_json([*(to_dict(entry) for entry in found), *of_command])
         elif words:
             print(f"`{words}` is no name. These speak of it:")
             entries = [(e.name, e.doc.line) for e in found]
@@ -122,7 +121,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
             say(f"{arguments.picture}: the example of `{found.name}`")
         return 0
     elif arguments.json:
-        _print_json(to_dict(found))
+        print_json(to_dict(found))
     else:
         _show(found, known, words, style)
     return 0
@@ -135,10 +134,9 @@ def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tupl
     if (entry := known.find(words)) is not None:
         return entry, []
     from aidl_lang.common.render import escape
-    from aidl_lang.tools.cli import VERBS
     from aidl_lang.tools.reference.collect import speaking_of
 
-    found, commands = speaking_of(words), commands_about(words, VERBS)
+    found, commands = speaking_of(words), commands_about(words)
     if found or commands:
         return found, commands
     if (entry := known.misspelt(words)) is not None:
@@ -177,12 +175,6 @@ def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> N
     print(f"\n{style.gutter('Defined in')} {entry.where}")
 
 
-def _print_json(found: object) -> None:
-    import json
-
-    print(json.dumps(found, indent=2, ensure_ascii=False))
-
-
 def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
@@ -195,7 +187,6 @@ def register_guide(parser: argparse.ArgumentParser) -> None:
         dest="topics",
     )
     add_variant(kind)
-    parser.set_defaults(run=run_guide)
 
 
 def run_guide(arguments: argparse.Namespace) -> int:
@@ -235,7 +226,6 @@ def register_grammar(parser: argparse.ArgumentParser) -> None:
         metavar="OUT",
         help="where to write (default: standard output)",
     )
-    parser.set_defaults(run=run_grammar)
 
 
 def run_grammar(arguments: argparse.Namespace) -> int:
@@ -262,7 +252,6 @@ def run_grammar(arguments: argparse.Namespace) -> int:
 def register_explain(parser: argparse.ArgumentParser) -> None:
     """`aidl explain`: what a code such as E0301 means, with the mistake and the mended program."""
     parser.add_argument("code", nargs="?", metavar="CODE", help="as E0301; without it, all are listed")
-    parser.set_defaults(run=run_explain)
 
 
 def run_explain(arguments: argparse.Namespace) -> int:
@@ -310,7 +299,6 @@ solid {name} {{
 def register_new(parser: argparse.ArgumentParser) -> None:
     """`aidl new`: a starter program to change."""
     parser.add_argument("name", metavar="NAME", help="what to make: NAME.aidl, never over an existing file")
-    parser.set_defaults(run=run_new)
 
 
 def run_new(arguments: argparse.Namespace) -> int:
@@ -344,13 +332,10 @@ def register_tool_schema(parser: argparse.ArgumentParser) -> None:
         "the API that they are for (default: openai, and servers that speak like it)",
         _STYLES[0],
     )
-    parser.set_defaults(run=run_tool_schema)
 
 
 def run_tool_schema(arguments: argparse.Namespace) -> int:
-    import json
-
     from aidl_lang.tools.agents.schema import STYLES
 
-    print(json.dumps(STYLES[arguments.style](), indent=2, ensure_ascii=False))
+    print_json(STYLES[arguments.style]())
     return 0

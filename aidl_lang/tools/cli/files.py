@@ -49,6 +49,13 @@ def say(line: str, end: str = "\n") -> None:
     print(line, end=end, file=sys.stderr)
 
 
+def print_json(found: object, indent: int = 2) -> None:
+    """Prints data as JSON on standard output."""
+    import json
+
+    print(json.dumps(found, indent=indent, ensure_ascii=False))
+
+
 def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
     """Returns 2 if the command was used wrongly, 1 if the program is wrong, else 0."""
     codes = {d.code for d in diagnostics if d.is_error}

@@ -8,7 +8,7 @@ import os
 import re
 import sys
 import time
-from dataclasses import replace
+from dataclasses import field, replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -46,7 +46,6 @@ def register_generate(parser: argparse.ArgumentParser) -> None:
     flag(parser, "--robust", "ask once more with what changes kind over the range of each param")
     value(parser, "--transcript", "FILE", "where to write the conversation (default: beside the program)")
     add_provider(parser)
-    parser.set_defaults(run=run_generate)
 
 
 def run_generate(arguments: argparse.Namespace) -> int:
@@ -60,12 +59,9 @@ def run_generate(arguments: argparse.Namespace) -> int:
     language = _language(arguments)
     runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
     done = [run.generation() for run in runs]
-    best = min(range(len(done)), key=lambda k: _weight(done[k]))
+    weights = [run.verdict.weight if run.verdict is not None else (2,) for run in done]
+    best = min(range(len(done)), key=lambda k: weights[k])
     return _deliver(arguments, places, done[best], f"run {best + 1}: " if len(done) > 1 else "")
-
-
-def _weight(generation: Generation) -> tuple[int, ...]:
-    return generation.verdict.weight if generation.verdict is not None else (2,)
 
 
 @record()
@@ -116,22 +112,19 @@ def _language(arguments: argparse.Namespace) -> Language:
     return language if arguments.edit == files.STANDARD else replace(language, file=Path(arguments.edit).name)
 
 
+@record(frozen=False)
 class _Run:
     """One conversation, with its display."""
 
-    def __init__(
-        self,
-        arguments: argparse.Namespace,
-        places: _Places,
-        task: Task,
-        provider: Provider,
-        language: Language,
-        number: int,
-    ) -> None:
-        self.arguments, self.task, self.provider, self.language = arguments, task, provider, language
-        self.places, self.number = places, number
-        self.heard = self.shown = 0
-        self.is_watched = sys.stderr.isatty()
+    arguments: argparse.Namespace
+    places: _Places
+    task: Task
+    provider: Provider
+    language: Language
+    number: int
+    heard: int = 0
+    shown: int = 0
+    is_watched: bool = field(default_factory=lambda: sys.stderr.isatty())
 
     def generation(self) -> Generation:
         """Returns the conversation. Raises AidlError if not one reply could be had."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
 from aidl_lang.tools.cli.options import add_params, add_pixels, add_program, flag, value
 
 if TYPE_CHECKING:
@@ -44,11 +43,11 @@ def register_measure(parser: argparse.ArgumentParser) -> None:
         action="append",
     )
     flag(parser, "--json", "print everything as JSON, with all digits")
-    parser.set_defaults(run=run_measure)
 
 
 def run_measure(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
+    from aidl_lang.common.render import escape
 
     source, world = files.read(arguments.file), files.world(arguments.file)
     compiled = pipeline.compile(source, world, params=dict(arguments.params))
@@ -60,7 +59,7 @@ def run_measure(arguments: argparse.Namespace) -> int:
     if arguments.json:
         _print_json(compiled, found)
     else:
-        print("\n".join(_lines(found, bool(arguments.paths))))
+        print("\n".join(map(escape, _text(found, bool(arguments.paths)))))
     return exit_code(compiled.diagnostics)
 
 
@@ -73,12 +72,6 @@ def _density(text: str) -> tuple[str, float]:
     if not (name and 0 < value < 1e6):
         raise argparse.ArgumentTypeError(f'expected NAME=KG/M3, as in "oak=720", not `{text}`')
     return name, value
-
-
-def _lines(found: Survey, asked: bool) -> Iterator[str]:
-    from aidl_lang.common.render import escape
-
-    yield from map(escape, _text(found, asked))
 
 
 def _text(found: Survey, asked: bool) -> Iterator[str]:
@@ -204,26 +197,20 @@ def _mass(grams: float) -> str:
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:
-    import json
-
     from aidl_lang.common.prose import rounded
     from aidl_lang.common.render import to_dict
+    from aidl_lang.export.json import contact
 
     document = {
         "units": "mm",
         "whole": found.whole.to_dict(),
         "parts": [part.to_dict() for part in found.parts],
-        "pairs": [_pair_dict(pair) for pair in found.pairs],
+        "pairs": [*map(contact, found.pairs)],
         "all_pairs": not found.is_partial,
         "alone": list(found.alone),
         "diagnostics": [to_dict(d) for d in [*compiled.diagnostics, *found.notes]],
     }
-    print(json.dumps(rounded(document), indent=1, ensure_ascii=False, allow_nan=False))
-
-
-def _pair_dict(pair: Contact) -> dict[str, Any]:
-    entry = {name: getattr(pair, name) for name in ("a", "b", "relation", "gap", "area")}
-    return {name: value for name, value in entry.items() if value is not None}
+    print_json(rounded(document), 1)
 
 
 LONGEST = 20.0
@@ -247,7 +234,6 @@ def register_diff(parser: argparse.ArgumentParser) -> None:
     flag(parser, "--json", "print the differences as JSON")
     flag(parser, "--exit-code", "exit with 1 if there is a difference")
     flag(parser, "--best-effort", "compare how far the solver came even if it did not solve")
-    parser.set_defaults(run=run_diff)
 
 
 def run_diff(arguments: argparse.Namespace) -> int:
@@ -260,9 +246,7 @@ def run_diff(arguments: argparse.Namespace) -> int:
         return comparison
     _draw(comparison, outputs, arguments.pixels)
     if arguments.json:
-        import json
-
-        print(json.dumps(comparison.to_dict(), indent=1, ensure_ascii=False))
+        print_json(comparison.to_dict(), 1)
     elif on_standard:
         say(str(comparison))
     else:
@@ -271,21 +255,11 @@ def run_diff(arguments: argparse.Namespace) -> int:
 
 
 def _suffix(name: str, arguments: argparse.Namespace) -> str:
-    from aidl_lang.export import PICTURES
+    from aidl_lang.export import PICTURES, suffix_of
 
     files.require_directory(name)
-    own = "" if name == files.STANDARD else Path(name).suffix.lower()
-    said = (
-        f".{arguments.format.lower().lstrip('.')}" if arguments.format else ".svg" * (name == files.STANDARD)
-    )
-    for suffix in (own, said):
-        if suffix in PICTURES:
-            return suffix
-    asked = (said or own).lstrip(".")
-    message = (
-        f"differences cannot be drawn as `{asked}`" if asked else f"the name `{name}` does not tell a format"
-    )
-    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
+    fallback = arguments.format or ".svg" * (name == files.STANDARD)
+    return suffix_of(name, fallback, PICTURES, "differences cannot be drawn as `{}`")
 
 
 def _comparison(arguments: argparse.Namespace) -> Comparison | int:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
@@ -103,7 +104,7 @@ def add_params(
 
 
 def add_pixels(parser: argparse.ArgumentParser) -> None:
-    value(parser, "--pixels", "N", "larger side of a PNG (default: 1600)", _pixels, 1600)
+    value(parser, "--pixels", "N", "larger side of a PNG (default: 1600)", count_to(20_000, 16), 1600)
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
@@ -275,27 +276,21 @@ def _definition(text: str) -> tuple[str, str]:
 def _variant(text: str) -> Variant:
     from aidl_lang.checking.subset import Variant
 
+    return Variant(_one_of(list(Variant), text))
+
+
+def _number(text: str, fits: Callable[[float], bool], wanted: str, unit: str = "") -> float:
     try:
-        return Variant(text)
+        value = float(text.removesuffix(unit))
     except ValueError:
-        known = ", ".join(Variant)
-        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {known}") from None
-
-
-def _pixels(text: str) -> int:
-    if not text.isdecimal() or not 16 <= int(text) <= 20_000:
-        raise argparse.ArgumentTypeError(f"expected a number from 16 to 20000, not `{text}`")
-    return int(text)
+        value = math.nan  # which is in no range
+    if not fits(value):
+        raise argparse.ArgumentTypeError(f"expected {wanted}, not `{text}`")
+    return value
 
 
 def _thickness(text: str) -> float:
-    try:
-        value = float(text.removesuffix("mm"))
-    except ValueError:
-        value = 0.0
-    if not 0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"expected millimetres above 0, as in 3, not `{text}`")
-    return value
+    return _number(text, lambda value: 0 < value < 1e9, "millimetres above 0, as in 3", "mm")
 
 
 def _tolerance(text: str) -> float:
@@ -309,50 +304,38 @@ def _layers(text: str) -> frozenset[str]:
     from aidl_lang.export.job import ON_SHEETS, SHOW
 
     known = dict.fromkeys((*SHOW, *ON_SHEETS))
-    layers = [layer.strip() for layer in text.split(",") if layer.strip()]
-    for layer in layers:
-        if layer not in known:
-            raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(known)}")
-    return frozenset(layers)
+    return frozenset(_one_of(known, layer.strip()) for layer in text.split(",") if layer.strip())
 
 
 def _temperature(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value <= 2:
-        raise argparse.ArgumentTypeError(f"expected a number from 0 to 2, not `{text}`")
-    return value
+    return _number(text, lambda value: 0 <= value <= 2, "a number from 0 to 2")
 
 
-def count_to(most: int) -> Callable[[str], int]:
-    """Returns a parser of whole numbers from 1 to `most`."""
+def count_to(most: int, least: int = 1) -> Callable[[str], int]:
+    """Returns a parser of whole numbers from `least` to `most`."""
 
     def read(text: str) -> int:
-        if not text.isdecimal() or not 1 <= int(text) <= most:
-            raise argparse.ArgumentTypeError(f"expected a number from 1 to {most}, not `{text}`")
+        if not text.isdecimal() or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"expected a number from {least} to {most}, not `{text}`")
         return int(text)
 
     return read
 
 
 def _seconds(text: str) -> float:
-    try:
-        value = float(text.removesuffix("s"))
-    except ValueError:
-        value = 0.0
-    if not 0 < value <= 86_400:
-        raise argparse.ArgumentTypeError(f"expected seconds above 0 and up to a day, not `{text}`")
-    return value
+    return _number(text, lambda value: 0 < value <= 86_400, "seconds above 0 and up to a day", "s")
+
+
+def _one_of(known: Collection[str], text: str) -> str:
+    if text not in known:
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(known)}")
+    return text
 
 
 def _server(text: str) -> str:
     from aidl_lang.tools.llm.providers import SERVERS
 
-    if text not in SERVERS:
-        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(SERVERS)}")
-    return text
+    return _one_of(SERVERS, text)
 
 
 def _price(text: str) -> Price:
@@ -482,9 +465,6 @@ def profile(name: str | None) -> Profile | None:
     if name in PROFILES:
         return PROFILES[name]
     if not (name.endswith(".toml") or Path(name).is_file()):
-        from aidl_lang.common.names import nearest
-
-        near = did_you_mean(nearest(name, PROFILES))
-        known = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
-        raise UseError("E0956", f"there is no profile `{name}`", *near, known)
+        told = f"there are {listed(ticked(PROFILES))}; a file is called as in `shop.toml`"
+        raise UseError("E0956", f"there is no profile `{name}`", *did_you_mean(nearest(name, PROFILES)), told)
     return parsed(files.read(name).text, Path(name).name)

@@ -80,24 +80,13 @@ def open_browser(url: str) -> None:
 def listen(host: str, port: int, code: str, hint: str) -> socket.socket:
     """Returns a socket that accepts connections already. Raises UseError with a code if there can be none."""
     try:
-        family, kind, protocol, _, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        found = socket.socket(family, kind, protocol)
+        family, *_, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        is_both = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
+        return socket.create_server(at, family=family, dualstack_ipv6=is_both)
     except OSError as error:
-        raise _refused(host, port, error, code, hint) from None
-    if os.name == "posix":  # elsewhere this would let two servers have one port
-        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        found.bind(at)
-        found.listen()  # so that who reads the address can connect at once
-    except OSError as error:
-        found.close()
-        raise _refused(host, port, error, code, hint) from None
-    return found
-
-
-def _refused(host: str, port: int, error: OSError, code: str, hint: str) -> UseError:
-    where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
-    return UseError(code, f"{where} cannot be served: {(error.strerror or str(error)).lower()}", hint)
+        where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
+        why = (error.strerror or str(error)).partition(" (while")[0].lower()  # of which address is said
+        raise UseError(code, f"{where} cannot be served: {why}", hint) from None
 
 
 _NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
@@ -111,7 +100,6 @@ def register_preview(parser: argparse.ArgumentParser) -> None:
     )
     add_program(parser)
     add_options(parser)
-    parser.set_defaults(run=run_preview)
 
 
 def run_preview(arguments: argparse.Namespace) -> int:
@@ -170,7 +158,6 @@ def register_lsp(parser: argparse.ArgumentParser) -> None:
         "wait for one client at this address instead; port 0 takes one that is free",
         _address,
     )
-    parser.set_defaults(run=run_lsp)
 
 
 def run_lsp(arguments: argparse.Namespace) -> int:
@@ -209,7 +196,6 @@ def register_mcp(parser: argparse.ArgumentParser) -> None:
     value(
         parser, "--http", "PORT", "serve over HTTP on this machine instead; 0 takes a port that is free", port
     )
-    parser.set_defaults(run=run_mcp)
 
 
 def run_mcp(arguments: argparse.Namespace) -> int:

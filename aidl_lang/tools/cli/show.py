@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import exit_code, show
-from aidl_lang.tools.cli.options import add_look, add_params, add_program, choice, value
+from aidl_lang.tools.cli.options import add_look, add_params, add_program, choice, count_to, value
 from aidl_lang.tools.terminal import (
     GRAPHICS,
     PROTOCOLS,
-    Extent,
     Screen,
     cell_size,
     fit,
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 
 _PROMPT = 2
 """Rows left free: for the command, and for the prompt after it."""
-_MOST_COLUMNS = 1000
 _SAMPLES = 4
 """Pixels drawn per shown pixel, across and down."""
 
@@ -38,7 +36,7 @@ def register_show(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_params(parser)
     add_look(parser)
-    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", _columns)
+    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", count_to(1000))
     choice(
         parser,
         "--protocol",
@@ -46,7 +44,6 @@ def register_show(parser: argparse.ArgumentParser) -> None:
         "how to show it (default: auto, the best that the terminal is known for)",
         "auto",
     )
-    parser.set_defaults(run=run_show)
 
 
 def run_show(arguments: argparse.Namespace) -> int:
@@ -67,12 +64,6 @@ def run_show(arguments: argparse.Namespace) -> int:
         name = _protocol() if arguments.protocol == "auto" else arguments.protocol
         files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))
     return exit_code(compiled.diagnostics) or int(not compiled.ok)
-
-
-def _columns(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST_COLUMNS:
-        raise argparse.ArgumentTypeError(f"expected a number from 1 to {_MOST_COLUMNS}, not `{text}`")
-    return int(text)
 
 
 def _protocol() -> str:
@@ -111,7 +102,7 @@ def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
     return f"{(kitty if name == 'kitty' else iterm)(png, extent.columns, extent.rows)}\n".encode()
 
 
-def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
+def _characters(picture: Picture, name: str, extent: Screen) -> bytes:
     from aidl_lang.export.marks import coarse, outlined, separated
     from aidl_lang.tools.terminal import PIXELS, cells, text, written
 
@@ -125,7 +116,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
     return lines.encode(sys.stdout.encoding, "replace")
 
 
-def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
+def _label(mark: Text, picture: Picture, extent: Screen) -> Label:
     """Returns a text of the picture in cells. A turned one is written level, about its middle."""
     from aidl_lang.common.colors import rgb
     from aidl_lang.tools.terminal import Label

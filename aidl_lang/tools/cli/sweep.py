@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.prose import counted, named
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing_options,
     add_outputs,
@@ -212,7 +212,6 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
         "auto",
     )
     flag(running, "--json", "print a summary with all failures as JSON")
-    parser.set_defaults(run=run_sweep)
 
 
 def run_sweep(arguments: argparse.Namespace) -> int:
@@ -327,7 +326,7 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
     failures.sort(key=lambda row: row.variant.number)
     turns = session.turns
     if arguments.json:
-        print(json.dumps(_summary(session, failures, turns), indent=2, ensure_ascii=False))
+        print_json(_summary(session, failures, turns))
     _list(failures, turns, arguments.output)
     if session.stale:
         say(

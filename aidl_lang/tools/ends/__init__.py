@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import asdict, field, replace
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 from aidl_lang import pipeline
@@ -205,8 +206,10 @@ class SweepJob:
         return patience(self.settings)
 
 
-_known: dict[SweepJob, Front] = {}
-"""The program that this process has checked already: it is the same over and over."""
+@lru_cache(maxsize=1)
+def checked(job: SweepJob) -> Front:
+    """Returns the checked program of a job: in a process it is the same over and over."""
+    return pipeline.front(SourceFile(job.name, job.text), job.world, job.settings)
 
 
 def tried(job: SweepJob, path: str, value: Value, explained: bool) -> Tried:
@@ -214,10 +217,7 @@ def tried(job: SweepJob, path: str, value: Value, explained: bool) -> Tried:
     start = time.perf_counter()
     settings = replace(job.settings, solving=replace(job.settings.solving, explain=explained))
     source = SourceFile(job.name, job.text)
-    if job not in _known:
-        _known.clear()
-        _known[job] = pipeline.front(source, job.world, settings)
-    compiled = pipeline.compile(source, job.world, {path: value}, settings, checked=_known[job])
+    compiled = pipeline.compile(source, job.world, {path: value}, settings, checked=checked(job))
     wanted = Severity.WARNING if compiled.ok else Severity.ERROR
     found = tuple(fault(d) for d in compiled.diagnostics if d.severity is wanted)
     return Tried(compiled.ok, found, time.perf_counter() - start)
@@ -256,10 +256,10 @@ def sweep(
     courses = [_course(knob, end, places) for knob, end in wanted[:_MOST]]
     if not courses:
         return Sweep((), _rangeless(knobs), 0, 0, 0.0)
-    run = _Run(job, [knob for knob, _ in wanted], courses, progress, start + seconds)
-    turned = run.turned()
+    paths = [knob.path for knob, _ in wanted]
+    turned, compiled = _followed(job, paths, courses, progress, start + seconds)
     left = len(wanted) - len(turned)
-    return Sweep(turned, _rangeless(knobs), left, run.compiled, time.monotonic() - start)
+    return Sweep(turned, _rangeless(knobs), left, compiled, time.monotonic() - start)
 
 
 def _rangeless(knobs: Sequence[Knob]) -> tuple[Knob, ...]:
@@ -291,49 +291,40 @@ def _new(faults: Sequence[Fault], known: frozenset[tuple[str, str | None, int | 
     return tuple(each for each in faults if each.place not in known)
 
 
-class _Run:
-    """Searches side by side, each one compile after the other."""
+def _followed(
+    job: SweepJob,
+    paths: Sequence[str],
+    courses: Sequence[Course],
+    progress: Callable[[int, int], None],
+    until: float,
+) -> tuple[tuple[Turned, ...], int]:
+    """Follows searches side by side, each one compile after the other. Returns their results, in their order,
+    as far as there was time, and the number of compiles.
+    """
+    workers = Guarded(min(count(), len(courses)), "aidl_lang.tools.ends")
+    crew: Crew[int, Tried] = Crew(workers)
+    results: dict[int, Turned] = {}
+    compiled = 0
 
-    def __init__(
-        self,
-        job: SweepJob,
-        knobs: Sequence[Knob],
-        courses: Sequence[Course],
-        progress: Callable[[int, int], None],
-        until: float,
-    ) -> None:
-        self.job, self.knobs, self.courses = job, knobs, courses
-        self.progress, self.until = progress, until
-        self.compiled = 0
-        self._results: dict[int, Turned] = {}
+    def ask(number: int, asking: Asking) -> None:
+        crew.give(number, job.seconds, tried, job, paths[number], *asking)
 
-    def turned(self) -> tuple[Turned, ...]:
-        """Returns the results of the searches, in their order, as far as there was time."""
-        workers = Guarded(min(count(), len(self.courses)), "aidl_lang.tools.ends")
-        crew: Crew[int, Tried] = Crew(workers)
-        try:
-            self.progress(0, len(self.courses))
-            for number, course in enumerate(self.courses):
-                self._ask(crew, number, next(course))
-            while crew and time.monotonic() < self.until:
-                checkpoint()
-                for number, found in crew.came(_PAUSE):
-                    self._go_on(crew, number, _came(found))
-        finally:
-            workers.close()
-        return tuple(self._results[number] for number in sorted(self._results))
-
-    def _ask(self, crew: Crew[int, Tried], number: int, asking: Asking) -> None:
-        value, explained = asking
-        crew.give(number, self.job.seconds, tried, self.job, self.knobs[number].path, value, explained)
-
-    def _go_on(self, crew: Crew[int, Tried], number: int, found: Tried) -> None:
-        self.compiled += 1
-        try:
-            self._ask(crew, number, self.courses[number].send(found))
-        except StopIteration as done:
-            self._results[number] = done.value
-            self.progress(len(self._results), len(self.courses))
+    try:
+        progress(0, len(courses))
+        for number, course in enumerate(courses):
+            ask(number, next(course))
+        while crew and time.monotonic() < until:
+            checkpoint()
+            for number, found in crew.came(_PAUSE):
+                compiled += 1
+                try:
+                    ask(number, courses[number].send(_came(found)))
+                except StopIteration as done:
+                    results[number] = done.value
+                    progress(len(results), len(courses))
+    finally:
+        workers.close()
+    return tuple(results[number] for number in sorted(results)), compiled
 
 
 def _came(found: Tried | Broke) -> Tried:
@@ -373,17 +364,23 @@ def _places(tried: Tried) -> list[Fault]:
 
 
 def _said(fault: Fault, name: str) -> str:
+    if fault.code == _CORNER:
+        return f"`{fault.text}` in {_place(fault, name)} does not fit"
+    return clause(fault, name)
+
+
+def clause(fault: Fault, name: str | None = None) -> str:
+    """Returns a fault as a clause, with its file if that is another than `name`."""
     place = _place(fault, name)
     if fault.code == _ASSERT and fault.line is not None:
         numbers = f" ({fault.label})" if fault.label and fault.label != "false as written" else ""
         return f"the assert in {place} fails{numbers}"
-    if fault.code == _CORNER:
-        return f"`{fault.text}` in {place} does not fit"
     return f"{place}: {fault.message}" if fault.line is not None else fault.message
 
 
-def _place(fault: Fault, name: str) -> str:
-    return f"line {fault.line}" if fault.file in (None, name) else f"line {fault.line} of `{fault.file}`"
+def _place(fault: Fault, name: str | None) -> str:
+    here = name is None or fault.file in (None, name)
+    return f"line {fault.line}" if here else f"line {fault.line} of `{fault.file}`"
 
 
 def _limit(turned: Turned, name: str) -> str:

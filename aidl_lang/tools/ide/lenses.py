@@ -168,7 +168,7 @@ def _offer(view: View) -> Iterator[Lens]:
     if own and own[0].span is not None:
         count = len({k.path for k in knobs})
         title = f"try the ends of {count} params" if count > 1 else "try the ends of this param"
-        yield Lens(own[0].span, title, tuple(k.path for k in knobs))
+        yield Lens(own[0].span, title)
 
 
 def _is_own(view: View, knob: Knob) -> bool:
@@ -184,7 +184,7 @@ def _told_at_ends(view: View, found: Found) -> Iterator[Lens]:
     for span, by_path in by_place.items():
         name = view.source.name
         texts = dict.fromkeys(_title(turned, walks.get(p), name) for p, turned in by_path.items())
-        yield Lens(span, " · ".join(texts), tuple(by_path))
+        yield Lens(span, " · ".join(texts))
 
 
 def _title(turned: Sequence[Turned], walk: Walk | None, name: str) -> str:
@@ -209,11 +209,10 @@ _HELD = "fully constrained"
 
 @record()
 class Lens:
-    """A line above the name of a structure, about the structures at `paths`."""
+    """A line above the name of a structure or a param."""
 
     span: Span
     title: str
-    paths: tuple[str, ...]
 
 
 def lenses(view: View) -> list[Lens]:
@@ -236,7 +235,7 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
                 title = f"{_status(outcome, model)} · {title.replace(_HELD, as_whole)}"
-            yield Lens(node.name.span, title, tuple(structure.path for structure in found))
+            yield Lens(node.name.span, title)
 
 
 def _status(outcome: Compiled, model: SolvedModel) -> str:

@@ -37,9 +37,9 @@ class Mention:
         return any(self.span == declaration.span for declaration in self.symbol.declarations)
 
 
-def mentions(view: View, module: ast.Module | None = None) -> Iterator[Mention]:
-    """Yields every name of the file, or of one that it imports, whose meaning is known."""
-    for node in ast.walk(module or view.module):
+def mentions(view: View) -> Iterator[Mention]:
+    """Yields every name of the file whose meaning is known."""
+    for node in ast.walk(view.module):
         yield from _mentions_of(view, node)
 
 
@@ -189,23 +189,15 @@ def _place(view: View, span: Span) -> Span:
 # --- Links to imported files.
 
 
-@record()
-class Link:
-    """The place of a file's name, without its quotes, and the file."""
-
-    span: Span
-    path: Path
-
-
-def links(view: View) -> list[Link]:
-    """Returns the links in order of writing; none for a file that cannot be read."""
+def links(view: View) -> list[tuple[Span, Path]]:
+    """Returns the places of files' names, without quotes, with the files; none that cannot be read."""
     found = []
     for statement in view.module.statements:
         target = view.resolution.imports.get(statement) if isinstance(statement, ast.Import) else None
         if isinstance(statement, ast.Import) and target is not None:
             path, span = view.file(target.source), statement.path.span
             if path is not None:
-                found.append(Link(view.span(span.start + 1, span.end - 1), path))
+                found.append((view.span(span.start + 1, span.end - 1), path))
     return found
 
 

@@ -39,12 +39,12 @@ def joined(blocks: Iterable[str]) -> str:
     return "\n\n".join(block.strip("\n") for block in blocks if block.strip())
 
 
-def of_entry(entry: Entry, *, example: bool = True) -> str:
+def of_entry(entry: Entry) -> str:
     """Describes a public name of the library, a built-in or a keyword: its form, its effect, its use."""
     listed = forms(entry)
     more = [f"// and {len(listed) - MOST_FORMS} more forms"] if len(listed) > MOST_FORMS else []
     head = fenced("\n".join([*listed[:MOST_FORMS], *more]))
-    shown = [fenced(entry.doc.example)] if example and entry.doc.example else []
+    shown = [fenced(entry.doc.example)] if entry.doc.example else []
     return joined([head, entry.doc.line, entry.doc.text, *facts(entry), *shown])
 
 

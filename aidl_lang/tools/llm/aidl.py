@@ -305,8 +305,7 @@ class AidlConversation:
 
     def _answer(self, verdict: Verdict, compiled: Compiled) -> str:
         """Returns the answer to the model; "" if there is nothing left to ask for."""
-        losses = self._to_ask_for()
-        asked = request(losses) if losses else ""
+        asked = request(self._to_ask_for())
         if not compiled.ok:
             return "\n\n".join(filter(None, (generation.errors(compiled), asked, _WRONG)))
         remarks = generation.remarks(

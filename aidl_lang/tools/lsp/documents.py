@@ -134,7 +134,6 @@ class Documents:
         return document
 
     def at(self, path: Path) -> list[Document]:
-        """Returns the documents of a file."""
         return [document for document in self._by_uri.values() if document.path == path]
 
     def uri_of(self, path: Path) -> str:

@@ -144,16 +144,11 @@ def _value(value: Any, _: object) -> Any:
     return _plain(value, type(value) if isinstance(value, str | bool) else float)
 
 
-def _values(value: Any, _: object) -> Any:
+def _mapping(value: Any, kind: Any) -> Any:
     if not isinstance(value, Mapping):
         raise ValueError
-    return {_plain(name, str): _value(each, Value) for name, each in value.items()}
-
-
-def _words(value: Any, _: object) -> Any:
-    if not isinstance(value, Mapping):
-        raise ValueError
-    return {_plain(name, str): _plain(each, str) for name, each in value.items()}
+    one = _value if kind == Values else _plain
+    return {_plain(name, str): one(each, str) for name, each in value.items()}
 
 
 def _tuple(value: Any, kind: Any) -> Any:
@@ -167,6 +162,5 @@ _converter = Converter()
 for _kind in _IS:
     _converter.register_structure_hook(_kind, _plain)
 _converter.register_structure_hook_func(partial(eq, Value), _value)
-_converter.register_structure_hook_func(partial(eq, Values), _values)
-_converter.register_structure_hook_func(partial(eq, Words), _words)
+_converter.register_structure_hook_func((Values, Words).__contains__, _mapping)
 _converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)

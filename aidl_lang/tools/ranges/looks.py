@@ -28,6 +28,7 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.tools.ends import clause
 from aidl_lang.tools.sweeping.bundle import OF_KIND, Fault, fault
 
 _SAME_BOX = 1e-5
@@ -246,7 +247,7 @@ def differences(a: Look, b: Look) -> list[Change]:
     if not (a.is_solved and b.is_solved):
         return []
     fresh = [each for place, each in b.warnings.items() if place not in a.warnings]
-    found = [Change("warning", said(each), each.line, (each.code,)) for each in fresh]
+    found = [Change("warning", clause(each), each.line, (each.code,)) for each in fresh]
     found += _of_readings(a, b)
     if a.names != b.names:
         return [*found, *_of_arrays(a, b)]
@@ -256,18 +257,10 @@ def differences(a: Look, b: Look) -> list[Change]:
 def _of_errors(a: Look, b: Look) -> Iterator[Change]:
     for place, each in b.errors.items():
         if place not in a.errors:
-            yield Change("error", said(each), each.line)
+            yield Change("error", clause(each), each.line)
     for place, each in a.errors.items():
         if place not in b.errors and not b.errors:
-            yield Change("error", f"what failed before is well again: {said(each)}", each.line, ("well",))
-
-
-def said(each: Fault) -> str:
-    """Returns a fault as a clause."""
-    if each.code == "E0604" and each.line is not None:
-        numbers = f" ({each.label})" if each.label and each.label != "false as written" else ""
-        return f"the assert in line {each.line} fails{numbers}"
-    return f"line {each.line}: {each.message}" if each.line is not None else each.message
+            yield Change("error", f"what failed before is well again: {clause(each)}", each.line, ("well",))
 
 
 def _of_readings(a: Look, b: Look) -> Iterator[Change]:

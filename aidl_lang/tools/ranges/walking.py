@@ -26,9 +26,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
-from aidl_lang.pipeline import Front
 from aidl_lang.solver import Memory, Problem, Settings, Status, solve
-from aidl_lang.tools.ends import SweepJob, allowed, is_whole, rounded
+from aidl_lang.tools.ends import SweepJob, allowed, checked, is_whole, rounded
 from aidl_lang.tools.ranges.looks import Change, Look, differences, look, may_meet, moves
 from aidl_lang.tools.ranges.pairs import Pair, Spot, paired
 from aidl_lang.tools.sweeping.bundle import BROKEN
@@ -352,17 +351,10 @@ def _numbers(problem: Problem) -> NDArray[np.float64]:
 # --- Each param is walked in a process.
 
 
-_known: dict[SweepJob, Front] = {}
-"""The program that this process has checked already."""
-
-
 def _compiling(job: SweepJob, source: SourceFile) -> Callable[[Spot], Compiled]:
     """Returns what compiles a program with some params set: it is checked once, and solved anew in part."""
-    memory = Memory()
-    if job not in _known:
-        _known.clear()
-        _known[job] = pipeline.front(source, job.world, job.settings)
-    return lambda spot: pipeline.compile(source, job.world, dict(spot), job.settings, (), memory, _known[job])
+    memory, known = Memory(), checked(job)
+    return lambda spot: pipeline.compile(source, job.world, dict(spot), job.settings, (), memory, known)
 
 
 def met(job: SweepJob, one: Knob, other: Knob, seconds: float = _A_KNOB) -> Pair:

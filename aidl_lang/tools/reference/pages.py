@@ -134,7 +134,6 @@ def exactness_of(entry: Entry) -> dict[str, str]:
 
 @cache
 def guide(variant: Variant = Variant.FULL) -> str:
-    """Returns the guide as Markdown."""
     name = "docs/guide.md" if variant is Variant.FULL else f"docs/guides/{variant}.md"
     return resource(name).read_text("utf-8")
 

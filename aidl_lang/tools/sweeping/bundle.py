@@ -48,7 +48,6 @@ class Bundle:
 
     @cached_property
     def digest(self) -> str:
-        """Returns a digest of all of it."""
         told = [f"{len(self.name)} {self.name} {len(self.text)} {self.text}", repr(self.settings)]
         told += [f"{path} {digest_of(content)}" for path, content in sorted(self.files.items())]
         return hashlib.sha256("\n".join(told).encode("utf-8", "surrogatepass")).hexdigest()
@@ -235,7 +234,6 @@ def _converter() -> Converter:
 
 
 def to_data(outcome: Outcome) -> Any:
-    """Returns an outcome as JSON has it."""
     return _converter().unstructure(replace(outcome, missing=()), Outcome)
 
 

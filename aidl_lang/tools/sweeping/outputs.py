@@ -46,7 +46,6 @@ class Row:
     outcome: Outcome
     files: tuple[str, ...]
     command: str
-    was_kept: bool
 
     @property
     def ok(self) -> bool:
@@ -196,7 +195,6 @@ def to_json_lines(columns: Columns, rows: Sequence[Row]) -> bytes:
 
 
 def to_parquet(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as Parquet."""
     table = to_arrow(columns, rows)
     import pyarrow.parquet
 
@@ -281,7 +279,6 @@ class Pattern:
         return PurePath(f"{self.parts[0]}x").parent
 
     def named(self, variant: Variant) -> str:
-        """Returns the name for a variant."""
         return "".join(self._value(part, variant) if k % 2 else part for k, part in enumerate(self.parts))
 
     def _value(self, field: str, variant: Variant) -> str:

@@ -70,11 +70,11 @@ def wrong(message: str, *hints: str) -> AidlError:
     return refused("E0971", message, *(hints or (_EXAMPLES,)))
 
 
-def knob_named(name: str, knobs: Sequence[Knob], root: str = "") -> Knob:
+def knob_named(name: str, knobs: Sequence[Knob]) -> Knob:
     """Returns the param that a name means, however it is spelled. Raises AidlError."""
-    wanted = {fold(name.strip()), fold(name.strip().removeprefix(f"{root}.")) if root else fold(name.strip())}
+    wanted = fold(name.strip())
     for knob in knobs:
-        if fold(knob.path) in wanted:
+        if fold(knob.path) == wanted:
             return knob
     paths = [knob.path for knob in knobs]
     known = first_few(ticked(paths), 12, "") or "none"

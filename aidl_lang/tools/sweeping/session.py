@@ -353,7 +353,7 @@ class Session:
         self.kept += was_kept
         names = written or drawings.names(each)
         command = self.job.command(each, names[0] if names else "")
-        return Row(each, replace(outcome, files={}), tuple(written), command, was_kept)
+        return Row(each, replace(outcome, files={}), tuple(written), command)
 
     def _tell(self) -> None:
         counts = len(self.job.plan), len(self.rows), self.failed, self.kept

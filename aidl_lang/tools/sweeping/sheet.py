@@ -35,6 +35,8 @@ _GAP = 4.0
 _LINE = 3.4
 _TEXT = 2.6
 _LINES = 4
+_COLUMNS = 4
+"""Of a page of paper."""
 _INK, _GREY, _RED, _PALE = "#1c2330", "#8a93a3", "#b3261e", "#fdf1f0"
 
 
@@ -78,11 +80,11 @@ class Grid:
         return self.columns * self.rows
 
 
-def on_paper(width: float, height: float, columns: int = 4) -> Grid:
+def on_paper(width: float, height: float) -> Grid:
     """Returns the grid for a page of paper."""
-    side = (width - 2 * MARGIN + _GAP) / columns - _GAP
-    cell = Grid(columns, 1, side).cell
-    return Grid(columns, max(1, math.floor((height - 2 * MARGIN - _HEAD) / cell)), side)
+    side = (width - 2 * MARGIN + _GAP) / _COLUMNS - _GAP
+    cell = Grid(_COLUMNS, 1, side).cell
+    return Grid(_COLUMNS, max(1, math.floor((height - 2 * MARGIN - _HEAD) / cell)), side)
 
 
 def in_one(count: int, side: float) -> Grid:
@@ -151,7 +153,6 @@ _HERE = Path(__file__).parent
 
 
 def page(title: str, columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns the page."""
     script = (_HERE / "sheet.js").read_text(encoding="utf-8")
     style = (_HERE / "sheet.css").read_text(encoding="utf-8")
     data = {

@@ -23,33 +23,24 @@ _PLAUSIBLE = (1.4, 3.0)
 
 @record()
 class Screen:
-    """Columns and rows that a picture may take, and the pixels of a cell, across and down."""
+    """Columns and rows that a picture may take, or takes, and the pixels of a cell, across and down."""
 
     columns: int
     rows: int
     cell: tuple[int, int] = CELL
-
-
-@record()
-class Extent:
-    """Columns and rows that a picture takes, and the pixels of a cell."""
-
-    columns: int
-    rows: int
-    cell: tuple[int, int]
 
     @property
     def pixels(self) -> tuple[int, int]:
         return self.columns * self.cell[0], self.rows * self.cell[1]
 
 
-def fit(width: float, height: float, screen: Screen) -> Extent:
+def fit(width: float, height: float, screen: Screen) -> Screen:
     """The cells that a picture of these proportions fills: as many as the screen allows, at least one."""
     across, down = screen.cell
     scale = min(screen.columns * across / width, screen.rows * down / height)
     columns = math.ceil(width * scale / across - 1e-9)
     rows = math.ceil(height * scale / down - 1e-9)
-    return Extent(min(max(columns, 1), screen.columns), min(max(rows, 1), screen.rows), screen.cell)
+    return Screen(min(max(columns, 1), screen.columns), min(max(rows, 1), screen.rows), screen.cell)
 
 
 def cell_size(descriptor: int) -> tuple[int, int]:

@@ -24,7 +24,6 @@ _OF = {
     "lark": LATER,
     "lsprotocol": LATER,
     "pygls": LATER,
-    "svgwrite": LATER,
     "fontTools": LATER,
     "rectpack": LATER,
     "PIL": EXPORTS,

@@ -46,7 +46,7 @@ from aidl_lang.tools.ide.completion.drafts import (
 )
 from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
 from aidl_lang.tools.ide.references import parameter_node
-from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, joined, of_parameter, of_public
+from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, of_parameter, of_public
 from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View, look
 from aidl_lang.tools.reference.collect import reference
@@ -156,15 +156,12 @@ def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol
         tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
     is_array = symbol is not None and symbol.is_array
     if symbol is None:
-        return Draft(name, "field", tier, detail=str(fact.type), describe=partial(_field, name, fact))
+        described = partial(fenced, f"{name}: {fact.type}")
+        return Draft(name, "field", tier, detail=str(fact.type), describe=described)
     kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
     known = KnownName(name, symbol, fact)
     text = names.detail(known) if not is_array else str(fact.type)
     return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
-
-
-def _field(name: str, fact: Fact) -> str:
-    return joined([fenced(f"{name}: {fact.type}")])
 
 
 def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
@@ -386,7 +383,7 @@ def _shapes(context: Context) -> Iterator[Draft]:
             yield replace(draft, text=f"${{1:name}} = {name}($2)", is_snippet=True)
 
 
-def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
+def clauses(site: EditSite, *, is_condition: bool) -> Iterator[Draft]:
     """Yields words that continue the present statement: `at`, `in`, `step`, `and`, …"""
     words = vocabulary()
     operand = not site.may_end and site.takes("NUMBER")
@@ -394,12 +391,9 @@ def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
         (*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")
     ):
         if _goes_on(site, word, operand=operand, is_condition=is_condition):
-            text = _CLAUSES.get(word, _OWN["else"] if word == "else" and _ends_block(site) else word)
+            ends_block = site.spot.before is not None and site.spot.before.kind == "}"
+            text = _CLAUSES.get(word, _OWN["else"] if word == "else" and ends_block else word)
             yield _keyword(word, number / 100 + _NAMES_FIRST * operand, text)
-
-
-def _ends_block(site: EditSite) -> bool:
-    return site.spot.before is not None and site.spot.before.kind == "}"
 
 
 def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) -> bool:

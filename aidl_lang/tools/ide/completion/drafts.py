@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import lru_cache, partial
@@ -85,7 +84,6 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
 
 
 def escaped(text: str) -> str:
-    """Escapes a text for a snippet."""
     for sign in ("\\", "$", "}"):
         text = text.replace(sign, "\\" + sign)
     return text
@@ -199,7 +197,9 @@ def words_of(signature: Signature, parameter: str, depth: int = _DEEPEST) -> Seq
         return CORNER_WORDS.get(parameter, ()) if isinstance(kind, TextType) else ()
     body = node.value if isinstance(node, ast.FunctionDefinition) else node.body
     for call in (n for n in ast.walk(body) if isinstance(n, ast.Call)):
-        place = next((n for n, a in enumerate(call.arguments) if _is_name(a.value, parameter)), None)
+        given = [a.value for a in call.arguments]
+        named = (n for n, a in enumerate(given) if isinstance(a, ast.Name) and a.text == parameter)
+        place = next(named, None)
         if place is None:
             continue
         if call.callee.text == "choice":
@@ -227,10 +227,6 @@ def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
     return ()
 
 
-def _is_name(node: ast.Expression, name: str) -> bool:
-    return isinstance(node, ast.Name) and node.text == name
-
-
 def files(site_path: Path, listed: Files | None, *, quoted: bool = False) -> Iterator[Draft]:
     """Yields the programs that a file may import: those in its folder and below it."""
     for name in importable(site_path, listed):
@@ -239,11 +235,9 @@ def files(site_path: Path, listed: Files | None, *, quoted: bool = False) -> Ite
 
 def importable(path: Path, listed: Files | None) -> list[str]:
     """Returns programs as an import names them, relative to the file at a path."""
-    found = []
-    for other in listed() if listed is not None else ():
-        if other != path and other.is_relative_to(path.parent):
-            found.append(other.relative_to(path.parent).as_posix().replace(os.sep, "/"))
-    return sorted(found)
+    others = (other for other in (listed() if listed is not None else ()) if other != path)
+    beside = (other for other in others if other.is_relative_to(path.parent))
+    return sorted(other.relative_to(path.parent).as_posix() for other in beside)
 
 
 def imported_names(site: EditSite, node: ast.Import) -> Iterator[Draft]:

@@ -36,7 +36,7 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
 from aidl_lang.tools.ide.completion.drafts import Draft, Files, choice, importable, stop
-from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_entry
+from aidl_lang.tools.ide.signatures import joined, of_callable, of_definition, of_public
 from aidl_lang.tools.ide.workspace import insert
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import vocabulary
@@ -87,8 +87,7 @@ def about(symbol: Symbol) -> str:
     """Returns the description of a name that is not callable."""
     if symbol.node is not None:
         return joined(dict.fromkeys(of_definition(node) for node in symbol.nodes[:3]))
-    entry = reference().entries.get(symbol.name)
-    return of_entry(entry) if entry is not None else ""
+    return of_public(symbol.name)
 
 
 def calls(context: Context) -> Iterator[Draft]:
@@ -130,7 +129,8 @@ def _belongs(context: Context, name: str) -> bool:
 def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -> float:
     if makes:
         is_own = any(not s.standard for s in signatures)
-        is_maker = is_own or _makes(context, signatures[0])
+        made = result_type(context, signatures[0])
+        is_maker = is_own or isinstance(made, GeometryType | StructureType) or signatures[0].node is None
         return MAKERS + 0.1 * (not is_own) if is_maker else OTHERS
     entry = reference().entries.get(signatures[0].name)
     if entry is not None and entry.topic == _STEPS and signatures[0].standard and entry.name != _STEPS:
@@ -142,10 +142,6 @@ def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -
     is_own = any(not s.standard for s in signatures)
     certain = any(not isinstance(kind, AnyType) for kind in kinds)
     return CALLS + 0.1 * min(distances) + 0.5 * (not certain) - 0.3 * is_own
-
-
-def _makes(context: Context, signature: Signature) -> bool:
-    return isinstance(result_type(context, signature), GeometryType | StructureType) or signature.node is None
 
 
 def result_type(context: Context, signature: Signature) -> Type:

@@ -57,7 +57,6 @@ class Grip:
 
     @property
     def frame(self) -> frozenset[Unknown]:
-        """The unknowns of the frame of a structure."""
         if not isinstance(self.thing, Structure):
             return frozenset()
         return frozenset(ex.unknowns([self.thing.frame.x, self.thing.frame.y]))

@@ -170,10 +170,7 @@ _VALUES = frozenset(SymbolKind) - {
 """Kinds of names that have solved values."""
 
 
-def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
-    """Returns the hover for the word at an offset, or for the expression from there to `end`."""
-    if end is not None and end > offset:
-        return _of_selection(view, offset, end)
+def hover(view: View, offset: int) -> Hover | None:
     spot = spot_at(view, offset)
     if spot.where in (Where.COMMENT, Where.STRING):
         return None
@@ -317,19 +314,6 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     found = solved.values(field, path[: path.index(made)])
     told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
     return joined([listed(told), failed(solved)])
-
-
-def _of_selection(view: View, start: int, end: int) -> Hover | None:
-    text = view.source.text[start:end]
-    start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
-    path = around(view.module, start)
-    solved = solved_of(view)
-    for number, node in enumerate(path):
-        fits = (node.span.start, node.span.end) == (start, end)
-        if fits and isinstance(node, ast.Expression) and solved is not None:
-            told = lines(solved, node.span.one_line, solved.values(node, path[:number]))
-            return Hover(listed(told), node.span) if told else None
-    return None
 
 
 __all__ = ["Hover", "hover"]

@@ -31,9 +31,10 @@ from aidl_lang.building.wording import holds
 from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.diagnostics import has_errors
-from aidl_lang.common.prose import fixed
+from aidl_lang.common.prose import counted, fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
+from aidl_lang.parser import depth_of
 from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.workspace import View
@@ -82,7 +83,7 @@ class Solved:
 
     def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[BuiltValue]:
         """Returns the first values of an expression; none with errors. `path` are the nodes around."""
-        if _depth(node) > _DEEPEST:
+        if depth_of(node) > _DEEPEST:
             return []
         found: list[BuiltValue] = []
         for label, env in islice(self._places(path), _LOOKED_AT):
@@ -251,15 +252,6 @@ def _with_lets(env: Env, block: ast.Block) -> Env:
     return Env(scope, env.here, env.reach)
 
 
-def _depth(node: ast.Node) -> int:
-    deepest, stack = 0, [(node, 1)]
-    while stack:
-        top, depth = stack.pop()
-        deepest = max(deepest, depth)
-        stack += [(child, depth + 1) for child in ast.children(top)]
-    return deepest
-
-
 def spelled(*values: Value) -> list[Value]:
     """Spells out the sides of boxes in values, as one comparison has them."""
     numbers = [n for value in values for n in _numbers(value)]
@@ -357,7 +349,7 @@ def _lines(solved: Solved, name: str, value: Value, env: Env) -> Iterator[str]:
         case TextVal(text, _):
             yield f'{name} = "{text}"'
         case bool() | Condition():
-            yield f"{name} = {_truth(solved, value)}"
+            yield f"{name} = {str(holds(value, solved.evaluate, _TOLERANCE)).lower()}"
         case _ if (items := items_of(value)) is not None:
             yield f"{name}: {len(items)} members"
             for index, item in items[:_MOST_ITEMS]:
@@ -468,16 +460,10 @@ def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]
     else:
         yield f"{name}: {found.kind}, nothing drawn"
     count, state = model.mobility().of(found)
-    degrees = f"{count} degrees of freedom" if count is not None else ""
-    if count == 1:
-        degrees = "1 degree of freedom"
+    degrees = "" if count is None else f"{counted(count, 'degree')} of freedom"
     said = ", ".join(filter(None, (_STATES.get(state, ""), degrees)))
     if said:
         yield f"{name}: {said}"
-
-
-def _truth(solved: Solved, value: bool | Condition) -> str:
-    return "true" if holds(value, solved.evaluate, _TOLERANCE) else "false"
 
 
 def constraint_lines(solved: Solved, span: Span) -> list[str]:
@@ -489,13 +475,8 @@ def constraint_lines(solved: Solved, span: Span) -> list[str]:
     wrong = [abs(r.residual) for r in reports if not r.satisfied]
     is_wish = reports[0].soft
     if not wrong:
-        return [
-            ("This wish is fulfilled" if is_wish else "This constraint holds") + _times(len(reports)) + "."
-        ]
+        times = f" in all {len(reports)} cases" if len(reports) > 1 else ""
+        return [f"{'This wish is fulfilled' if is_wish else 'This constraint holds'}{times}."]
     head = "This wish is not wholly fulfilled" if is_wish else "This constraint does not hold"
     count = f" in {len(wrong)} of {len(reports)} cases" if len(reports) > 1 else ""
     return [f"{head}{count}: it is off by {fixed(max(wrong), DECIMALS)}."]
-
-
-def _times(count: int) -> str:
-    return f" in all {count} cases" if count > 1 else ""

@@ -13,11 +13,12 @@ from aidl_lang.building.model import Model, Structure, convert
 from aidl_lang.common.diagnostics import Diagnostic, TooLongError, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
+from aidl_lang.export.cuts import extent
 from aidl_lang.export.job import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.picture import picture
 from aidl_lang.export.svg import face_path, open_path, to_svg
-from aidl_lang.geometry.curves import Bounds, Circle, Piece, Vec, bounds, is_finite, union_bounds
+from aidl_lang.geometry.curves import Bounds, Circle, Vec, is_finite, union_bounds
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
@@ -335,8 +336,9 @@ def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | 
     region = drawing.regions.get(drawn.element.path) if is_structure else None
     if not region:
         return None
-    extent = _extent(piece for face in region.faces for piece in face.outer.pieces)
-    return PointedShape(number, "".join(map(face_path, region.faces)), extent, is_area=True)
+    outlines = (piece for face in region.faces for piece in face.outer.pieces)
+    path = "".join(map(face_path, region.faces))
+    return PointedShape(number, path, extent(outlines), is_area=True)
 
 
 def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape | None:
@@ -347,17 +349,12 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
     if any(part.path in elements.number for part in geometry.parts):
         return None
     pieces = [piece for piece in curves_of(geometry) if is_finite(piece)]
-    return PointedShape(number, open_path(pieces), _extent(pieces)) if pieces else None
+    return PointedShape(number, open_path(pieces), extent(pieces)) if pieces else None
 
 
 def _drawn_dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
-
-
-def _extent(pieces: Iterable[Piece]) -> float:
-    left, bottom, right, top = union_bounds([bounds(piece) for piece in pieces])
-    return max(right - left, top - bottom)
 
 
 # --- Makes the preview of a view: the picture and the data beside it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -245,8 +245,8 @@ class _Shift:
             return
         # Offsets up to `same` stay; those from `rest` on count from the end.
         one, other = before.text, after.text
-        self.same = _alike(one, other)
-        self.rest = len(one) - _alike(one[self.same :][::-1], other[self.same :][::-1])
+        self.same = alike(one, other)
+        self.rest = len(one) - alike(one[self.same :][::-1], other[self.same :][::-1])
 
     def __call__(self, span: Span) -> Span | None:
         start, end = self._start(span.start), self._end(span.end)
@@ -265,8 +265,8 @@ class _Shift:
         return None if offset < self.rest else offset + len(self.after.text) - len(self.before.text)
 
 
-def _alike(one: str, other: str) -> int:
-    """Counts the equal characters at the beginning of two texts."""
+def alike(one: Sequence[object], other: Sequence[object]) -> int:
+    """Counts what is equal at the beginning of two texts or lists."""
     pairs = zip(one, other, strict=False)
     return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
 

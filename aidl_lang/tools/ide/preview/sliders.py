@@ -14,6 +14,7 @@ from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents import workspace
 from aidl_lang.tools.agents.workspace import refusal
+from aidl_lang.tools.ends import is_whole
 from aidl_lang.tools.ide.preview.elements import Conflict, Elements, Party, Places, Problem, Slider
 from aidl_lang.tools.ide.workspace import View, edited, hasty
 
@@ -120,9 +121,7 @@ def _is_literal(node: ast.Expression) -> bool:
 
 def _step(knob: Knob, value: ast.Expression) -> float | None:
     """Returns 1 for a count: a whole number without a unit, with a range from one whole number to another."""
-    numbers = (knob.value, knob.low, knob.high)
-    is_whole = all(isinstance(n, float) and n.is_integer() for n in numbers)
-    return 1.0 if is_whole and not knob.unit and value.span.text.isdecimal() else None
+    return 1.0 if is_whole(knob) and value.span.text.isdecimal() else None
 
 
 def _kind(knob: Knob) -> str:

@@ -60,8 +60,16 @@ class Loss:
 
     @property
     def phrase(self) -> str:
-        """The loss in words."""
-        return phrase(self)
+        """The loss in a sentence without its full stop."""
+        if self.fate is Fate.FEWER:
+            many, few = self.counts
+            fewer = f"{many} `{dotted(self.item.thing)}` became {few}"
+            return f"{fewer}: unless fewer are meant, make as many again"
+        words = f"{named(self.item, self.inventory)} {_fate(self)}"
+        if self.dependents:
+            words += f", and with it {listed([quoted(item.text) for item in self.dependents], _TOLD)}"
+        reason = _reason(self)
+        return f"{words}: {reason}" if reason else words
 
 
 # --- Losses in words, for a language model and for reports.
@@ -74,23 +82,11 @@ _TOLD = 12
 """Most losses that a request names one by one."""
 
 
-def phrase(loss: Loss) -> str:
-    """Returns one loss in a sentence without its full stop."""
-    if loss.fate is Fate.FEWER:
-        many, few = loss.counts
-        return f"{many} `{dotted(loss.item.thing)}` became {few}: unless fewer are meant, make as many again"
-    words = f"{named(loss.item, loss.inventory)} {_fate(loss)}"
-    if loss.dependents:
-        words += f", and with it {listed([quoted(item.text) for item in loss.dependents], _TOLD)}"
-    reason = _reason(loss)
-    return f"{words}: {reason}" if reason else words
-
-
 def request(losses: Sequence[Loss]) -> str:
     """Returns a paragraph that asks to bring losses back; "" without any."""
     if not losses:
         return ""
-    lines = [f"- {phrase(loss)}" for loss in losses[:_TOLD]]
+    lines = [f"- {loss.phrase}" for loss in losses[:_TOLD]]
     if len(losses) > _TOLD:
         lines.append(f"- and {len(losses) - _TOLD} more")
     return "\n".join(

@@ -188,7 +188,6 @@ def translated(key: Key, paths: Mapping[Path, Path]) -> Key:
 
 
 def things_in(key: Key) -> Iterator[Path]:
-    """Yields the things in a key."""
     if key[:1] == ("ref",) and len(key) == 3:
         yield key[1]  # type: ignore[misc]
         return
@@ -225,13 +224,12 @@ STATED = frozenset({Kind.CONSTRAINT, Kind.ROTATION, Kind.OPERATION, Kind.ASSERT}
 class Step:
     """A block between a structure's body and a statement in it: a loop, a branch, `constrain { }`.
 
-    opening, closing  what stands around its contents
-    key               equal for blocks that are the same
+    opening  what stands before its contents, and ends with the brace
+    key      equal for blocks that are the same
     """
 
     block: ast.Block
     opening: str
-    closing: str
     key: Key
 
 
@@ -271,7 +269,6 @@ class Item:
 
     @cached_property
     def things(self) -> frozenset[Path]:
-        """The paths of the things in it."""
         return frozenset(things_in(self.key))
 
     @cached_property

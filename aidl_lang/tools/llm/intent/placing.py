@@ -137,7 +137,7 @@ def _wrapped(text: str, steps: Sequence[Step]) -> str:
         if step.key == CONSTRAIN and step is steps[-1]:
             text = text if text.startswith("prefer ") else f"constrain {text}"
         else:
-            text = f"{step.opening} {text} {step.closing}"
+            text = f"{step.opening} {text} }}"
     return text
 
 

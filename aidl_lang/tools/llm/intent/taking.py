@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.checking.symbols import Resolution, SymbolKind
@@ -89,7 +89,7 @@ class _Place:
 
     home: Path
     steps: tuple[Step, ...]
-    loops: dict[str, int]
+    loops: Mapping[str, int]
 
     @property
     def is_condition(self) -> bool:
@@ -121,23 +121,23 @@ class _Taker:
                 self.records.append((node, place))
                 path = (*place.home, *own_path(node.name, node.indices))
                 self.paths.add(path)
-                self._body(path, node.body, place.loops)
+                self._body(node.body, _Place(path, (), place.loops))
             case ast.ConstraintDefinition() | ast.ShapeDefinition():
-                step = Step(node.body, "constrain {", "}", CONSTRAIN)
+                step = Step(node.body, "constrain {", CONSTRAIN)
                 steps = (step,) if isinstance(node, ast.ConstraintDefinition) else ()
-                self._body((*place.home, node.name.text), node.body, place.loops, steps)
+                self._body(node.body, _Place((*place.home, node.name.text), steps, place.loops))
             case ast.For(variables, iterable, body):
                 inner = self.reader(place).inside(variables)
                 header = f"for {', '.join(v.text for v in variables)} in "
                 header += self.printer.iterable(iterable).flat()
-                self._block(body, place, f"{header} {{", "}", ("for", self._raw(iterable)), inner.loops)
+                self._block(body, place, f"{header} {{", ("for", self._raw(iterable)), inner.loops)
             case ast.If(test, then, otherwise):
                 condition, key = f"if {format_expression(test)} {{", self._raw(test)
-                self._block(then, place, condition, "}", ("if", key), place.loops)
+                self._block(then, place, condition, ("if", key), place.loops)
                 if otherwise is not None:
-                    self._block(otherwise, place, f"{condition} }} else {{", "}", ("else", key), place.loops)
+                    self._block(otherwise, place, f"{condition} }} else {{", ("else", key), place.loops)
             case ast.Constrain(items):
-                self._block(items, place, "constrain {", "}", CONSTRAIN, place.loops)
+                self._block(items, place, "constrain {", CONSTRAIN, place.loops)
             case _:
                 if isinstance(node, ast.Assign) and not place.is_condition and self._kind(node):
                     self.paths.add((*place.home, *own_path(node.name, node.indices)))
@@ -147,15 +147,14 @@ class _Taker:
         """Returns the key of the head of a loop or branch, which contains numbers only."""
         return Reader((), (), self.names).key(node)
 
-    def _body(self, path: Path, body: ast.Block, loops: dict[str, int], steps: tuple[Step, ...] = ()) -> None:
-        self.bodies.setdefault(path, body)
-        self.statements(body.statements, _Place(path, steps, loops))
+    def _body(self, body: ast.Block, place: _Place) -> None:
+        self.bodies.setdefault(place.home, body)
+        self.statements(body.statements, place)
 
     def _block(
-        self, block: ast.Block, place: _Place, opening: str, closing: str, key: Key, loops: object
+        self, block: ast.Block, place: _Place, opening: str, key: Key, loops: Mapping[str, int]
     ) -> None:
-        step = Step(block, opening, closing, key)
-        inner = _Place(place.home, (*place.steps, step), dict(loops))  # type: ignore[call-overload]
+        inner = _Place(place.home, (*place.steps, Step(block, opening, key)), loops)
         self.statements(block.statements, inner)
 
     def _kind(self, node: ast.Assign) -> Kind | None:

@@ -34,13 +34,9 @@ def connect(said: Connection, environment: Mapping[str, str] = os.environ) -> Cl
 
         return Command(connection)
     try:
-        if connection.provider == ANTHROPIC:
-            from aidl_lang.tools.llm.providers.server import Anthropic
+        from aidl_lang.tools.llm.providers.server import Anthropic, OpenAI
 
-            return Anthropic(connection)
-        from aidl_lang.tools.llm.providers.server import OpenAI
-
-        return OpenAI(connection)
+        return (Anthropic if connection.provider == ANTHROPIC else OpenAI)(connection)
     except ImportError as error:
         missing = f"the package `{error.name}` is not installed" if error.name else str(error)
         raise ProviderError("E0931", missing, "pip install 'aidl-lang[models]'") from None
@@ -70,8 +66,7 @@ class Constrained:
     """A provider whose server keeps the model to the grammar, free text first.
 
     Servers ignore members of a request that they do not know. So a complete reply is checked, and one that
-    the
-    grammar does not allow is an error.
+    the grammar does not allow is an error.
     """
 
     def __init__(self, provider: Closable, server: str) -> None:

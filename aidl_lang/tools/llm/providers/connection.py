@@ -188,7 +188,6 @@ class Draft:
         return "".join(self._pieces)
 
     def reply(self, price: Price | None) -> Reply:
-        """Returns the complete reply."""
         usage = self.usage
         if usage.cost is None and price is not None:
             usage = replace(usage, cost=price.of(usage))

@@ -307,10 +307,8 @@ class OpenAI(Server):
     def __init__(self, connection: Connection) -> None:
         import openai
 
-        from aidl_lang.tools.llm.providers import server
-
         client = openai.OpenAI(
-            api_key=connection.key or "none", base_url=connection.base_url, **server.options(connection)
+            api_key=connection.key or "none", base_url=connection.base_url, **options(connection)
         )
         host = urlsplit(connection.base_url).hostname or ""
         self._limit = _LIMITS[host.endswith(_NEWER)]
@@ -417,12 +415,10 @@ class Anthropic(Server):
     def __init__(self, connection: Connection) -> None:
         import anthropic
 
-        from aidl_lang.tools.llm.providers import server
-
         client = anthropic.Anthropic(
             api_key=connection.key or "none",
             base_url=connection.base_url.removesuffix("/v1"),
-            **server.options(connection),
+            **options(connection),
         )
         super().__init__(anthropic, client, connection)
 

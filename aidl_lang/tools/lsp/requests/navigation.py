@@ -22,6 +22,7 @@ from aidl_lang.tools.ide.outline import (
     semantic_tokens,
     spellings,
 )
+from aidl_lang.tools.ide.preview.elements import alike
 from aidl_lang.tools.ide.references import (
     definitions,
     highlights,
@@ -158,8 +159,8 @@ def _search(server: Server, query: str) -> list[types.WorkspaceSymbol]:
 
 def _links(asked: Asked, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
     return [
-        types.DocumentLink(asked.convert.range(link.span), asked.convert.uri_of(link.path))
-        for link in links(asked.view)
+        types.DocumentLink(asked.convert.range(span), asked.convert.uri_of(path))
+        for span, path in links(asked.view)
     ]
 
 
@@ -204,19 +205,14 @@ class _Tokens:
         if before is None or before.result_id != params.previous_result_id:
             return now
         old, new = list(before.data), list(now.data)
-        start = _alike(old, new)
-        end = min(_alike(old[::-1], new[::-1]), len(old) - start, len(new) - start)
+        start = alike(old, new)
+        end = alike(old[start:][::-1], new[start:][::-1])
         edit = types.SemanticTokensEdit(start, len(old) - end - start, new[start : len(new) - end])
         changed = bool(edit.delete_count or edit.data)
         return types.SemanticTokensDelta([edit] if changed else [], result_id=now.result_id)
 
     def forget(self, document: Document) -> None:
         self._answered.pop(document.uri, None)
-
-
-def _alike(a: list[int], b: list[int]) -> int:
-    """Counts the equal numbers at the beginning."""
-    return next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
 
 
 def _tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
