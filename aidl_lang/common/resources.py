@@ -111,7 +111,7 @@ def _pages() -> dict[str, Path]:
     return {path.stem: path for path in sorted(paths, key=lambda p: ("EWN".index(p.stem[0]), p.stem))}
 
 
-_NUMBERS = ("numpy", "scipy", "manifold3d", "ezdxf", "fonttools", "reportlab", "resvg-py")
+_NUMBERS = ("numpy", "scipy", "manifold3d", "ezdxf", "fonttools", "reportlab", "resvg-py", "svgwrite")
 """Packages whose versions may change a digit or a byte of a result."""
 
 

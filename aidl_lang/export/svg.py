@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
-from xml.etree.ElementTree import Element, tostring
+from functools import singledispatch
+from importlib import import_module
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -52,6 +58,60 @@ from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.styles import Shade, stacked
+
+# --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
+
+
+def svgwrite() -> Any:
+    """Loads the package `svgwrite` when the first drawing is written.
+
+    It imports the protocols of the web, to embed fonts and style sheets by their address, and a parser that
+    checks the values of attributes (`debug=True`); both are loaded if they are ever called.
+    """
+    if "svgwrite" not in sys.modules:
+        values = ("is_valid_transferlist", "is_valid_pathdata", "is_valid_animation_timing")
+        with _loaded_later("urllib.request", "urlopen"), _loaded_later("svgwrite.data.svgparser", *values):
+            import_module("svgwrite")
+    return import_module("svgwrite")
+
+
+@contextmanager
+def _loaded_later(name: str, *functions: str) -> Iterator[None]:
+    """Replaces a module that is not loaded; functions imported from it load it when called."""
+    if name in sys.modules:
+        yield
+        return
+    stand_in = _StandIn(name)
+    for function in functions:
+        setattr(stand_in, function, _calling(name, function))
+    sys.modules[name] = stand_in
+    try:
+        yield
+    finally:
+        _remove(stand_in)
+
+
+def _calling(name: str, function: str) -> Callable[..., Any]:
+    def call(*args: Any, **named: Any) -> Any:
+        return getattr(import_module(name), function)(*args, **named)
+
+    return call
+
+
+class _StandIn(ModuleType):
+    """A placeholder module that gives way to the real one when another thread asks it for more."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        _remove(self)
+        return getattr(import_module(self.__name__), name)
+
+
+def _remove(stand_in: ModuleType) -> None:
+    if sys.modules.get(stand_in.__name__) is stand_in:
+        del sys.modules[stand_in.__name__]
+
 
 # --- SVG path data from exact pieces. Coordinates turn upside down: SVG counts y downwards.
 
@@ -224,13 +284,6 @@ def _toned(color: str, tone: float) -> str:
 
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
-_HEAD = {
-    "baseProfile": "full",
-    "version": "1.1",
-    "xmlns": "http://www.w3.org/2000/svg",
-    "xmlns:ev": "http://www.w3.org/2001/xml-events",
-    "xmlns:xlink": "http://www.w3.org/1999/xlink",
-}
 
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
@@ -241,29 +294,29 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
         picture = scaled(picture, 1 / UNITS[units])
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
-    across, up = pixels or (f"{width}{units}", f"{height}{units}")
+    document = svgwrite().Drawing(
+        size=pixels or (f"{width}{units}", f"{height}{units}"),
+        viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
+        debug=False,
+    )
     boxes = dict.fromkeys(group.clip for group in picture.groups if group.clip is not None)
     clips = {box: f"clip-{k}" for k, box in enumerate(boxes, 1)}
+    for clip, name in clips.items():
+        path = document.clipPath(id=name)
+        path.add(_rectangle(clip, document))
+        document.defs.add(path)
     shades = _shades(picture)
-    known = [_element("clipPath", {"id": name}, _rectangle(box, {})) for box, name in clips.items()]
-    known += [_gradient(gradient, name) for gradient, name in shades.items()]
-    size = {
-        "width": str(across),
-        "height": str(up),
-        "viewBox": f"{fixed(left)} {fixed(-top)} {width} {height}",
-    }
-    groups = [_group(group, shades, clips) for group in picture.groups]
-    text = tostring(_element("svg", _HEAD | size, _element("defs", {}, *known), *groups), encoding="unicode")
+    for gradient, name in shades.items():
+        document.defs.add(_gradient(gradient, name, document))
+    for group in picture.groups:
+        element = _group(document, group, shades)
+        if group.clip is not None:
+            element["clip-path"] = f"url(#{clips[group.clip]})"
+        document.add(element)
+    text = io.StringIO()
+    document.write(text)
     # One element per line. Text is escaped, so this pattern stands between tags only.
-    lines = text.replace("><", ">\n<")
-    return f'<?xml version="1.0" encoding="utf-8" ?>\n{lines}\n'
-
-
-def _element(name: str, looks: Mapping[str, str], *inside: Element) -> Element:
-    """Returns an element with its attributes in alphabetical order."""
-    made = Element(name, dict(sorted(looks.items())))
-    made.extend(inside)
-    return made
+    return text.getvalue().replace("><", ">\n<") + "\n"
 
 
 def _shades(picture: Picture) -> dict[Gradient, str]:
@@ -272,36 +325,33 @@ def _shades(picture: Picture) -> dict[Gradient, str]:
     return {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
 
 
-def _gradient(gradient: Gradient, name: str) -> Element:
+def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
     (x0, y0), (x1, y1) = gradient.start, gradient.end
+    start, end = (fixed(x0), fixed(-y0)), (fixed(x1), fixed(-y1))
     looks = {"id": name, "gradientUnits": "userSpaceOnUse"}
-    if gradient.radius is None:
-        kind = "linearGradient"
-        looks |= {"x1": fixed(x0), "y1": fixed(-y0), "x2": fixed(x1), "y2": fixed(-y1)}
-    else:
-        kind = "radialGradient"
-        looks |= {"cx": fixed(x0), "cy": fixed(-y0), "r": fixed(gradient.radius)}
+    made = (
+        svg.linearGradient(start, end, **looks)
+        if gradient.radius is None
+        else svg.radialGradient(start, fixed(gradient.radius), **looks)
+    )
     if gradient.height != 1:
-        down = fixed(-y0 * (1 - gradient.height))
-        looks["gradientTransform"] = f"matrix(1 0 0 {fixed(gradient.height)} 0 {down})"
-    return _element(kind, looks, *map(_stop, gradient.stops))
+        made["gradientTransform"] = (
+            f"matrix(1 0 0 {fixed(gradient.height)} 0 {fixed(-y0 * (1 - gradient.height))})"
+        )
+    for stop in gradient.stops:
+        made.add_stop_color(fixed(stop.share), stop.color, None if stop.opacity == 1 else fixed(stop.opacity))
+    return made
 
 
-def _stop(stop: Stop) -> Element:
-    looks = {"offset": fixed(stop.share), "stop-color": stop.color}
-    return _element("stop", looks if stop.opacity == 1 else looks | {"stop-opacity": fixed(stop.opacity)})
-
-
-def _group(group: Group, shades: Mapping[Gradient, str], clips: Mapping[Bounds, str]) -> Element:
-    looks = {key: _clean(value) for key, value in {"id": group.name, **group.attributes}.items()}
-    if group.clip is not None:
-        looks["clip-path"] = f"url(#{clips[group.clip]})"
-    element = _element("g", looks)
+def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
+    attributes = {key: _clean(value) for key, value in group.attributes.items()}
+    element = svg.g(id=_clean(group.name))
+    element.attribs.update(attributes)
     for mark in group.marks:
         checkpoint()
         if isinstance(mark, Area) and mark.gradient is not None:
             mark = replace(mark, fill=f"url(#{shades[mark.gradient]})")
-        element.append(_drawn(mark))
+        element.add(_element(mark, svg))
     return element
 
 
@@ -309,66 +359,84 @@ def _clean(text: str) -> str:
     return _NOT_XML.sub("\ufffd", text)
 
 
-def _drawn(mark: Mark) -> Element:
-    match mark:
-        case Area():
-            looks = {"d": face_path(mark.face), "fill": mark.fill or "none", "fill-rule": "evenodd"}
-            if mark.opacity != 1:
-                looks["fill-opacity"] = fixed(mark.opacity)
-            looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
-            return _element("path", looks | _role(mark.role))
-        case Curves():
-            line = {"d": open_path(mark.pieces), "fill": "none"}
-            return _element("path", line | _looks(mark.ink) | _role(mark.role))
-        case Text():
-            return _text(mark)
-        case Dot():
-            place = {"cx": fixed(mark.at[0]), "cy": fixed(-mark.at[1]), "r": fixed(mark.radius)}
-            rim = {"stroke": "#ffffff", "stroke-width": fixed(0.3 * mark.radius)}
-            return _element("circle", place | rim | {"fill": mark.color})
-        case Frame():
-            ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
-            return _rectangle(mark.box, {"fill": "none"} | _looks(ink))
+@singledispatch
+def _element(mark: Mark, svg: Any) -> Any:
+    raise TypeError(mark)
+
+
+@_element.register
+def _(mark: Area, svg: Any) -> Any:
+    looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
+    if mark.opacity != 1:
+        looks["fill_opacity"] = fixed(mark.opacity)
+    looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
+    return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
+
+
+@_element.register
+def _(mark: Curves, svg: Any) -> Any:
+    looks = {"fill": "none"} | _looks(mark.ink)
+    return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
 
 
 def _role(role: str) -> dict[str, str]:
-    return {"class": role} if role else {}
+    return {"class_": role} if role else {}
 
 
 def _looks(ink: Ink, *, closed: bool = False) -> dict[str, str]:
-    looks = {"stroke": ink.color, "stroke-width": fixed(ink.width)}
+    looks = {"stroke": ink.color, "stroke_width": fixed(ink.width)}
     if ink.is_round:
-        looks["stroke-linejoin"] = "round"
+        looks["stroke_linejoin"] = "round"
     if ink.is_round and not closed:
-        looks["stroke-linecap"] = "round"
+        looks["stroke_linecap"] = "round"
     if ink.opacity != 1:
-        looks["stroke-opacity"] = fixed(ink.opacity)
+        looks["stroke_opacity"] = fixed(ink.opacity)
     if ink.dash is not None:
-        looks["stroke-dasharray"] = " ".join(map(fixed, ink.dash))
+        looks["stroke_dasharray"] = " ".join(map(fixed, ink.dash))
     return looks
 
 
-def _text(mark: Text) -> Element:
-    x, y = fixed(mark.at[0]), fixed(-mark.at[1])
-    looks = {"x": x, "y": y, "font-size": fixed(mark.size), "font-family": FONT, "fill": mark.color}
+@_element.register
+def _(mark: Text, svg: Any) -> Any:
+    looks = {"font_size": fixed(mark.size), "font_family": FONT, "fill": mark.color}
     if mark.anchor != "start":
-        looks["text-anchor"] = mark.anchor
+        looks["text_anchor"] = mark.anchor
     if mark.bold:
-        looks["font-weight"] = "bold"
+        looks["font_weight"] = "bold"
+    at = (fixed(mark.at[0]), fixed(-mark.at[1]))
     if mark.angle:
-        looks["transform"] = f"rotate({fixed(-mark.angle)} {x} {y})"
-    text = _element("text", looks)
-    text.text = _clean(mark.text)
+        looks["transform"] = f"rotate({fixed(-mark.angle)} {at[0]} {at[1]})"
+    text = svg.text(_clean(mark.text), insert=at, **looks)
     if not mark.halo:
         return text
     # The halo is a text of its own below: not every renderer knows `paint-order`.
-    looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke-width": fixed(0.22 * mark.size)}
-    halo = _element("text", looks | {"stroke-linejoin": "round", "aria-hidden": "true"})
-    halo.text = text.text
-    return _element("g", {}, halo, text)
+    looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke_width": fixed(0.22 * mark.size)}
+    halo = svg.text(_clean(mark.text), insert=at, stroke_linejoin="round", **looks)
+    halo["aria-hidden"] = "true"
+    both = svg.g()
+    both.add(halo)
+    both.add(text)
+    return both
 
 
-def _rectangle(box: Bounds, looks: Mapping[str, str]) -> Element:
+@_element.register
+def _(mark: Dot, svg: Any) -> Any:
+    return svg.circle(
+        center=(fixed(mark.at[0]), fixed(-mark.at[1])),
+        r=fixed(mark.radius),
+        fill=mark.color,
+        stroke="#ffffff",
+        stroke_width=fixed(0.3 * mark.radius),
+    )
+
+
+@_element.register
+def _(mark: Frame, svg: Any) -> Any:
+    ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
+    return _rectangle(mark.box, svg, fill="none", **_looks(ink))
+
+
+def _rectangle(box: Bounds, svg: Any, **looks: str) -> Any:
     left, bottom, right, top = box
-    place = {"x": fixed(left), "y": fixed(-top), "width": fixed(right - left), "height": fixed(top - bottom)}
-    return _element("rect", {**place, **looks})
+    insert, size = (fixed(left), fixed(-top)), (fixed(right - left), fixed(top - bottom))
+    return svg.rect(insert=insert, size=size, **looks)

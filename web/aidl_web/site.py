@@ -37,6 +37,7 @@ _LARGE = ("scipy", "openblas")
 """Those that large programs ask for: they stay as they are."""
 _PURE = {
     "lark": "later",
+    "svgwrite": "later",
     "attrs": "later",
     "cattrs": "later",
     "lsprotocol": "later",

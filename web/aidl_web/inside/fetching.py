@@ -24,6 +24,7 @@ _OF = {
     "lark": LATER,
     "lsprotocol": LATER,
     "pygls": LATER,
+    "svgwrite": LATER,
     "fontTools": LATER,
     "rectpack": LATER,
     "PIL": EXPORTS,
