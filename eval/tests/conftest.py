@@ -15,6 +15,7 @@ import pytest
 
 from aidl_eval import requirements
 from eval.tests import asked
+from tests import interrupts as interrupts
 from tests.commands import Result
 from tests.commands import aidl as aidl
 from tests.documents import ROOT
