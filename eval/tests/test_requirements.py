@@ -19,8 +19,8 @@ from aidl_eval.requirements import (
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import compile
 from eval.tests.asked import NAMES, TEXTS, prompts
+from tests.documents import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROGRAMS = Path(__file__).parent / "programs"
 ASKED = """old-school telephone
 lighthouse

@@ -20,7 +20,6 @@ from tests import compiled
 from tests.checker.checking import TOLERANCE, Finding, check
 from tests.checker.model import fold
 
-ROOT = Path(__file__).resolve().parents[2]
 CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.aidl"))
 _CHANGES = re.compile(r"^// changes: *(.*)$", re.MULTILINE)
 

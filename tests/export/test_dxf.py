@@ -28,9 +28,6 @@ from tests.compiled import LIGHTER, compiled
 from tests.export.readers import read_dxf
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
-ROOT = Path(__file__).parents[2]
-
-
 EXACT = Options(dxf="splines")
 
 

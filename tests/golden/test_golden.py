@@ -26,8 +26,8 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.interp import interpret
 from tests.compiled import EXAMPLES, model
+from tests.documents import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = Path(__file__).parent / "expected"
 ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")

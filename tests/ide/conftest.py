@@ -8,8 +8,6 @@ import pytest
 from aidl_lang.tools.ide.workspace import Project, View, Workspace, look, run
 from tests.compiled import LIGHTER
 
-EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
-
 
 def cursor(marked: str) -> tuple[str, int]:
     """A text without the `¦` in it, and where that was."""

@@ -9,9 +9,9 @@ from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, applied, look, run
 from tests.amount import TRIES_ALL
-from tests.compiled import FEW
+from tests.compiled import EXAMPLES, FEW
 
-from .conftest import EXAMPLES, cursor, opened, seen
+from .conftest import cursor, opened, seen
 
 
 def offered(marked: str) -> tuple[View, list[Action]]:

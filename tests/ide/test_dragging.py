@@ -10,7 +10,8 @@ from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import Dragged, Handle, drag, handles
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
-from tests.ide.conftest import EXAMPLES, seen
+from tests.compiled import EXAMPLES
+from tests.ide.conftest import seen
 
 ROD = """drawing d {
     base = line(fixed((0, 0)), fixed((100, 0)))

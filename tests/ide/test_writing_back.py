@@ -10,7 +10,8 @@ from aidl_lang.tools.ide.guesses import can_write_back, guesses, write_back
 from aidl_lang.tools.ide.lenses import inlays
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
-from tests.ide.conftest import EXAMPLES, seen
+from tests.compiled import EXAMPLES
+from tests.ide.conftest import seen
 from tests.ide.test_guesses import curves, near
 
 MOVED = """drawing d {

@@ -71,7 +71,7 @@ def run(case: Case) -> Outcome:
 
 
 def _compiled(case: Case, text: str) -> tuple[SourceFile, pipeline.Compiled]:
-    """What comes of a text with the files of a case; a broken program is asked for again by the mended one."""
+    """What comes of a text with the files of a case; a broken one is asked for again by its mended form."""
     return _compiled_with(text, tuple(case.files.items()))
 
 
