@@ -35,7 +35,7 @@ def _solved(path: Path) -> tuple[str, dict[str, Any]]:
     errors = [f"line {d.span.line if d.span else 0}: {d.message}" for d in model.diagnostics if d.is_error]
     assert errors == []
     assert model.status == "solved"
-    return text, json.loads(model.to_json())
+    return text, compiled.json_of(text)
 
 
 @cache

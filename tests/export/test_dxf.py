@@ -24,7 +24,7 @@ from aidl_lang.export.job import Job, Options
 from aidl_lang.geometry.curves import Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from tests.compiled import LIGHTER, compiled
+from tests.compiled import LIGHTER, compiled, json_of
 from tests.export.readers import read_dxf
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
@@ -138,14 +138,14 @@ def test_lines_of_a_drawing_are_joined_in_any_order_and_direction():
 @pytest.mark.parametrize("path", LIGHTER)
 def test_examples(path: Path):
     """Bodies by name, their areas from the entities read back, holes without seams."""
-    result = compiled(path.read_text("utf-8"))
-    document = json.loads(result.export(".json"))
+    text = path.read_text("utf-8")
+    result, told = compiled(text), json_of(text)
     bodies = read_dxf(result.export(".dxf", EXACT))
     drawing = result.drawing
     assert drawing is not None
-    assert {b.path for b in drawing.bodies} == bodies.keys() & document["regions"].keys()
+    assert {b.path for b in drawing.bodies} == bodies.keys() & told["regions"].keys()
     for name in (b.path for b in drawing.bodies):
-        region = document["regions"][name]
+        region = told["regions"][name]
         loops = sorted(bodies[name].loops, key=lambda loop: -loop.area)
         assert len(loops) == region["loops"]
         assert sum(loop.length for loop in loops) == pytest.approx(region["perimeter"], rel=1e-7)
