@@ -204,14 +204,18 @@ def state(package: Path) -> dict[str, tuple[int, int]]:
 # --- What every installation does ------------------------------------------------------------------
 
 
+def helps(here: Installation) -> None:
+    """What loads none of the packages."""
+    here.run("--version", says=r"aidl \d")
+    for verb in re.findall(r"^    ([a-z]+(?:-[a-z]+)*)", here.run("--help"), re.M):
+        if verb != "eval":
+            here.run(verb, "--help", says=f"usage: aidl {verb}")
+    here.run("eval", "--help", code=2, says="pip install aidl-eval")
+
+
 def plainly(here: Installation) -> None:
     """What needs no extra."""
     aidl = here.run
-    aidl("--version", says=r"aidl \d")
-    for verb in re.findall(r"^    ([a-z]+(?:-[a-z]+)*)", aidl("--help"), re.M):
-        if verb != "eval":
-            aidl(verb, "--help", says=f"usage: aidl {verb}")
-    aidl("eval", "--help", code=2, says="pip install aidl-eval")
     aidl("new", "part")
     for suffix in ("svg", "dxf", "pdf", "png", "json"):
         aidl("compile", "part.aidl", "-o", f"part.{suffix}", says="solved")
@@ -398,11 +402,11 @@ def fetched(url: str) -> str:
 # --- All of it -------------------------------------------------------------------------------------
 
 
-def with_lowest_versions(folder: Path, copy: Path) -> Installation:
+def with_lowest_versions(folder: Path, wheel: Path) -> Installation:
     """What needs no extra, with the oldest packages that are allowed."""
     here = Installation(folder)
-    asked = tomllib.loads((copy / "pyproject.toml").read_text())["project"]["dependencies"]
-    here.pip("install", *(each.replace(">=", "==") for each in asked), copy)
+    asked = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    here.pip("install", "--no-compile", *(each.replace(">=", "==") for each in asked), wheel)
     plainly(here)
     (here.work / "conflict.aidl").write_text(CONFLICT)
     here.run("check", "conflict.aidl", code=1, says="cannot hold together")
@@ -419,7 +423,8 @@ def main() -> None:
         if folder is None:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="aidl-wheel-")))
         here = installed_and_run(folder.resolve())
-        lowest = with_lowest_versions(folder.resolve() / "lowest", folder.resolve() / "copy")
+        (wheel,) = (folder / "wheel").iterdir()
+        lowest = with_lowest_versions(folder.resolve() / "lowest", wheel.resolve())
         here.seconds += [(f"{name}, lowest versions", wall, used) for name, wall, used in lowest.seconds]
         here.failures += [f"with the lowest versions: {failure}" for failure in lowest.failures]
     print("\n| command | seconds | of the processor |\n|---|--:|--:|")
@@ -433,8 +438,10 @@ def main() -> None:
 def installed_and_run(folder: Path) -> Installation:
     here = Installation(folder)
     copy = clean_copy(folder / "copy")
-    here.pip("install", copy)
+    here.pip("wheel", "--no-deps", "--wheel-dir", folder / "wheel", copy)
+    here.pip("install", *(folder / "wheel").iterdir())
     before = state(here.package)
+    helps(here)
     plainly(here)
     without_extras(here)
     builders = [path.name for path in here.package.parent.glob("hatchling*")]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Container, Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -41,6 +43,12 @@ def compiled(text: str) -> pipeline.Compiled:
 def model(text: str) -> aidl_lang.Model:
     """The same, as the package has it."""
     return aidl_lang.Model(compiled(text))
+
+
+@cache
+def json_of(text: str) -> dict[str, Any]:
+    """The same as JSON, which nobody changes."""
+    return json.loads(compiled(text).export(".json"))  # type: ignore[no-any-return]
 
 
 def example(name: str) -> aidl_lang.Model:

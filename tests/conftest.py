@@ -8,6 +8,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from aidl_lang.explaining import trials
 from tests import amount as amount  # how many examples are tried
+from tests import interrupts as interrupts
 
 # What a message says hangs on the program here, and not on how busy the machine is.
 trials.SECONDS, trials.LONGEST = 10.0, 20.0

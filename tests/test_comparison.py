@@ -20,7 +20,6 @@ from tests import compiled
 from tests.documents import ROOT
 from tests.geometry.models import circle, model, polygon, structure
 
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 PARAMS: dict[str, dict[str, str | float]] = {
     "telephone": {"width": 200},
     "motor_bracket": {"motor": "nema23"},

@@ -25,9 +25,9 @@ from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.valuation import linearise
 from tests.amount import tries
+from tests.compiled import EXAMPLES
 from tests.solver.check import evaluate
 
-EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.aidl"))
 STEP = 1e-4
 
 

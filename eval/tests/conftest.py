@@ -13,6 +13,9 @@ from typing import Any
 
 import pytest
 
+from aidl_eval import requirements
+from eval.tests import asked
+from tests import interrupts as interrupts
 from tests.commands import Result
 from tests.commands import aidl as aidl
 from tests.documents import ROOT
@@ -85,5 +88,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in [n for n in os.environ if n.startswith(("AIDL_", "OPENAI", "ANTHROPIC"))]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setattr(requirements, "load", asked.load)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(ROOT), str(ROOT / "eval"))))
     return tmp_path

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from aidl_eval.plan import VARIANTS
-from aidl_eval.requirements import load
+from eval.tests.asked import TEXTS
 
 
 def main() -> int:
@@ -23,7 +23,7 @@ def main() -> int:
     request = next(m["content"] for m in messages if m["role"] == "user")
     attempt = 1 + sum(m["role"] == "assistant" for m in messages)
     variant = next(name for name, language in VARIANTS.items() if language.guide().strip() == system.strip())
-    prompt = max((p for p in load(None) if p.text in request), key=lambda p: len(p.text)).name
+    prompt = max((name for name, text in TEXTS.items() if text in request), key=lambda name: len(TEXTS[name]))
     replies = sorted(
         (folder / prompt / variant / str(asked["sampling"]["seed"])).glob("*.md"), key=lambda p: int(p.stem)
     )

@@ -20,18 +20,16 @@ import numpy as np
 
 from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import FINE, Regions, of_drawing
-from aidl_eval.requirements import load
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.curves import Arc, Circle, union_bounds
 from aidl_lang.geometry.region import Loop, loop_points, region_bounds
 from aidl_lang.pipeline import compile
+from eval.tests.asked import NAMES, TEXTS
 from tests.documents import ROOT
 
 NOTE = (
     "scripted: drawings of one origin in every language, with mistakes put in; it tests the harness, no model"
 )
-PROMPTS = tuple(prompt.name for prompt in load())
-_TEXTS = {prompt.name: prompt.text for prompt in load()}
 _SAME = 1e-3
 """Relative difference up to which two radii are one number."""
 
@@ -156,7 +154,7 @@ def aidl(name: str, variant: str) -> str:
         if not is_flat:
             lines.append("    }")
     kind = "solid" if is_flat else "assembly"
-    return "\n".join((f"/// {_TEXTS[name]}", f"{kind} {name} {{", *lines, "}", ""))
+    return "\n".join((f"/// {TEXTS[name]}", f"{kind} {name} {{", *lines, "}", ""))
 
 
 def _aidl(outline: Outline) -> str:
@@ -177,7 +175,7 @@ def _radius(disc: Disc) -> str:
 def openscad(name: str) -> str:
     """Returns the drawing with a module for each part."""
     drawing = plain(name)
-    lines = [f"// {_TEXTS[name]}", "$fn = 180;", *(f"{n} = {v:g};" for n, v in drawing.numbers.items())]
+    lines = [f"// {TEXTS[name]}", "$fn = 180;", *(f"{n} = {v:g};" for n, v in drawing.numbers.items())]
     for number, (_, areas) in enumerate(drawing.parts):
         lines.append(f"module part_{number}() {{")
         for area in areas:
@@ -222,7 +220,7 @@ def cadquery(name: str) -> str:
 def _python(name: str, head: str, *functions: str) -> str:
     drawing = plain(name)
     lines = [
-        f"# {_TEXTS[name]}",
+        f"# {TEXTS[name]}",
         head,
         "",
         *(f"{n} = {v:g}" for n, v in drawing.numbers.items()),
@@ -304,14 +302,14 @@ MISTAKES: Mapping[str, Sequence[Mistake]] = {
 
 def mistake(name: str) -> int:
     """Returns which mistake the first reply to a prompt has, where it has one."""
-    return PROMPTS.index(name) // 2 % 3
+    return NAMES.index(name) // 2 % 3
 
 
 def replies(name: str, variant: str) -> list[str]:
     """Returns the replies of a conversation: every other one has a mistake first, all kinds in turn."""
     program = WRITERS[variant](name)
     right = _fenced(program, variant)
-    if PROMPTS.index(name) % 2 == 0:
+    if NAMES.index(name) % 2 == 0:
         return [right]
     kinds, kind = MISTAKES[variant], mistake(name)
     wrong = "First I think about it." if kind == len(kinds) else _fenced(kinds[kind](program), variant)
@@ -322,13 +320,13 @@ def _fenced(program: str, variant: str) -> str:
     return f"Here it is.\n\n```{VARIANTS[variant].fences[0]}\n{program}```\n"
 
 
-def recording(names: Sequence[str] = PROMPTS, variants: Sequence[str] = tuple(WRITERS)) -> str:
+def recording(names: Sequence[str] = NAMES, variants: Sequence[str] = tuple(WRITERS)) -> str:
     """Returns a recording with one conversation for each of these prompts in each of these languages."""
     lines = (
         {
             "aidl_recording": 1,
             "prompt": name,
-            "text": _TEXTS[name],
+            "text": TEXTS[name],
             "variant": variant,
             "run": 1,
             "note": NOTE,

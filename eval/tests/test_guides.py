@@ -9,12 +9,12 @@ import pytest
 
 from aidl_eval.plan import VARIANTS, Plan, Switches
 from aidl_eval.rendering import RenderedLanguage
-from aidl_eval.requirements import load
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Settings, compile
 from aidl_lang.tools.cli.generate import register_eval
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.aidl import Aidl
+from eval.tests.asked import prompts
 
 THINGS = ("storm lantern", "excavator", "city tram")
 _FILLING = {"a", "an", "and", "of", "old", "school", "pair", "with", "the"}
@@ -56,7 +56,7 @@ def test_no_guide_draws_what_is_asked_for(name: str) -> None:
     for program in re.findall(r"```\w*\n(.*?)```", VARIANTS[name].guide(), re.S):
         titles = re.findall(r"^\s*(?:///?|#|<!--) (.*)|^(?:assembly|solid|module|def) (\w+)", program, re.M)
         heads = " ".join(" ".join(title) for title in titles[:2]).casefold()
-        for prompt in load():
+        for prompt in prompts().values():
             words = set(re.findall(r"[a-z]+", prompt.text.casefold())) - _FILLING
             if prompt.name not in ("house", "table_lamp"):  # a house's roof is no house
                 assert not words <= set(re.findall(r"[a-z]+", heads)), (name, prompt.text)

@@ -16,14 +16,14 @@ from aidl_eval import editability, pictures
 from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.rendering import RenderedLanguage
-from aidl_eval.requirements import examine_regions, load
+from aidl_eval.requirements import examine_regions
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.region import area
 from eval.tests import scripted
+from eval.tests.asked import NAMES, prompts
 from eval.tests.conftest import Evaluation
 
-PROMPTS = {prompt.name: prompt for prompt in load()}
 QUICK = ("coffee_mug", "robot_face", "sailing_boat")
 TOUCHING = {"steam_locomotive": ("openings", "fields", "teeth")}
 """What hangs on whether parts that just touch, touch to the last digit; `contact` does where parts are."""
@@ -67,7 +67,8 @@ def compare(variant: str, name: str) -> None:
     skipped = {"contact", *TOUCHING.get(name, ())}
     measures = {m: (taken(found), taken(there)) for m, taken in MEASURES.items() if m not in skipped}
     assert {m: mine for m, (mine, its) in measures.items() if mine != pytest.approx(its, abs=5e-3)} == {}
-    assert examine_regions(PROMPTS[name], found) == examine_regions(PROMPTS[name], there)
+    prompt = prompts()[name]
+    assert examine_regions(prompt, found) == examine_regions(prompt, there)
     mine, its = neutral(found), neutral(there)
     assert mine.shape == its.shape
     assert (np.abs(mine - its) > 100).mean() < 2e-3  # a pixel beside here and there
@@ -83,7 +84,7 @@ def test_a_drawing_is_the_same_in_every_language(variant: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("variant", WRITTEN)
-@pytest.mark.parametrize("name", [name for name in scripted.PROMPTS if name not in QUICK])
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in QUICK])
 def test_every_drawing_is_the_same_in_every_language(variant: str, name: str) -> None:
     if reason := missing(variant):
         pytest.skip(reason)
@@ -141,4 +142,4 @@ def test_a_recording_goes_through_the_whole_harness(
 def test_all_prompts_in_all_languages_go_through_the_whole_harness(
     evaluation: Evaluation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    replay(evaluation, scripted.PROMPTS, monkeypatch)
+    replay(evaluation, NAMES, monkeypatch)

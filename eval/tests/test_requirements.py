@@ -18,8 +18,9 @@ from aidl_eval.requirements import (
 )
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import compile
+from eval.tests.asked import NAMES, TEXTS, prompts
+from tests.documents import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROGRAMS = Path(__file__).parent / "programs"
 ASKED = """old-school telephone
 lighthouse
@@ -57,7 +58,6 @@ barbell
 toaster
 street lamp
 padlock"""
-PROMPTS: dict[str, Prompt] = {prompt.name: prompt for prompt in load()}
 
 
 def good(name: str) -> str:
@@ -76,27 +76,30 @@ def unmet(prompt: Prompt, text: str) -> dict[str, str]:
 
 
 def test_prompts_are_those_of_the_experiment_in_their_order() -> None:
-    assert [prompt.text for prompt in load()] == ASKED.splitlines()
+    assert list(TEXTS.values()) == ASKED.splitlines()
+    assert {name: prompt.text for name, prompt in prompts().items()} == TEXTS
     assert [prompt.text for prompt in load(ROOT / "eval/aidl_eval/prompts")] == ASKED.splitlines()
 
 
-@pytest.mark.parametrize("prompt", PROMPTS.values(), ids=lambda p: p.name)
-def test_requirements_say_what_they_ask_for(prompt: Prompt) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_requirements_say_what_they_ask_for(name: str) -> None:
+    prompt = prompts()[name]
     texts = [requirement.text for requirement in prompt.requirements]
     assert len(texts) >= 5
     assert len(set(texts)) == len(texts)
 
 
-@pytest.mark.parametrize("prompt", PROMPTS.values(), ids=lambda p: p.name)
-def test_a_disc_is_none_of_them(prompt: Prompt) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_a_disc_is_none_of_them(name: str) -> None:
+    prompt = prompts()[name]
     results = examined(prompt, "solid disc { rim = circle(radius: 5) }")
     assert [r.text for r in results] == [r.text for r in prompt.requirements]
     assert any(r.status is not Status.MET for r in results)
 
 
-@pytest.mark.parametrize("name", PROMPTS)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_good_program_meets_all(name: str) -> None:
-    assert unmet(PROMPTS[name], good(name)) == {}
+    assert unmet(prompts()[name], good(name)) == {}
 
 
 MISTAKES = [
@@ -110,7 +113,7 @@ MISTAKES = [
 def test_a_mistake_fails_what_it_breaks(name: str, right: str, wrong: str, expected: list[str]) -> None:
     text = good(name)
     assert text.count(right) == 1
-    assert list(unmet(PROMPTS[name], text.replace(right, wrong))) == expected
+    assert list(unmet(prompts()[name], text.replace(right, wrong))) == expected
 
 
 # --- Names that models choose ----------------------------------------------------------------------
@@ -252,8 +255,8 @@ def test_the_edges_of_a_shape_stand_for_what_is_between_them() -> None:
             door = rectangle(center: (0, -42), width: 20, height: 36)
             front = cut(union(body, chimney), door)
         }"""
-    assert unmet(PROMPTS["house"], text) == {}
-    assert list(unmet(PROMPTS["house"], text.replace("(28, 50)", "(28, 150)"))) == [
+    assert unmet(prompts()["house"], text) == {}
+    assert list(unmet(prompts()["house"], text.replace("(28, 50)", "(28, 150)"))) == [
         "the chimney stands on the roof",
         "the parts hold together",
     ]

@@ -56,8 +56,12 @@ def command(*arguments: str) -> Any:
 
 
 @pytest.fixture(scope="module")
-def session() -> Iterator[Session]:
-    with connected(command()) as session:
+def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
+    """A server whose root has a bolt in it."""
+    root = tmp_path_factory.mktemp("server") / "lib"
+    root.mkdir()
+    (root / "bolt.aidl").write_text(BOLT)
+    with connected(command("--root", str(root))) as session:
         yield session
 
 
@@ -111,12 +115,9 @@ def test_hundred_megabytes_are_refused(session: Session) -> None:
     assert not session.ask("check", program=PLATE).is_error
 
 
-def test_imports_cannot_leave_the_root(tmp_path: Path) -> None:
-    (tmp_path / "lib").mkdir()
-    (tmp_path / "lib" / "bolt.aidl").write_text(BOLT)
-    with connected(command("--root", str(tmp_path / "lib"))) as session:
-        inside = session.ask("check", program=IMPORTS.replace("lib/", ""))
-        outside = session.ask("check", program=IMPORTS.replace("lib/", "../lib/"))
+def test_imports_cannot_leave_the_root(session: Session) -> None:
+    inside = session.ask("check", program=IMPORTS.replace("lib/", ""))
+    outside = session.ask("check", program=IMPORTS.replace("lib/", "../lib/"))
     assert inside.structured_content["ok"]
     assert not outside.structured_content["ok"]
     assert "lies outside the project" in outside.content[0].text

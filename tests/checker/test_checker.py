@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import copy
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 import aidl_lang
 from tests.checker.checking import broken, check
-
-ROOT = Path(__file__).resolve().parents[2]
+from tests.documents import ROOT
 
 PROGRAM = """
 assembly scene {{

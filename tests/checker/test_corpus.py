@@ -17,10 +17,9 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from tests import compiled
-from tests.checker.checking import TOLERANCE, check
+from tests.checker.checking import TOLERANCE, Finding, check
 from tests.checker.model import fold
 
-ROOT = Path(__file__).resolve().parents[2]
 CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.aidl"))
 _CHANGES = re.compile(r"^// changes: *(.*)$", re.MULTILINE)
 
@@ -36,7 +35,12 @@ def _solved(path: Path) -> tuple[str, dict[str, Any]]:
     errors = [f"line {d.span.line if d.span else 0}: {d.message}" for d in model.diagnostics if d.is_error]
     assert errors == []
     assert model.status == "solved"
-    return text, json.loads(model.to_json())
+    return text, compiled.json_of(text)
+
+
+@cache
+def _findings(path: Path) -> list[Finding]:
+    return check(*_solved(path))
 
 
 DEAR = {"gear_pair", "meshing", "outlines", "places", "shapes", "sides", "turned_holder"}
@@ -60,8 +64,7 @@ of a pattern or of a `let` in a shape, what is `fixed` where it was written.
 
 @pytest.mark.parametrize("path", ALL)
 def test_every_constraint_holds_on_the_coordinates(path: Path) -> None:
-    text, document = _solved(path)
-    findings = check(text, document)
+    findings = _findings(path)
     assert any(f.kind == "constraint" for f in findings)
     assert [str(f) for f in findings if not f.holds and f.residual is not None] == [], f"over {TOLERANCE}"
     unread = sum(f.residual is None for f in findings)
@@ -76,7 +79,7 @@ def test_the_checker_and_the_document_speak_of_the_same_constraints(path: Path) 
     text, document = _solved(path)
     hard = [c for c in document["constraints"] if not c.get("soft")]
     assert all(c["satisfied"] for c in hard)
-    checked = {f.line for f in check(text, document)}
+    checked = {f.line for f in _findings(path)}
     assert {c["line"] for c in hard if c["text"] in text} <= checked
 
 

@@ -93,11 +93,6 @@ def test_timings(aidl: Aidl) -> None:
     assert any(line.startswith("total") and line.endswith(" ms") for line in lines)
 
 
-def test_same_program_gives_same_bytes(aidl: Aidl) -> None:
-    first = aidl("compile", "good.aidl", "-o", "-", "--format", "json").out
-    assert aidl("compile", "good.aidl", "-o", "-", "--format", "json").out == first
-
-
 def test_wrong_program_leaves_the_old_drawing(aidl: Aidl, folder: Path) -> None:
     (folder / "wrong.svg").write_text("old")
     result = aidl("compile", "wrong.aidl", "--best-effort")

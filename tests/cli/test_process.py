@@ -101,7 +101,7 @@ def test_terminal_without_unicode(folder: Path) -> None:
 
 def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:
     command = [*COMMAND, "watch", "good.aidl", "-o", "watched.svg"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         try:
             first = process.stderr.readline()
@@ -127,7 +127,7 @@ def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path
     (folder / "disc.svg").write_text(circle.format(5))
     (folder / "sign.aidl").write_text('import "disc.svg" as disc\nsolid plate { edge = disc() }\n')
     command = [*COMMAND, "watch", "sign.aidl", "-o", "watched.svg"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         try:
             first = process.stderr.readline()
@@ -149,7 +149,7 @@ def test_an_interrupt_while_parts_are_nested_writes_nothing(folder: Path) -> Non
     parts = "".join(f"solid p{k} {{ c = rectangle(width: {20 + k}, height: 30) }}\n" for k in range(20))
     (folder / "many.aidl").write_text(parts)
     command = [*COMMAND, "compile", "many.aidl", "-o", "many.svg", "--sheet", "200x150", "--nest", "50"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         time.sleep(3.0)
         process.send_signal(signal.SIGINT)
@@ -157,11 +157,6 @@ def test_an_interrupt_while_parts_are_nested_writes_nothing(folder: Path) -> Non
     assert "many.svg" not in rest
     assert process.returncode == 130
     assert not (folder / "many.svg").exists()
-
-
-def _hear_interrupts() -> None:
-    """In a shell's background job interrupts are ignored, and processes inherit that."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")

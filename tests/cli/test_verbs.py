@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.tools.cli.doc import structure_name
-from tests.cli.conftest import GOOD, WRONG
 from tests.commands import Result
 
 Aidl = Callable[..., Result]
@@ -332,11 +331,6 @@ def test_interrupt_is_quiet(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr("aidl_lang.pipeline.compile", interrupted)
     assert aidl("check", "good.aidl") == Result(130, "", "")
-
-
-def test_programs_used_here_are_what_they_say(aidl: Aidl) -> None:
-    assert aidl("check", "-", stdin=GOOD).code == 0
-    assert aidl("check", "-", stdin=WRONG).code == 1
 
 
 @pytest.mark.parametrize("asked", [["--report"], ["study", "results"], ["--help"]])

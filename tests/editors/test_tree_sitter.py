@@ -33,6 +33,7 @@ NOT_OF_SYNTAX = frozenset(["E0125", "E0801", "E0802", "E0803"])
 """Errors of the parser that no grammar tells: of lines, and of what is too much."""
 
 
+@cache
 def errors(text: str) -> list[str]:
     """The codes of the parser's errors that are of the syntax."""
     found = {d.code for d in read(SourceFile("", text)).diagnostics if d.is_error}

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 
 import pytest
 from pypdfium2 import PdfDocument
@@ -17,7 +15,6 @@ from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.solved import SolvedStructure
-from tests.documents import ROOT
 from tests.export.colours import near
 from tests.export.readers import read_pdf
 from tests.geometry.models import circle, model, rectangle, structure
@@ -116,17 +113,3 @@ def test_a_page_that_is_too_large():
         written(structure("solid", "s", rectangle("r", 0, 0, 12000, 3000)))
     assert reason.value.diagnostic.code == "E0921"
     assert str(reason.value) == ("the picture measures 12720 × 3720 mm, and a page of a PDF ends at 5080 mm")
-
-
-def test_the_same_bytes_in_another_process():
-    code = (
-        "import sys, pathlib, aidl_lang; "
-        "sys.stdout.buffer.write(aidl_lang.compile(pathlib.Path('examples/key.aidl')).export('.pdf'))"
-    )
-    one, other = (
-        subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=True).stdout
-        for _ in range(2)
-    )
-    assert one == other
-    assert one.startswith(b"%PDF")
-    assert str(ROOT).encode() not in one

@@ -31,6 +31,7 @@ def example(name: str) -> Model:
     return model
 
 
+@cache
 def bodies_of(name: str) -> dict[str, Any]:
     document = json.loads(example(name).to_json())
     return {path: document["regions"][path] for path in document["bodies"]}

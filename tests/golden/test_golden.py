@@ -25,9 +25,9 @@ from aidl_lang.building.model import Structure
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.interp import interpret
-from tests.compiled import EXAMPLES, model
+from tests.compiled import EXAMPLES, json_of, model
+from tests.documents import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = Path(__file__).parent / "expected"
 ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
@@ -102,7 +102,7 @@ def _geometry(s: Structure) -> str:
 
 
 def solved(text: str) -> str:
-    return _rows(rounded_document(json.loads(model(text).to_json())), "") + "\n"
+    return _rows(rounded_document(json_of(text)), "") + "\n"
 
 
 def _rows(value: Any, indent: str) -> str:

@@ -12,7 +12,9 @@ from aidl_lang.syntax.tables import END, KINDS, Token, load_tables, tokenize
 from tests.amount import TRIES_ALL
 from tests.grammars.engines import all_programs, engine, syntax_errors
 
-SHORT = [text for text in all_programs().values() if 40 < len(text) < 1500 and not syntax_errors(text)]
+
+def short_programs() -> list[str]:
+    return [text for text in all_programs().values() if 40 < len(text) < 1500 and not syntax_errors(text)]
 
 
 def test_every_program_is_taken_to_its_end_or_not_at_all_as_by_the_parser() -> None:
@@ -93,10 +95,10 @@ def stricter_here(tokens: list[Token], at: int) -> bool:
 
 def mutants(count: int) -> list[tuple[str, Token, list[Token]]]:
     """So many texts that the parser refuses for their syntax, each with the token that it refuses."""
-    rng = random.Random(1)
+    rng, short = random.Random(1), short_programs()
     found: list[tuple[str, Token, list[Token]]] = []
     while len(found) < count:
-        tokens = [t for t in tokenize(SourceFile("", rng.choice(SHORT))).tokens if t.kind != END]
+        tokens = [t for t in tokenize(SourceFile("", rng.choice(short))).tokens if t.kind != END]
         text = laid_out(mutant(rng, tokens))
         if refused := unexpected(text):
             found.append((text, *refused))

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
@@ -9,8 +8,9 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import Dragged, Handle, drag, handles
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
-from tests.ide.conftest import EXAMPLES, seen
+from aidl_lang.tools.ide.workspace import View, applied, look, run
+from tests.compiled import EXAMPLES
+from tests.ide.conftest import seen, solved_at
 
 ROD = """drawing d {
     base = line(fixed((0, 0)), fixed((100, 0)))
@@ -126,7 +126,7 @@ def test_a_drawing_that_may_slide_is_moved_as_a_whole_by_its_middle() -> None:
 @pytest.mark.parametrize("name", ["key", "gear_pair"])
 def test_a_point_that_nothing_holds_elsewhere_is_not_offered(name: str) -> None:
     path = next(path for path in EXAMPLES if path.stem == name)
-    view = run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))
+    view = solved_at(path)
     whole = [h for h in handles(view) if h.hint.endswith("to move the drawing")]
     assert whole == []
     assert len(handles(view)) > 5
@@ -224,7 +224,7 @@ def test_unknown_handles_and_steps_are_refused() -> None:
 @pytest.mark.parametrize("name", ["telephone", "toy_sword", "key"])
 def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None:
     path = next(p for p in EXAMPLES if p.stem == name)
-    view = solved(path)
+    view = solved_at(path)
     put = 0
     for each in handles(view)[:8]:
         try:
@@ -240,7 +240,3 @@ def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None
         assert again.outcome.model is not None
         assert all(report.satisfied for report in again.outcome.model.constraints if not report.soft)
     assert put >= 5
-
-
-def solved(path: Path) -> View:
-    return run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.workspace import View, Workspace, look, run
+from aidl_lang.tools.ide.workspace import View, look, run
 from aidl_lang.tools.reference.collect import reference
 from tests.compiled import LIGHTER
 
-from .conftest import cursor, seen
+from .conftest import cursor, seen, solved_at
 
 PLATE = """\
 /// A plate with a bolt.
@@ -44,7 +43,6 @@ assembly whole {
 """
 
 
-@cache
 def solved(text: str = PLATE) -> View:
     return seen(text, solved=True)
 
@@ -135,7 +133,7 @@ def test_no_value_of_another_text() -> None:
 def test_values_are_those_of_the_model(path: Path) -> None:
     """Radii as they are told where circles are made, beside those of the drawing."""
     text = path.read_text("utf-8")
-    view = run(look(path, text, Workspace([path.parent]).world(path)))
+    view = solved_at(path)
     assert view.outcome is not None
     model = view.outcome.model
     assert model is not None

@@ -7,9 +7,9 @@ import pytest
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.lenses import lenses
 from aidl_lang.tools.ide.outline import colors, spellings
-from aidl_lang.tools.ide.workspace import View, applied, run
+from aidl_lang.tools.ide.workspace import View, applied
 
-from .conftest import seen
+from .conftest import seen, solved_at
 
 COLORED = """\
 @color("crimson") solid a { c = circle(center: origin, radius: 9) }
@@ -84,7 +84,7 @@ def test_nothing_is_said_of_a_text_that_was_not_solved() -> None:
 
 
 def test_examples(example: View) -> None:
-    view = run(example)
+    view = solved_at(example.path)
     assert view.outcome is not None
     assert view.outcome.model is not None
     said = lenses(view)

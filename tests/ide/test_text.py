@@ -22,8 +22,9 @@ from aidl_lang.tools.ide.outline import (
 )
 from aidl_lang.tools.ide.workspace import View, format_document
 from tests.amount import tries
+from tests.compiled import EXAMPLES
 
-from .conftest import EXAMPLES, seen
+from .conftest import seen
 
 PART = """\
 import "other.aidl" as other

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from aidl_lang.common.prose import shortest
@@ -9,8 +7,9 @@ from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.guesses import can_write_back, guesses, write_back
 from aidl_lang.tools.ide.lenses import inlays
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
-from tests.ide.conftest import EXAMPLES, seen
+from aidl_lang.tools.ide.workspace import View, applied, look, run
+from tests.compiled import EXAMPLES
+from tests.ide.conftest import seen, solved_at
 from tests.ide.test_guesses import curves, near
 
 MOVED = """drawing d {
@@ -78,7 +77,7 @@ def test_a_line_that_had_to_change_is_moved_without_writing_its_length() -> None
 @pytest.mark.parametrize("name", ["telephone", "phone_stand", "lighthouse", "wrench", "handset"])
 def test_examples_draw_the_same_and_have_nothing_left_to_tell(name: str) -> None:
     path = next(p for p in EXAMPLES if p.stem == name)
-    view = example(path)
+    view = solved_at(path)
     text = rewritten(view)
     again = run(look(path, text, view.world))
     assert again.outcome is not None
@@ -87,11 +86,6 @@ def test_examples_draw_the_same_and_have_nothing_left_to_tell(name: str) -> None
     kept = {g.path for g in guesses(again) if g.is_kept}
     assert [i for i in inlays(again) if not any(f"`{p}`" in i.tooltip for p in kept)] == []
     assert words_besides_numbers(text) == words_besides_numbers(view.source.text)
-
-
-def example(path: Path) -> View:
-    view = look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path))
-    return run(view)
 
 
 def test_a_program_that_would_draw_something_else_is_left_alone() -> None:

@@ -14,8 +14,8 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.tools.llm.aidl import merge
 from tests.amount import tries
+from tests.compiled import EXAMPLES
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))
 TELEPHONE = (Path(__file__).parents[2] / "examples/telephone.aidl").read_text("utf-8")
 
 

@@ -14,7 +14,8 @@ from aidl_lang.tools.ide.preview import preview, set_knob
 from aidl_lang.tools.ide.preview.elements import Slider, Way
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.amount import TRIES_ALL
-from tests.preview.views import EXAMPLES, view_of
+from tests.compiled import EXAMPLES
+from tests.preview.views import view_of
 
 KNOBS = """
 param width = 160mm in 100..240

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
 
 import pytest
 from lxml import etree
@@ -13,8 +12,9 @@ from svgelements import Path as SvgPath
 
 from aidl_lang.tools.ide.preview import LAYERS, elements_at, preview, svg_of
 from aidl_lang.tools.ide.preview.elements import elements
-from aidl_lang.tools.ide.workspace import View, Workspace, look, run
+from aidl_lang.tools.ide.workspace import View
 from tests.compiled import LIGHTER
+from tests.ide.conftest import solved_at
 from tests.preview.views import view_of
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -22,8 +22,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture(scope="module", params=LIGHTER)
 def example(request: pytest.FixtureRequest) -> View:
-    path: Path = request.param
-    return run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))
+    return solved_at(request.param)
 
 
 def svg(view: View, show: tuple[str, ...] = ()) -> etree._Element:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import re
-from pathlib import Path
 
 from aidl_dev.highlighting.codemirror import words
+from tests.documents import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
 PROJECT = ROOT / "editors" / "codemirror"
 

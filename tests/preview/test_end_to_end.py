@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.documents import ROOT
+
 TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")
 ON_FIRST_HOLE = (19 + 4) * math.cos(math.radians(60)), (19 + 4) * math.sin(math.radians(60))
 """A point on the first hole of the dial, whose plate lies in the middle of the base."""

@@ -13,11 +13,11 @@ from aidl_lang.common.colors import COLOR_NAMES
 from aidl_lang.common.source import SourceFile
 from aidl_lang.export.job import Options
 from aidl_lang.pipeline import compile
+from tests.compiled import EXAMPLES
 from tests.preview.conftest import Pane
 from tests.preview.messages import SVG, URI, handle, knob, place, problem
 from tests.preview.scripted import ScriptedHost
 
-EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
 EVIL = "window.harmed = true; fetch('/harm')"
 HTML = "http://www.w3.org/1999/xhtml"
 

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 
-EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
-
 
 def view_of(text: str, last: View | None = None, files: dict[str, str] | None = None) -> View:
     folder = Path("/project")

@@ -21,6 +21,7 @@ from aidl_lang.pipeline import Settings
 from tests.amount import tries
 from tests.checker.checking import broken
 from tests.compiled import EXAMPLES, LIGHTER
+from tests.documents import ROOT
 from tests.property.orders import reordered
 from tests.property.programs import (
     ANY_TEXT,
@@ -32,7 +33,6 @@ from tests.property.programs import (
     sketches,
 )
 
-ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8"))
 TOLERANCE = 1e-6
 SMALL = Settings(building=replace(Settings().building, entities=400, turns=2000, constraints=400, items=2000))

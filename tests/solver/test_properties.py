@@ -17,7 +17,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,6 +26,7 @@ from scipy.optimize import minimize
 
 from aidl_lang.solver import Constraint, Problem, Settings, Solution, solve
 from aidl_lang.solver.analysis import analyse
+from tests.documents import ROOT
 
 from .check import assert_honest, assert_smallest_change, assert_solved, jacobian, values_of
 from .kinds import KINDS
@@ -35,7 +35,6 @@ from .random_problems import Taste, kinds_where, links, profile, sketches
 from .regularity import is_regular, neighbours
 from .sketches import Built, Circle, Link, Point, Sketch
 
-ROOT = Path(__file__).resolve().parents[2]
 CLOSE = 1e-6
 """How far two answers to the same question may be apart, in units of the sketch."""
 EXACTLY = 1e-7

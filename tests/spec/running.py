@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import aidl_lang
 from aidl_lang import pipeline
@@ -44,12 +45,11 @@ class Outcome:
 def run(case: Case) -> Outcome:
     """Compile the program of a case and compare everything that is written about it."""
     outcome = Outcome()
-    source = SourceFile("spec.aidl", case.program.text)
     if case.fixes is not None and not _check_fix(case, outcome):
         return outcome
     if case.formatted is not None:
         _check_format(case, outcome)
-    plain = pipeline.compile(source, MemoryWorld(case.files))
+    source, plain = _compiled(case, case.program.text)
     if not case.pending:
         _check_each_fix(case, source, plain.diagnostics, outcome)
     if case.message is not None:
@@ -68,6 +68,17 @@ def run(case: Case) -> Outcome:
         for claim in expectation.claims:
             _check_claim(claim, compiled, outcome)
     return outcome
+
+
+def _compiled(case: Case, text: str) -> tuple[SourceFile, pipeline.Compiled]:
+    """What comes of a text with the files of a case; a broken one is asked for again by its mended form."""
+    return _compiled_with(text, tuple(case.files.items()))
+
+
+@lru_cache(maxsize=16)
+def _compiled_with(text: str, files: tuple[tuple[str, str], ...]) -> tuple[SourceFile, pipeline.Compiled]:
+    source = SourceFile("spec.aidl", text)
+    return source, pipeline.compile(source, MemoryWorld(dict(files)))
 
 
 def _variant(case: Case, expectation: Expectation, source: SourceFile) -> pipeline.Compiled:
@@ -226,8 +237,7 @@ def _summary(word: str, compiled: pipeline.Compiled) -> str:
 def _check_fix(case: Case, outcome: Outcome) -> bool:
     """The program of a `fixed` block is the one above it with all fixes applied."""
     assert case.fixes is not None
-    source = SourceFile("spec.aidl", case.fixes.code)
-    found = pipeline.compile(source, MemoryWorld(case.files))
+    source, found = _compiled(case, case.fixes.code)
     mended, applied = apply_fixes(source, found.diagnostics)
     if not applied:
         outcome.differs(case.program.at, "the program above offers no fix")
@@ -245,7 +255,7 @@ def _check_each_fix(case: Case, source: SourceFile, found: Sequence[Diagnostic],
         text, applied = apply_fixes(source, [d])
         if not applied or (d.code in _CONFLICTS and sum(each.code in _CONFLICTS for each in found) > 1):
             continue
-        after = pipeline.compile(SourceFile("spec.aidl", text), MemoryWorld(case.files)).diagnostics
+        after = _compiled(case, text)[1].diagnostics
         told = [
             *(["does not mend it"] if _still(d, after) else []),
             *(["brings another error"] if _errors(after) + d.is_error > _errors(found) else []),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,7 @@ def rows(language: str) -> list[Row]:
     return found
 
 
+@lru_cache(maxsize=64)
 def compiled(program: str) -> tuple[pipeline.Compiled, SourceFile]:
     """A program that names no structure stands in a drawing."""
     text = program.replace("\\n", "\n")

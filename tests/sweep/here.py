@@ -53,16 +53,15 @@ class Here:
         pass
 
 
-def sweep(
+def asked(
     folder: Path,
     values: Sequence[str] = ("width=40,80", "style=*"),
     names: Sequence[str] = (),
-    engine: Here | None = None,
     text: str = PLATE,
     table: str | None = None,
     **more: object,
-) -> Session:
-    """Runs a sweep in a folder to its end."""
+) -> Job:
+    """A sweep in a folder, as it is to be run."""
     (folder / "plate.aidl").write_text(text)
     bundle, world, knobs = opened(SourceFile("plate.aidl", text), DiskWorld(folder), pipeline.Settings())
     rows = None
@@ -71,7 +70,7 @@ def sweep(
         rows = read_table(folder / "orders.csv", knobs, world.reads)
     plan = planned(knobs, [axis(*each.split("=", 1), knobs) for each in values], rows)
     wanted = outputs([str(folder / name) for name in names], plan, world.reads)
-    job = Job(
+    return Job(
         plan,
         bundle,
         world,
@@ -81,6 +80,17 @@ def sweep(
         timings=False,
         **more,
     )
-    session = Session(job, engine or Here())
+
+
+def sweep(
+    folder: Path,
+    values: Sequence[str] = ("width=40,80", "style=*"),
+    names: Sequence[str] = (),
+    engine: Here | None = None,
+    text: str = PLATE,
+    **more: object,
+) -> Session:
+    """Runs a sweep in a folder to its end."""
+    session = Session(asked(folder, values, names, text, **more), engine or Here())
     list(session)
     return session

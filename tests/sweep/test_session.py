@@ -17,7 +17,7 @@ import pytest
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.sweeping.session import Session
-from tests.sweep.here import PLATE, Here, sweep
+from tests.sweep.here import PLATE, Here, asked, sweep
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -83,17 +83,16 @@ def test_a_sweep_that_is_broken_off_goes_on(tmp_path: Path) -> None:
     names = ["out/{width}-{style}.svg", "table.csv"]
     whole = tmp_path / "whole"
     whole.mkdir()
-    sweep(whole, ["width=*", "style=*"], names)
+    values = ["width=40,80,120", "style=*"]
+    sweep(whole, values, names)
 
-    job = sweep(tmp_path, ["width=*", "style=*"], names).job
-    (tmp_path / "table.csv").unlink()
-    stopped = Session(job, Here())
+    stopped = Session(asked(tmp_path, values, names), Here())
     assert len(list(islice(stopped, 4))) == 4
     assert not (tmp_path / "table.csv").exists()
     assert (tmp_path / "table.csv.sweep").is_dir()
     engine = Here()
-    session = sweep(tmp_path, ["width=*", "style=*"], names, engine, resumes=True)
-    assert (session.kept >= 4, engine.calls + session.kept) == (True, 10)
+    session = sweep(tmp_path, values, names, engine, resumes=True)
+    assert (session.kept >= 4, engine.calls + session.kept) == (True, 6)
     assert rows(tmp_path / "table.csv") == [
         {name: cell.replace(str(whole), str(tmp_path)) for name, cell in row.items()}
         for row in rows(whole / "table.csv")
@@ -102,8 +101,7 @@ def test_a_sweep_that_is_broken_off_goes_on(tmp_path: Path) -> None:
 
 
 def test_without_resume_it_begins_anew(tmp_path: Path) -> None:
-    job = sweep(tmp_path, names=["table.csv"]).job
-    next(iter(Session(job, Here())))
+    next(iter(Session(asked(tmp_path, names=["table.csv"]), Here())))
     engine = Here()
     assert sweep(tmp_path, names=["table.csv"], engine=engine).kept == 0
     assert engine.calls == 4
@@ -165,10 +163,8 @@ def test_outputs_that_cannot_be_are_refused(tmp_path: Path, name: str, said: str
 
 
 def test_two_runs_give_the_same_bytes(tmp_path: Path) -> None:
-    found = []
-    for values in (["width=*", "style=*"], ["width=*", "style=*"]):
-        sweep(tmp_path, values, ["t.csv", "t.parquet", "s.pdf", "s.png", "s.html"])
-        found.append(
-            [(tmp_path / name).read_bytes() for name in ("t.csv", "t.parquet", "s.pdf", "s.png", "s.html")]
-        )
+    names, found = ["t.csv", "t.parquet", "s.pdf", "s.png", "s.html"], []
+    for _ in range(2):
+        sweep(tmp_path, ["width=40,120", "style=*"], names)
+        found.append([(tmp_path / name).read_bytes() for name in names])
     assert found[0] == found[1]

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.documents import ROOT
+from tests.compiled import EXAMPLES
 from tests.typecheck.checking import checked
-
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.version import __version__
+from tests.documents import ROOT
 
-ROOT = Path(__file__).parents[3]
 EXTENSION = ROOT / "editors" / "vscode"
 PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
 
