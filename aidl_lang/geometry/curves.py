@@ -166,12 +166,6 @@ def round_range(curve: Arc | Circle | Ellipse | EllipseArc) -> tuple[float, floa
     return (curve.first, curve.sweep) if isinstance(curve, EllipseArc) else (0.0, TAU)
 
 
-def _on_ellipse(curve: Ellipse | EllipseArc, u: float) -> Vec:
-    x, y = curve.rx * math.cos(u), curve.ry * math.sin(u)
-    c, s = math.cos(curve.angle), math.sin(curve.angle)
-    return curve.center[0] + c * x - s * y, curve.center[1] + s * x + c * y
-
-
 def point(curve: Piece, t: float) -> Vec:
     """Returns the point at parameter t; the stored ends at 0 and 1."""
     if isinstance(curve, Line):
@@ -182,9 +176,11 @@ def point(curve: Piece, t: float) -> Vec:
     if isinstance(curve, Arc | EllipseArc) and t in (0, 1):
         return curve.end if t else curve.start
     first, sweep = round_range(curve)
-    if isinstance(curve, Ellipse | EllipseArc):
-        return _on_ellipse(curve, first + t * sweep)
     angle = first + t * sweep
+    if isinstance(curve, Ellipse | EllipseArc):
+        x, y = curve.rx * math.cos(angle), curve.ry * math.sin(angle)
+        c, s = math.cos(curve.angle), math.sin(curve.angle)
+        return curve.center[0] + c * x - s * y, curve.center[1] + s * x + c * y
     return (
         curve.center[0] + curve.radius * math.cos(angle),
         curve.center[1] + curve.radius * math.sin(angle),

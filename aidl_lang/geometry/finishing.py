@@ -364,17 +364,12 @@ def fitted(curves: Sequence[Piece], works: Sequence[Work], runs: Sequence[int], 
     sizes: dict[int, float] = {}
     while growing := sorted({run for run in runs if run and run not in sizes}):
         trial = partial(_fit, curves, works, runs, sizes)
-        size = _largest(partial(_level, trial, growing), extent)
+        size = _largest(lambda size: trial(dict.fromkeys(growing, size), growing), extent)  # noqa: B023
         level = dict.fromkeys(growing, size)
         larger = max(size * (1 + _MORE), 2 * _NOTHING * extent)
         stuck = [run for run in growing if not trial(level | {run: larger}, [run])]
         sizes |= dict.fromkeys(stuck or growing, size)
     return _sized(works, runs, sizes)
-
-
-def _level(fits: Callable[[dict[int, float], list[int]], bool], runs: list[int], size: float) -> bool:
-    """Tells whether runs fit that all have one size."""
-    return fits(dict.fromkeys(runs, size), runs)
 
 
 def _sized(works: Sequence[Work], runs: Sequence[int], sizes: Mapping[int, float]) -> list[Work]:

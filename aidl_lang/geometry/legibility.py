@@ -275,19 +275,15 @@ def overhanging_notes(
     """
     holders = Holders(bodies)
     drawn = {g.path: g for s in root.walk() for top in s.drawn for g in top.walk()}
+    letters = {path for path, g in drawn.items() if g.type == LETTERING}
     found: dict[str, tuple[Body, float]] = {}
     for stroke in strokes:
         body = holders.of(stroke) if stroke.role == "drawing" else None
-        if body is None:
-            continue
-        is_stock = bool(body.style.thickness or body.style.material)
-        geometry = drawn.get(stroke.geometry)
-        if not is_stock and (geometry is None or geometry.type != LETTERING):
-            continue
-        far = overhang(stroke.pieces, body.region, partly=not is_stock)
-        far = max(far, found.get(stroke.geometry, (body, 0.0))[1])
-        if far:
-            found[stroke.geometry] = body, far
+        is_stock = body is not None and bool(body.style.thickness or body.style.material)
+        if body is not None and (is_stock or stroke.geometry in letters):
+            far = overhang(stroke.pieces, body.region, partly=not is_stock)
+            if far > found.get(stroke.geometry, (body, 0.0))[1]:
+                found[stroke.geometry] = body, far
     for path, (body, far) in found.items():
         yield Diagnostic(
             "W0763",

@@ -87,13 +87,9 @@ def _beside_arc(arc: Arc, left: float) -> Outline:
     radius = arc.radius - math.copysign(left, left * arc.sweep)
     if radius <= 0:
         return (arc, Line(arc.end, arc.center), Line(arc.center, arc.start))
-    start, end = (_scaled(arc, p, radius) for p in (arc.start, arc.end))
+    share, (x, y) = radius / arc.radius, arc.center
+    start, end = ((x + share * (p[0] - x), y + share * (p[1] - y)) for p in (arc.start, arc.end))
     return _between(arc, Arc(arc.center, radius, start, end, arc.sweep))
-
-
-def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
-    share = radius / arc.radius
-    return arc.center[0] + share * (p[0] - arc.center[0]), arc.center[1] + share * (p[1] - arc.center[1])
 
 
 # --- Curves whose parallels are no curves of their kind ------------------------------------------------

@@ -174,7 +174,9 @@ def _moments(piece: Piece, origin: Vec) -> Moments:
     if isinstance(piece, Bezier):
         return _bezier_moments(piece, origin)
     start, end = ends(piece)
-    chord = _triangle((start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1]))
+    p, q = (start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1])
+    half = (p[0] * q[1] - p[1] * q[0]) / 2
+    chord = half, half * (p[0] + q[0]) / 3, half * (p[1] + q[1]) / 3
     if isinstance(piece, Line):
         return chord
     first, sweep = round_range(piece)
@@ -202,11 +204,6 @@ def _less_sine(angle: float) -> float:
         term *= -angle * angle / (k * (k + 1))
         total += term
     return total
-
-
-def _triangle(p: Vec, q: Vec) -> Moments:
-    a = (p[0] * q[1] - p[1] * q[0]) / 2
-    return a, a * (p[0] + q[0]) / 3, a * (p[1] + q[1]) / 3
 
 
 def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:

@@ -55,6 +55,10 @@ class Nested:
     x: float
     y: float
 
+    @property
+    def moved(self) -> Part:
+        return self.part.moved(Motion(90.0 * self.quarters, self.x, self.y))
+
 
 def turned_box(box: Bounds, quarters: int) -> Bounds:
     """Returns a box turned by quarters about the origin."""
@@ -217,7 +221,7 @@ def laid_out(
 
     return Layout(
         tuple(
-            _drawn(drawing, sheet, places)
+            drawn(drawing, [place.moved for place in places], (0.0, 0.0, *sheet))
             for group in sorted(stocks, key=lambda group: group[0].stock)
             for places in _packed(group, room, gap, nesting(group))
         ),
@@ -336,8 +340,3 @@ def _place(part: Part, cell: Any, gap: int) -> _Place:
     quarters = int((cell.width, cell.height) != _cell(part, gap))
     box = turned_box(part.box, quarters)
     return _Place(part, quarters, (cell.x + gap) / GRID - box[0], (cell.y + gap) / GRID - box[1])
-
-
-def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
-    parts = [place.part.moved(Motion(90.0 * place.quarters, place.x, place.y)) for place in places]
-    return drawn(drawing, parts, (0.0, 0.0, *sheet))
