@@ -55,10 +55,6 @@ class Nested:
     x: float
     y: float
 
-    @property
-    def moved(self) -> Part:
-        return self.part.moved(Motion(90.0 * self.quarters, self.x, self.y))
-
 
 def turned_box(box: Bounds, quarters: int) -> Bounds:
     """Returns a box turned by quarters about the origin."""
@@ -196,6 +192,10 @@ class _Place:
     quarters: int
     x: float
     y: float
+
+    @property
+    def moved(self) -> Part:
+        return self.part.moved(Motion(90.0 * self.quarters, self.x, self.y))
 
 
 def laid_out(
