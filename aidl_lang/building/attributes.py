@@ -390,12 +390,6 @@ def _is_one_of(values: list[Value], words: Sequence[str]) -> bool:
     return meant is not None
 
 
-def _thickness(values: list[Value]) -> str:
-    if (length := _one(values, units.LENGTH)) is None:
-        return "a length above 0, as in `@thickness(3mm)`"
-    return "" if length > 0 else "a thickness above 0"
-
-
 def _depth(values: list[Value]) -> str:
     length, taper = _numbers(values[:1], units.LENGTH), _numbers(values[1:], units.ANGLE)
     wanted = "a length above 0, and for a cone its angle, as in `@depth(2mm)` or `@depth(2mm, 90deg)`"
@@ -476,7 +470,7 @@ def _one(values: list[Value], dimension: units.Dimension) -> float | None:
 
 _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "orientation": _worded(ORIENTATIONS, "one of `top`, `front` and `side`, as in `@orientation(front)`"),
-    "thickness": _thickness,
+    "thickness": _one_number(units.LENGTH, lambda n: n > 0, "a length above 0, as in `@thickness(3mm)`"),
     "depth": _depth,
     "elevation": _one_number(
         units.LENGTH, lambda _: True, "a length, as in `@elevation(18mm)` or `@elevation(-3)`"

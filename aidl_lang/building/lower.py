@@ -270,8 +270,8 @@ class _Lowering:
         """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none, -1
         for the root.
         """
-        around = chain(s)
-        depths = (len(around) - 1 - n for n, each in enumerate(around) if _is_said_rigid(each))
+        said = [each.attributes.get("rigid", (False,)) != (False,) for each in chain(s)]
+        depths = (len(said) - 1 - n for n, is_rigid in enumerate(said) if is_rigid)
         return next((depth or -1 for depth in depths), 0)
 
     def _is_rigid(self, s: Structure) -> bool:
@@ -461,10 +461,6 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
         return children
     without = [child for child in children if child.kind in ("hole", "drawing")]
     return without if len(without) < len(children) else ()
-
-
-def _is_said_rigid(structure: Structure) -> bool:
-    return structure.attributes.get("rigid", (False,)) != (False,)
 
 
 def _is_variable(unknown: Unknown) -> bool:

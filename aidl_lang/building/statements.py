@@ -45,7 +45,9 @@ from aidl_lang.building.values import (
     holds,
     kind_of,
 )
+from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 # --- Names given to values: members of structures and shapes, with and without indices.
@@ -163,15 +165,21 @@ class Assignment:
 
     def _stands(self, value: StructureCopy | Pattern) -> None:
         """Reports an `at` of a thing whose place follows from something else."""
-        name = self.node.name.text
+        name, fix = self.node.name.text, None
         if isinstance(value, Pattern):
             message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
+            match self.node.value, self.node.placement:
+                case ast.Call(ast.Identifier("linear_array" | "grid")) as call, ast.Placement(at, None) if at:
+                    rest = Span(call.span.source, call.span.end - 1, at.span.end)
+                    edit = Edit(rest, f", start: {at.span.text})")
+                    is_placed = any(a.name and a.name.text in ("center", "start") for a in call.arguments)
+                    fix = None if is_placed else Fix("lay it out from there", (edit,), is_sure=True)
         else:
             made = value.source
             source = made.name if isinstance(made, Structure) else made.signature.name
             message = f"`{name}` is a copy, and its place follows from `{source}`"
             hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
-        self.it.report("E0330", message, self.node.placement, hints=[hint])
+        self.it.report("E0330", message, self.node.placement, hints=[hint], fix=fix)
 
     def _pattern(self, pattern: Pattern, indices: tuple[int, ...]) -> Pattern:
         container = self.scope.declaring().container or self.here
