@@ -8,8 +8,8 @@ assembly tram {
     let glass = "#d7e6ea"
     let pane_width = (length - 132) / (windows + 2) - 8
 
-    @color("#a9c3cf") @shade(cream) @stroke(none) @rigid solid scene at fixed((0, 0)) {
-        sky = rectangle(bottom_center: (0, 0), width: length + 120, height: 210)
+    @color("#a9c3cf") @shade(cream) @stroke(none) @clip(scene.sky) @rigid solid scene at fixed((0, 0)) {
+        sky = rectangle(top_center: (0, 210), width: length + 120, height: 250)
         @color("#8d8478") @shade("#5f574e")
         street = rectangle(top_center: (0, 4), width: length + 120, height: 44)
         @color("#3d3833") rail = rectangle(top_center: (0, 0), width: length + 120, height: 3)
