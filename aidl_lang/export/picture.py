@@ -15,20 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks, themes
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import (
-    LETTERS,
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Placing,
-    Text,
-    widened,
-)
+from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.export.svg import gradient_of
 from aidl_lang.export.themes import themed
@@ -371,7 +358,7 @@ def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Are
             paths = {below.path for below in structure.walk()}
             cast = united(*(b.region for b in drawing.bodies if b.path in paths and not b.style.is_clear))
             x, y, dark = (*shadow, _DARK)[:3]
-            for face in cast.mapped(Placing(1.0, (x, y)).piece).faces:
+            for face in cast.mapped(marks.Placing(1.0, (x, y)).piece).faces:
                 yield structure.path, Area(face, "black", None, marks.SHADOW, dark)
 
 

@@ -137,8 +137,11 @@ class Stroke:
     role: str = "drawing"
     over: str | None = None
     faces: tuple[Face, ...] = ()
-    is_area: bool = False
     whole: tuple[Piece, ...] = ()
+
+    @property
+    def is_area(self) -> bool:
+        return bool(self.whole)
 
 
 @record()
@@ -552,11 +555,8 @@ def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
 def _colored(
     structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
 ) -> Iterator[Stroke]:
-    look, region = styled(style, geometry), area.region
-    whole = tuple(geometry.curves())
-    yield Stroke(
-        structure.path, geometry.path, region.pieces, look, faces=region.faces, is_area=True, whole=whole
-    )
+    look, faces, whole = styled(style, geometry), area.region.faces, tuple(geometry.curves())
+    yield Stroke(structure.path, geometry.path, area.region.pieces, look, faces=faces, whole=whole)
     if area.loose:
         yield Stroke(structure.path, geometry.path, area.loose, look)
 
