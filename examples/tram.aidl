@@ -8,20 +8,20 @@ assembly tram {
     let glass = "#d7e6ea"
     let pane_width = (length - 132) / (windows + 2) - 8
 
-    @color("#a9c3cf") @shade(cream) @stroke(none) @clip(scene.sky) @rigid solid scene at fixed((0, 0)) {
-        sky = rectangle(top_center: (0, 210), width: length + 120, height: 250)
+    @color("#a9c3cf") @shade(cream) @stroke(none) @clip(sky) @rigid solid scene at fixed((0, 0)) {
+        sky = rectangle((0, 85), length + 120, 250)
         @color("#8d8478") @shade("#5f574e")
-        street = rectangle(top_center: (0, 4), width: length + 120, height: 44)
+        street = rectangle((0, -18), length + 120, 44)
         @color("#3d3833") rail = rectangle(top_center: (0, 0), width: length + 120, height: 3)
         @color("black") @opacity(0.6) @shade(fade)
-        shadow = ellipse(center: (0, -4), rx: length / 2 + 30, ry: 9)
+        shadow = ellipse((0, -4), length / 2 + 30, 9)
     }
     @color("#2f3338") @rigid solid bogie(radius = 15) {
-        frame = trapezoid(center: origin, bottom_width: 50, top_width: 76, height: 24)
+        frame = trapezoid(origin, 50, 76, 24)
         for i in 0..1 {
-            tyre[i] = circle(center: (48 * i - 24, -12), radius: radius)
+            tyre[i] = circle((48 * i - 24, -12), radius)
             @color("#9aa1a8") @shade(ball)
-            hub[i] = circle(center: (48 * i - 24, -12), radius: 0.6 * radius)
+            hub[i] = circle((48 * i - 24, -12), 0.6 * radius)
         }
     }
     front = bogie() at (110, 0)
@@ -29,12 +29,15 @@ assembly tram {
 
     @color("#3d434a") solid pantograph {
         arms = thick(polyline([(-16, 0), (26, 24), (0, 48)]), 3)
-        shoe = rounded_rectangle(center: (0, 50), width: 56, height: 5, radius: 2)
+        shoe = rounded_rectangle((0, 50), 56, 5, 2)
     }
     @color(paint) @shade(slope) @rigid solid body {
-        hull = rounded_rectangle(center: origin, width: length, height: 92, radius: 16)
-        @color(cream) band = rectangle(center: (0, -17), width: length, height: 5)
-        @color(cream) drawing lettering { name = text("CITY LINE 17", center: (0, -30), height: 9) }
+        hull = rounded_rectangle(origin, length, 92, 16)
+        @color(cream) solid trim {
+            band = rectangle((0, -17), length, 5)
+            lamps = linear_array(circle(4), n: 2, pitch: length - 28, center: (0, -31))
+            drawing lettering { name = text("CITY LINE 17", (0, -31), 9) }
+        }
     }
     for i in 0..1 {
         @color(glass) @shade(darker(glass)) solid door[i] {
@@ -44,9 +47,9 @@ assembly tram {
     }
     for i in 0..windows + 1 {
         @color(glass) @shade(darker(glass)) @rigid solid pane[i] {
-            window = rounded_rectangle(center: origin, width: pane_width, height: 36, radius: 6)
+            window = rounded_rectangle(origin, pane_width, 36, 6)
             @color("white") @opacity(0.4) @stroke(none)
-            gleam = parallelogram(center: (-4, 0), width: 6, height: 36, shift: 10)
+            gleam = parallelogram((-4, 0), 6, 36, 10)
         }
         constrain pane[i].top == body.top - 14
     }

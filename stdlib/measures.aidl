@@ -6,6 +6,7 @@ fn offset_from(p: point, l: line) = cross(l.end - l.start, p - l.start) / l.leng
 /// How far apart two things are: points, centres of things, or perpendicular to an endless line.
 ///
 /// The value may stand in the call, which also takes `at_least` and `at_most`. `clearance` measures outlines.
+/// With an outline to go `along`, it is the way on it, the shorter one, between the places nearest to the two.
 ///
 /// ```aidl
 /// drawing d {
@@ -23,6 +24,7 @@ fn distance(a, b) = norm(center_of(b) - center_of(a))
 fn distance(a, l: line) = abs(offset_from(center_of(a), l))
 fn distance(l: line, a) = abs(offset_from(center_of(a), l))
 fn distance(a: line, b: line) = abs(offset_from(b.midpoint, a))
+fn distance(a, b, along) = way_between(center_of(a), center_of(b), along)
 constraint distance(a, b, value: length) { distance(a, b) == value }
 constraint distance(a, b, at_least: length) { distance(a, b) >= at_least }
 constraint distance(a, b, at_most: length) { distance(a, b) <= at_most }

@@ -222,6 +222,25 @@ fn spot(of: box, x: number, y: number) = of.bottom_left + (of.width * x, of.heig
 /// ```
 fn spots(of: box, points: list) = [spot(of, p.x / 1mm, p.y / 1mm) for p in points]
 
+/// The point of an outline that has an `x` or a `y`, or lies a length `along` it from its start.
+///
+/// Of several with that `x` it is the uppermost, with that `y` the rightmost; `side: bottom` or `side: left` takes
+/// the last on the other side.
+///
+/// ```aidl
+/// solid hull {
+///     shell = path(
+///         (-60, 20), line_to(60, 20), smooth_to((40, -12), leaving: -100deg), line_to(-45, -12), close()
+///     )
+///     @color("white") port = circle(center: shell.point_on(x: 20, side: bottom).up(10), radius: 4)
+///     @color("firebrick") lamp = circle(center: shell.point_on(y: 5), radius: 3)
+///     @color("gold") buoy = circle(center: shell.point_on(along: 30), radius: 3)
+/// }
+/// ```
+fn point_on(of, x: length, side: text = "top") = point_at(of, x, "x", choice(side, ["bottom", "top"]) == "top")
+fn point_on(of, y: length, side: text = "right") = point_at(of, y, "y", choice(side, ["left", "right"]) == "right")
+fn point_on(of, along: length) = point_at(of, along)
+
 /// The endless upright line through a point, to be symmetric about or to lie on.
 ///
 /// ```aidl

@@ -5,9 +5,12 @@ What came out is measured in the drawing, which knows nothing of the formulas.
 
 from __future__ import annotations
 
+import math
 import re
 
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
 
 import aidl_lang
 
@@ -70,3 +73,35 @@ def test_holes_are_taken_from_the_area_and_their_edges_added_to_the_perimeter() 
     assert model.measure().area == pytest.approx(700, rel=1e-9)
     model = aidl_lang.compile(f"solid s {{\n g = {plate}\n {holes}\n constrain perimeter(s) == 150\n}}")
     assert model.measure().perimeter == pytest.approx(150, rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", [shape for shape in SHAPES if shape != "ring"])  # which is no one line
+def test_a_point_of_an_outline_is_found_by_its_way_and_by_its_x(shape: str) -> None:
+    written = re.sub(r"guess\((\d+)\)", r"\1", SHAPES[shape])
+    text = f"""drawing d {{
+        g = {written}
+        a = point(g.point_on(along: 1))
+        b = point(g.point_on(along: 12))
+        same = point(g.point_on(x: b.x, side: bottom))
+        other = point(g.point_on(x: b.x))
+        assert abs(distance(a, b, along: g) - 11) < 1e-6
+        assert min(distance(b, same), distance(b, other)) < 1e-6
+    }}"""
+    model = aidl_lang.compile(text)
+    assert model.ok, (text, [str(d) for d in model.diagnostics])
+
+
+def test_the_way_along_an_ellipse_is_its_integral() -> None:
+    text = """drawing d {
+        rim = ellipse(center: fixed((0, 0)), rx: fixed(30), ry: fixed(15))
+        top = point(fixed((0, 15)))
+        spoke = line((0, 0), guess((20, 11)))
+        constrain distance(top, spoke.end, along: rim) == 25
+        constrain spoke.length == 40
+    }"""
+    model = aidl_lang.compile(text)
+    assert model.ok, [str(d) for d in model.diagnostics]
+    (end,) = (g.values["end"] for g in model["d"].geometry if g.name == "spoke")
+    foot = minimize_scalar(lambda t: math.dist(end, (30 * math.cos(t), 15 * math.sin(t))), (0.2, 0.6)).x
+    way, _ = quad(lambda t: math.hypot(30 * math.sin(t), 15 * math.cos(t)), foot, math.pi / 2)
+    assert way == pytest.approx(25, abs=1e-5)

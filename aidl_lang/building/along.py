@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -39,8 +39,13 @@ _STEPS = 60
 _FOLLOWING = 3
 _NEAR = 1e-15
 _STALLED = 1e-6
+_THREE, _SIX = ex.constant(3.0), ex.constant(6.0)
 _QUARTER = 4
 """Cubics to a quarter of an ellipse, which are off by 7e-8 of its radius."""
+
+
+Met = tuple[Place, list[Expression]]
+"""A place on a curve, and what is 0 as long as it lies there."""
 
 
 @record(slots=True)
@@ -158,23 +163,80 @@ class Cubic:
 
     def _speed(self, t: Expression) -> Expression:
         x, y = self._derivative(t)
-        return ex.mul(ex.constant(3.0), ex.apply("hypot", x, y))
+        return ex.mul(_THREE, ex.apply("hypot", x, y))
+
+    def _velocity(self, t: Expression) -> Place:
+        x, y = self._derivative(t)
+        return ex.mul(_THREE, x), ex.mul(_THREE, y)
 
     def _derivative(self, t: Expression) -> Place:
         s = ex.sub(ex.ONE, t)
         return _weighed(self._ways, (ex.mul(s, s), ex.mul(ex.constant(2.0), ex.mul(s, t)), ex.mul(t, t)))
 
+    def crossings(self, axis: int, at: Expression) -> Iterator[Met]:
+        """Yields the places that have an x (`axis` 0) or a y."""
+        import numpy as np
+
+        a, b, c, d = (p[axis].value for p in self.points)
+        for root in np.roots((d - 3 * c + 3 * b - a, 3 * (c - 2 * b + a), 3 * (b - a), a - at.value)):
+            if abs(root.imag) > _MEETS or not -_MEETS <= root.real <= 1 + _MEETS:
+                continue
+            if abs(self._derivative(ex.constant(root.real))[axis].value) > _STALLED * self.length.value:
+                t, rest = self._solved(
+                    root.real, lambda t: (ex.sub(at, self.at(t)[0][axis]), self._velocity(t)[axis])
+                )
+                yield self.at(t)[0], [rest, *_beyond(t, ex.ONE)]
+
+    def foot(self, p: Place) -> tuple[Expression, Place, Expression]:
+        """Returns the way up to the place nearest to a point, the place, and what is 0 as long as it is."""
+
+        def off(t: Expression) -> Place:
+            (x, y), (u, v), speed = way(self.at(t)[0], p), self._velocity(t), self._speed(t)
+            bend = (way(*pair) for pair in pairwise(self._ways))
+            k, j = _weighed(tuple(bend), (ex.mul(_SIX, ex.sub(ex.ONE, t)), ex.mul(_SIX, t)))
+            turning = ex.div(ex.add(ex.mul(x, k), ex.mul(y, j)), speed)
+            return ex.div(ex.add(ex.mul(x, u), ex.mul(y, v)), speed), ex.sub(speed, turning)
+
+        shares = (k / _STEPS for k in range(_STEPS + 1))
+        first = min(shares, key=lambda t: math.dist(_value(self.at(ex.constant(t))[0]), _value(p)))
+        first = min(max(self._solved(first, off)[0].value, 0.0), 1.0)
+        t, rest = self._solved(first, off)
+        t = _within(t, ex.ONE)
+        span = self._spans[sum(s.t0 <= first for s in self._spans[1:-1])]
+        own = ex.add(span.before, self._between(span.t0, ex.sub(t, ex.constant(span.t0)), span.nodes))
+        return own, self.at(t)[0], rest
+
+    def _solved(
+        self, first: float, off: Callable[[Expression], tuple[Expression, Expression]]
+    ) -> tuple[Expression, Expression]:
+        """Returns the parameter near a first one where something is 0, and what is left of it there; `off`
+        tells it of a parameter, and how fast it falls.
+        """
+        t = ex.constant(first)
+        for _ in range(2 * _FOLLOWING):  # the point may come from further off
+            t = ex.add(t, ex.div(*off(t)))
+        return t, off(t)[0]
+
     def at(self, t: Expression) -> tuple[Place, Expression]:
         """Returns the place and the direction at a parameter."""
-        s, three = ex.sub(ex.ONE, t), ex.constant(3.0)
+        s = ex.sub(ex.ONE, t)
         s2, t2 = ex.mul(s, s), ex.mul(t, t)
-        weights = ex.mul(s2, s), ex.mul(three, ex.mul(s2, t)), ex.mul(three, ex.mul(s, t2)), ex.mul(t2, t)
+        weights = ex.mul(s2, s), ex.mul(_THREE, ex.mul(s2, t)), ex.mul(_THREE, ex.mul(s, t2)), ex.mul(t2, t)
         x, y = self._derivative(t)
         return _weighed(self.points, weights), ex.atan2(y, x)
 
 
 def way(a: Place, b: Place) -> Place:
     return ex.sub(b[0], a[0]), ex.sub(b[1], a[1])
+
+
+def _within(own: Expression, whole: Expression) -> Expression:
+    return ex.apply("minimum", ex.apply("maximum", own, ex.ZERO), whole)
+
+
+def _beyond(own: Expression, whole: Expression) -> list[Expression]:
+    """Returns by how much a way is before its start and behind its end."""
+    return [ex.apply("maximum", ex.ZERO, over) for over in (ex.apply("neg", own), ex.sub(own, whole))]
 
 
 def _weighed(points: Sequence[Place], weights: Sequence[Expression]) -> Place:
@@ -245,6 +307,46 @@ class Stretch:
         out = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
         u, v = ex.turned(ex.cos(turn), ex.sin(turn), *out)
         return ex.add(self.center[0], u), ex.add(self.center[1], v)
+
+    def crossings(self, axis: int, at: Expression) -> Iterator[Met]:
+        """Yields the places that have an x (`axis` 0) or a y."""
+        others: list[Expression] = []
+        run = way(self.start, self.last)
+        if self.center is None:
+            if abs(run[axis].value) > _STALLED * self.length.value:
+                share = ex.div(ex.sub(at, self.start[axis]), run[axis])
+                others = [ex.add(self.start[1 - axis], ex.mul(share, run[1 - axis]))]
+        else:
+            radius, off = ex.apply("hypot", *way(self.center, self.start)), ex.sub(at, self.center[axis])
+            square = ex.sub(ex.apply("square", radius), ex.apply("square", off))
+            if square.value >= 0:
+                reach = ex.apply("sqrt", ex.apply("maximum", ex.ZERO, square))
+                others = [join(self.center[1 - axis], reach) for join in (ex.add, ex.sub)]
+        for other in others:
+            place = (at, other) if axis == 0 else (other, at)
+            unmet = _beyond(self._beside(place), self.length)
+            if self.center is not None:
+                unmet.append(ex.sub(ex.apply("hypot", *way(self.center, place)), radius))
+            if all(abs(e.value) <= _MEETS for e in unmet):
+                yield place, unmet
+
+    def foot(self, p: Place) -> tuple[Expression, Place, Expression]:
+        """Returns the way up to the place nearest to a point, the place, and 0: it is known at once."""
+        own = _within(self._beside(p), self.length)
+        return own, self.at(own), ex.ZERO
+
+    def _beside(self, p: Place) -> Expression:
+        """Returns the length up to the place nearest to a point, on the whole line or circle."""
+        if self.center is None:
+            x, y = way(self.start, p)
+            return ex.add(ex.mul(x, ex.cos(self.heading)), ex.mul(y, ex.sin(self.heading)))
+        (u, v), (x, y) = way(self.center, self.start), way(self.center, p)
+        sense = ex.constant(math.copysign(1.0, self.bow.value))
+        turn = ex.mul(sense, ex.sub(ex.atan2(y, x), ex.atan2(v, u)))
+        whole, swept = ex.constant(360.0), ex.mul(sense, ex.mul(self.bow, self.length))
+        left = ex.half(ex.sub(whole, swept))  # beside the arc, the nearer of its ends is meant
+        turn = ex.sub(ex.apply("mod", ex.add(turn, left), whole), left)
+        return ex.div(turn, ex.mul(sense, self.bow))
 
     def direction(self, way: Expression) -> Expression:
         return ex.add(self.heading, ex.mul(self.bow, way))
@@ -322,6 +424,19 @@ class Way:
             return stretch.at(own), stretch.direction(own), unmet
         t, rest = stretch.parameter(own)
         return *stretch.at(t), [*unmet, rest]
+
+    def up_to(self, p: Place) -> Place:
+        """Returns the way up to the place nearest to a point, and what is 0 as long as it is that."""
+        feet = []
+        for before, stretch in zip(self._lengths, self.stretches, strict=False):
+            own, place, rest = stretch.foot(p)
+            feet.append((ex.apply("hypot", *way(place, p)), ex.add(before, own), rest))
+        nearest, *found = feet[0]
+        for away, *other in feet[1:]:
+            nearer = ex.sub(nearest, away)
+            found = [ex.apply("select", nearer, *pair) for pair in zip(other, found, strict=True)]
+            nearest = ex.apply("minimum", nearest, away)
+        return found[0], found[1]
 
     def at(self, way: Expression) -> tuple[Place, Expression]:
         """Returns the place at a length from the start, wherever the joints come to lie, and the direction of
@@ -418,11 +533,20 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
     return Way(tuple(walked), meets and (len(walked) > 1 or isinstance(walked[0], Cubic)))
 
 
+def crossings(curves: Sequence[Geometry], here: Structure, axis: int, at: Expression) -> list[Met]:
+    """Returns the places of curves that have an x (`axis` 0) or a y, in order of the other coordinate."""
+    pieces = (pair[0] for c in curves for pair in _stretches(c, here))
+    found = (met for piece in pieces for met in piece.crossings(axis, at))
+    return sorted(found, key=lambda met: met[0][1 - axis].value)
+
+
 _Pair = tuple["Stretch | Cubic", "Stretch | Cubic"]
 
 
 def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
     """Returns a curve in stretches, forwards and backwards; those without length are left out."""
+    if curve.type == "circle":
+        return [(_circle(curve, here), _circle(curve, here))]
     if curve.type not in FREE_KINDS:
         return [(_stretch(curve, here), _stretch(curve, here, reverse=True))]
     if curve.type == "ellipse":

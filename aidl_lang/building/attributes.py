@@ -24,15 +24,15 @@ from aidl_lang.syntax import ast
 
 @record()
 class StatedClip:
-    """A `@clip`, and the scope in which it is read."""
+    """A `@clip`, and the scope in which it is read: that of its structure, or of what makes the copy."""
 
     attribute: ast.Attribute
     scope: Scope
 
 
 def settle_clips_in(it: Interpreter, parent: Structure) -> None:
-    """Clips the structures in one to its own outlines or itself, before boxes are asked for."""
-    for s in parent.children:
+    """Clips a structure and those in it to its own outlines or itself, before boxes are asked for."""
+    for s in (parent, *parent.children):
         if (stated := it.clips.get(s)) is not None and _names_own(stated, parent):
             _settle(it, s, stated)
 
@@ -248,13 +248,15 @@ OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATE
 """Attributes that a geometry may have for itself, by the kind of its structure."""
 
 
-def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
-    """Reads the attributes that the checker has accepted."""
+def read_attributes(
+    it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope, body: Scope
+) -> None:
+    """Reads the attributes that the checker has accepted; `@clip` is read in the scope of the body."""
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
         elif name == CLIP:
-            it.clips[s] = StatedClip(attribute, scope)  # until all geometry is there; of two the later counts
+            it.clips[s] = StatedClip(attribute, body)  # until all geometry is there; of two the later counts
             s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in attribute.arguments)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)

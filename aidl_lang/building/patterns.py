@@ -84,7 +84,8 @@ class _Call:
 
     def check_followed(self, off: Sequence[Expression]) -> None:
         """Has it looked at in the drawing that these are 0, as they are at the first guesses."""
-        parts = tuple(Comparison("==", e, ex.ZERO, LENGTH) for e in off)
+        if not (parts := tuple(Comparison("==", e, ex.ZERO, LENGTH) for e in off if not e.is_constant)):
+            return
         said = self.it.said(self.node, self.env)
         followed = Assertion(self.env.here, Condition("and", parts), None, *said, is_followed=True)
         self.it.assertions.append(followed)
@@ -310,8 +311,7 @@ def _along(call: _Call) -> Value:
         return turned(heading, about, to) if turns else Motion(about, to)
 
     made = call.laid_out(((i,), motion(place)) for i, place in enumerate(places))
-    if off := [e for e in off if not e.is_constant]:
-        call.check_followed(off)
+    call.check_followed(off)
     return made
 
 
@@ -363,7 +363,18 @@ _MOST_ALONG = 20_000
 
 
 def _way(call: _Call) -> Way | None:
-    from aidl_lang.building.along import FREE_KINDS, KINDS, way_along
+    from aidl_lang.building.along import way_along
+
+    curves = _curves(call)
+    found = way_along(curves, call.env.here) if curves else None
+    if curves is not None and found is None:
+        what = "`along` follows one line, open or closed, and this is none or several"
+        call.wrong(what, "name one of them")
+    return found
+
+
+def _curves(call: _Call) -> list[Geometry] | None:
+    from aidl_lang.building.along import FREE_KINDS, KINDS
 
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
@@ -373,11 +384,41 @@ def _way(call: _Call) -> Way | None:
         hint = "follow a `path` or `polyline` near it, or what the outline is made of"
         call.wrong(f"`along` follows curves, and this is {with_article(given[0].type)}", hint)
         return None
-    found = way_along(curves, call.env.here) if curves else None
-    if found is None:
-        what = "`along` follows one line, open or closed, and this is none or several"
-        call.wrong(what, "name one of them")
-    return found
+    return curves
+
+
+def _point_at(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
+    from aidl_lang.building.along import crossings
+
+    call = _Call(it, a, node, env, Geometry(node.callee.text, env.here, it.place(node)))
+    at, axis = a["at"], a.get("axis")
+    assert isinstance(at, Num)
+    if axis is None:
+        if (way := _way(call)) is None:
+            return NOTHING
+        place, _, off = way.followed(at.expression)
+    else:
+        assert isinstance(axis, TextVal)
+        curves = _curves(call)
+        found = crossings(curves or (), env.here, int(axis.value == "y"), at.expression)
+        if not found:
+            what = f"no point of this outline has {axis.value} = {at.value:g}"
+            return call.wrong(what, "name an outline that reaches there") if curves is not None else NOTHING
+        place, off = found[-1 if a["last"] is True else 0]
+    call.check_followed(off)
+    return point(*place)
+
+
+def _way_between(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """Returns the length of a curve between the places nearest to two points; the shorter of two ways."""
+    call = _Call(it, a, node, env, Geometry(node.callee.text, env.here, it.place(node)))
+    if (way := _way(call)) is None:
+        return NOTHING
+    (first, off), (last, more) = (way.up_to(xy(a[name])) for name in ("a", "b"))
+    call.check_followed([off, more])
+    between = ex.apply("abs", ex.sub(last, first))
+    return length(ex.apply("minimum", between, ex.sub(way.length, between)) if way.is_closed else between)
 
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
@@ -405,6 +446,8 @@ FUNCTIONS = {
     "linear_array": _pattern(_linear_array),
     "grid": _pattern(_grid),
     "polar_array": _pattern(_polar_array),
+    "point_at": _point_at,
+    "way_between": _way_between,
 }
 
 

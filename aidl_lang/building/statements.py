@@ -248,7 +248,7 @@ class Assignment:
         copier = Copier(self.it, None, inside, span=self.node.span)
         name = indexed(self.node.name.text, indices)
         made = copier.structure(source, self.here, name, motion.frame(frame))
-        read_attributes(self.it, made, self.node.attributes, self.scope)
+        read_attributes(self.it, made, self.node.attributes, self.scope, self.scope)
         return made
 
 

@@ -141,7 +141,7 @@ def build_structure(
     if node.kind == "hole":
         tell_plain_cuts(it, node, body, "" if parent is None else parent.kind)
     # what is said of the root may name its params, as nothing is around it
-    read_attributes(it, structure, node.attributes, body if parent is None else scope)
+    read_attributes(it, structure, node.attributes, body if parent is None else scope, body)
     finish(it, structure)
     return structure
 
@@ -177,8 +177,8 @@ def instantiate(
                 value = default_of(it, parameter, kind, Env(body, structure, Reach.OWN))
             given = (a.value for a in template.node.arguments if a.name is not None and a.name.text == key)
             body.values[key] = passed(it, key, value, structure, here, next(given, parameter))
-        read_attributes(it, structure, definition.attributes, body)
-        read_attributes(it, structure, node.attributes, scope)  # in the scope outside the template
+        read_attributes(it, structure, definition.attributes, body, body)
+        read_attributes(it, structure, node.attributes, scope, scope)  # in the scope outside the template
         if definition.placement is not None:
             _place(it, structure, definition.placement, body)
         if framed is not None:

@@ -108,8 +108,8 @@ RESULTS: Mapping[str, Type] = {
     "channels": ListType(NumberType(None)),
     **{kind: GeometryType(kind) for kind in PRIMITIVES},
     "area": NumberType(None),
-    "perimeter": _LENGTH,
-    "centroid": _POINT,
+    **dict.fromkeys(("centroid", "point_at"), _POINT),
+    **dict.fromkeys(("perimeter", "way_between"), _LENGTH),
     "clearance": _LENGTH,
     "bb": BoxType(),
 }
@@ -198,6 +198,9 @@ grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, cente
 along(x, curve, n: integer, inset: length?, turn: bool?, margin: length?)
 along(x, curve, pitch: length, inset: length?, turn: bool?, margin: length?)
 polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
+point_at(curve, at: length)
+point_at(curve, at: length, axis: text, last)
+way_between(a: point, b: point, curve)
 area(of)
 perimeter(of)
 centroid(of)

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking import complaints
-from aidl_lang.checking.builtins import ATTRIBUTES, DERIVING, EVERYWHERE, PATTERNS, WORDED, is_word
+from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, DERIVING, EVERYWHERE, PATTERNS, WORDED, is_word
 from aidl_lang.checking.complaints import ATTRIBUTES_MEANT, without_idle
 from aidl_lang.checking.imports import (
     ImportedModules,
@@ -153,8 +153,8 @@ class Resolver:
         for parameter in node.parameters or ():
             self._parameter(parameter, node, inner)
         if isinstance(node, ast.Structure):
-            if node.parameters is not None:
-                self._attributes(node.attributes, inner)  # a template's may be its parameters
+            if node.parameters is not None:  # a template's may be its parameters
+                self._attributes([a for a in node.attributes if not _is_clip(a)], inner)
             kind, name = SymbolKind.STRUCTURE, node.name
             inner.own_name = Symbol(name.text, kind, node, scope.owner, [name], [node])
         before, self.is_ordered = self.is_ordered, True
@@ -164,8 +164,10 @@ class Resolver:
             self._declare(inner, node.body.statements)
             self.is_ordered = not isinstance(node, ast.ConstraintDefinition)
             self._statements(node.body.statements, inner)
-            if isinstance(node, ast.Structure) and self._is_root(node, scope):
-                self._attributes(node.attributes, inner)  # nothing is around it that could be named
+            if isinstance(node, ast.Structure):
+                # a clip is read inside its structure; around the root there is nothing that could be named
+                is_root = node.parameters is None and isinstance(scope.owner, ast.Module)
+                self._attributes([a for a in node.attributes if is_root or _is_clip(a)], inner)
             complaints.check_aliases(self, inner)
         self.is_ordered = before
 
@@ -226,13 +228,9 @@ class Resolver:
         if isinstance(node, ast.Structure):
             self._indices(node.indices, scope)
             self._placement(node.placement, scope)
-            if node.parameters is None and not self._is_root(node, scope):
-                self._attributes(node.attributes, scope)
+            if node.parameters is None and not isinstance(scope.owner, ast.Module):
+                self._attributes([a for a in node.attributes if not _is_clip(a)], scope)
         self.definition(node, scope)
-
-    @staticmethod
-    def _is_root(node: ast.Structure, scope: SymbolScope) -> bool:
-        return node.parameters is None and isinstance(scope.owner, ast.Module)
 
     def _for(self, node: ast.For, scope: SymbolScope) -> None:
         self.expression(node.iterable, scope)
@@ -421,6 +419,10 @@ class Resolver:
     def has_said_enough(self) -> bool:
         """True if there are more errors than will be reported, so that no more need be looked for."""
         return self.resolution.errors > MOST_ERRORS
+
+
+def _is_clip(attribute: ast.Attribute) -> bool:
+    return word_meant(attribute.name.text, (CLIP,)) is not None
 
 
 def _is_of_missing(node: ast.Call, scope: SymbolScope) -> bool:

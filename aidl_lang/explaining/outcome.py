@@ -111,8 +111,8 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
 
 
 def _lost_way(assertion: Assertion) -> Diagnostic:
-    """Returns the diagnostic for a pattern along a curve that came out in another form."""
-    message = f"the members of `{assertion.text}` are not at equal ways: the curve was solved to another form"
+    """Returns the diagnostic for places along a curve that came out in another form."""
+    message = f"`{assertion.span.one_line}` is not where it says: the curve was solved to another form"
     label = "laid out along the curve as it was written"
     hint = "write the points of the curve near to where the constraints bring them"
     return Diagnostic("E0608", message, assertion.span, label, hints=(hint,))

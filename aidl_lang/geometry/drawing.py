@@ -48,6 +48,7 @@ from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, unio
 from aidl_lang.geometry.legibility import (
     COVERED,
     Ground,
+    colliding_notes,
     covered_note,
     crossing_notes,
     lettering_note,
@@ -271,6 +272,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground, order)
         notes += overhanging_notes(root, bodies, strokes)
+        notes += colliding_notes(root, strokes, network.tolerance)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.walls import thin_wall_notes
 

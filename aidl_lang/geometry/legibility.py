@@ -25,6 +25,7 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
+    all_bounds,
     are_near,
     derivative,
     part,
@@ -294,6 +295,46 @@ def overhanging_notes(
                 f"or have it end at the edge: `@clip({body.path.rpartition('.')[2]})` before the drawing",
             ),
         )
+
+
+_Boxed = tuple[Bounds, Sequence[Piece], Sequence[Bounds]]
+
+
+def colliding_notes(
+    root: SolvedStructure, strokes: Sequence[Stroke], tolerance: float
+) -> Iterator[Diagnostic]:
+    """Yields a warning for each text that runs into another of its structure; a like one is its shadow."""
+    for structure in root.walk():
+        tops = {g.path: top for top in structure.drawn for g in top.walk() if g.type == LETTERING}
+        pieces: dict[str, list[Piece]] = defaultdict(list)
+        for stroke in strokes if tops else ():
+            if stroke.geometry in tops:
+                pieces[tops[stroke.geometry].path] += stroke.pieces
+        texts = {top.path: top for top in tops.values()}
+        boxed = {path: (union_bounds(found := all_bounds(of)), of, found) for path, of in pieces.items()}
+        order = sorted(boxed, key=lambda path: boxed[path][0])
+        for k, one in enumerate(order):
+            for other in order[k + 1 :]:
+                if boxed[other][0][0] > boxed[one][0][2]:
+                    break
+                if _run_together(boxed[one], boxed[other], tolerance):
+                    first, second = sorted((texts[one], texts[other]), key=lambda top: top.path)
+                    yield Diagnostic(
+                        "W0764",
+                        f"the letters of `{first.path}` and `{second.path}` run into each other",
+                        second.span,
+                        hints=("move one of them, or write both with less `height`",),
+                    )
+
+
+def _run_together(one: _Boxed, other: _Boxed, tolerance: float) -> bool:
+    (box, own, boxes), (around, others, theirs) = one, other
+    size, like = ((len(of), b[2] - b[0], b[3] - b[1]) for b, of in ((box, own), (around, others)))
+    if not are_near(box, around) or np.allclose(size, like, atol=tolerance):
+        return False
+    near = [(p, b) for p, b in zip(own, boxes, strict=True) if are_near(b, around)]
+    pairs = ((p, q) for q, b in zip(others, theirs, strict=True) for p, c in near if are_near(b, c))
+    return any(meet(p, q, tolerance) for p, q in pairs)
 
 
 # --- Outlines that cross themselves: their parts alternate, so what should be material may be open.

@@ -10,7 +10,7 @@ assembly excavator {
     @color(dark) @rigid solid tracks {
         belt = slot(length: track, width: 46)
         @color(steel) @shade(ball)
-        hubs = linear_array(circle(radius: 10), n: 5, pitch: (track - 46) / 4)
+        hubs = linear_array(circle(10), n: 5, pitch: (track - 46) / 4)
         @color(steel) @stroke(3mm) @dash(7, 5) drawing tread { edge = offset(belt, -3) }
     }
     @color(paint) @shade(slope) solid house {
@@ -18,8 +18,8 @@ assembly excavator {
             (-70, 0), right(130), up(34), line_to(50, 52), left(90), line_to(-70, 44), close()
         )
         @color(dark) drawing details {
-            vents = hatching(rectangle(center: (-52, 26), width: 24, height: 22), pitch: 4)
-            name = text("AX 30", center: (0, 26), height: 11)
+            vents = hatching(rectangle((-52, 26), 24, 22), pitch: 4)
+            name = text("AX 30", (0, 26), 11)
         }
     }
     @color(darker(paint)) @shade(slope) @rigid solid cab {
@@ -37,7 +37,7 @@ assembly excavator {
     @color(paint) @shade(round) solid stick {
         construction way = line((0, 0), length: 120, angle: -105deg)
         arm = strip(way.start, way.end, start_width: 12, end_width: 11)
-        @color(steel) @shade(ball) pin = circle(center: between(way.start, way.end, 0.2), radius: 5)
+        @color(steel) @shade(ball) pin = circle(between(way.start, way.end, 0.2), 5)
     }
     @color(steel) @shade(slope) solid bucket {
         bowl = path(
