@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.evaluate import evaluate
@@ -42,7 +43,7 @@ def _names_own(stated: StatedClip, parent: Structure) -> bool:
     values = [argument.value for argument in stated.attribute.arguments]
     if len(values) != 1 or not isinstance(name := values[0], ast.Name):
         return False
-    scope = next((scope for scope in stated.scope.chain() if name.text in scope.values), None)
+    scope = stated.scope.find(name.text)
     named = None if scope is None else scope.values[name.text]
     is_outline = scope is not None and scope.container is parent and isinstance(named, Geometry)
     return is_outline or named is parent
@@ -209,20 +210,15 @@ def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
 
 def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:
     """Returns structures each behind the next, and the last behind the first; none if there are none."""
-    done: set[Structure] = set()
-    for start in stated:
-        way: dict[Structure, Iterator[Structure]] = {} if start in done else {start: iter(stated[start])}
-        while way:
-            last = next(reversed(way))
-            following = next(way[last], None)
-            if following is None:
-                done.add(last)
-                del way[last]
-            elif following in way:
-                found = list(way)
-                return found[found.index(following) :]
-            elif following not in done:
-                way[following] = iter(stated.get(following, ()))
+    order: TopologicalSorter[Structure] = TopologicalSorter()
+    for back, fronts in stated.items():
+        for front in fronts:
+            order.add(front, back)
+    try:
+        order.prepare()
+    except CycleError as e:
+        found: list[Structure] = e.args[1]
+        return found[:-1]
     return []
 
 

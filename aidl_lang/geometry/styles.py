@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from heapq import heapify, heappop, heappush
+from graphlib import TopologicalSorter
 from typing import TypeAlias
 
 from aidl_lang.building.attributes import FILLING
@@ -341,25 +341,16 @@ def _ordered(beside: Sequence[SolvedStructure]) -> Sequence[SolvedStructure]:
         for name in STACKING
     }
     wanted = _wanted(places, said)
-    above: dict[str, set[str]] = {name: set() for name in places}
+    order: TopologicalSorter[str] = TopologicalSorter(dict.fromkeys(places, ()))
     for (own, name), others in said.items():
         for other in others:
-            back, front = (own, other) if name == BEHIND else (other, own)
-            above[back].add(front)
-    below = dict.fromkeys(places, 0)
-    for fronts in above.values():
-        for front in fronts:
-            below[front] += 1
-    ready = [(wanted[name], places[name], name) for name, count in below.items() if not count]
-    heapify(ready)
-    found: list[SolvedStructure] = []
-    while ready:
-        _, place, name = heappop(ready)
-        found.append(beside[place])
-        for front in above[name]:
-            below[front] -= 1
-            if not below[front]:
-                heappush(ready, (wanted[front], places[front], front))
+            order.add(*((other, own) if name == BEHIND else (own, other)))
+    order.prepare()
+    found, ready = [], list[str]()
+    while order.is_active():
+        ready = sorted((*ready, *order.get_ready()), key=lambda name: (wanted[name], places[name]))
+        found.append(beside[places[ready[0]]])
+        order.done(ready.pop(0))
     return found
 
 
