@@ -10,7 +10,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.attributes import FILLING
+from aidl_lang.building.attributes import FILLING, OF_AREAS
 from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import FLOATS, Lowered, Placing
@@ -259,7 +259,9 @@ class _Reader:
         looks: dict[str, tuple[Scalar, ...]] = {}
         s = g.owner if g.container is g.owner else None
         while s is not None and s.kind == "solid" and s.parent is not None and s.parent.kind == "solid":
-            looks = {n: v for n, v in self._attributes(s).items() if n in (*FILLING, "opacity")} | looks
+            stated = self._attributes(s)
+            names = ("opacity",) if stated.keys().isdisjoint(FILLING) else OF_AREAS
+            looks = {n: v for n, v in stated.items() if n in names} | looks
             s = s.parent
         return looks
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from graphlib import TopologicalSorter
 from typing import TypeAlias
 
-from aidl_lang.building.attributes import FILLING
+from aidl_lang.building.attributes import FILLING, OF_AREAS
 from aidl_lang.checking.builtins import BEHIND, IN_FRONT, STACKING
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic
@@ -267,7 +267,7 @@ def idle_looks(
         drawn = [below for below in s.walk() if below.geometry]
         if s.kind == "solid" and any(below.kind == "solid" for below in drawn):
             is_area = not s.attributes.keys().isdisjoint(FILLING)
-            return [w for w in words if w not in FILLING and not (w == "opacity" and is_area)]
+            return [w for w in words if not (is_area and w in OF_AREAS)]
         if "color" in words and any(below.kind == "drawing" for below in drawn):
             words.remove("color")  # the drawing takes it
         return words
