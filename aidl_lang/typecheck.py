@@ -141,8 +141,8 @@ class Checker:
                 self._structure(node)
             case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
                 self._definition(node)
-            case ast.For(variables, iterable, body):
-                self.infer.iterable(iterable, len(variables))
+            case ast.For(iterable=iterable, body=body):
+                self.infer.iterable(iterable)
                 self._statements(body.statements)
             case ast.If(test, then, otherwise):
                 self.infer.test(test)
@@ -246,8 +246,8 @@ class Checker:
 
     def _item(self, item: ast.Statement) -> None:
         match item:
-            case ast.For(variables, iterable, body):
-                self.infer.iterable(iterable, len(variables))
+            case ast.For(iterable=iterable, body=body):
+                self.infer.iterable(iterable)
                 self._items(body)
             case ast.If(test, then, otherwise):
                 self.infer.test(test)

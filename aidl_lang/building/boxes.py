@@ -48,17 +48,14 @@ class Box:
 
     def field(self, name: str) -> Num | PointVal | None:
         """Returns one of `FIELDS`; None for another name."""
+        low, high = ("left", "right") if name in ("width", "center_x") else ("bottom", "top")
         match name:
             case "left" | "right" | "top" | "bottom":
                 return length(self.side(name))
-            case "width":
-                return length(ex.sub(self.side("right"), self.side("left")))
-            case "height":
-                return length(ex.sub(self.side("top"), self.side("bottom")))
-            case "center_x":
-                return length(ex.half(ex.add(self.side("left"), self.side("right"))))
-            case "center_y":
-                return length(ex.half(ex.add(self.side("bottom"), self.side("top"))))
+            case "width" | "height":
+                return length(ex.sub(self.side(high), self.side(low)))
+            case "center_x" | "center_y":
+                return length(ex.half(ex.add(self.side(low), self.side(high))))
             case "center":
                 return self._at("center", "center")
             case _:
@@ -102,10 +99,7 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
     elif isinstance(source, Geometry):
         yield from ex.unknowns(defining(source, here))
     elif isinstance(source, Structure):
-        for structure in chain(source):
-            if structure is here:
-                break
-            frame = structure.frame
+        for frame in (s.frame for s in chain(source, here)):
             yield from ex.unknowns([frame.x, frame.y, frame.rotation])
         yield from _interior(source)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.boxes import box_of
-from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, owners_of, run
+from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, items_of, owners_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.curves import ask_to_turn, is_of_directions
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
@@ -37,11 +37,14 @@ from aidl_lang.building.values import (
     RecordVal,
     Value,
     members,
+    numbers_of,
     spliced,
 )
 from aidl_lang.building.wording import all_of
 from aidl_lang.checking.builtins import COPYING
 from aidl_lang.checking.library import signature
+from aidl_lang.checking.resolve import is_definition
+from aidl_lang.checking.rules import blocks
 from aidl_lang.checking.types import (
     ANY,
     Binding,
@@ -137,17 +140,12 @@ def bound(
         is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
         if is_flag and isinstance(value, Condition):  # decides how something is made, so it has to be known
             value = truth(it, value, at)
-        if signature.name in COPYING and _follows_measure(it, value, at):
+        if signature.name in COPYING and any(refuses_measure(it, n, at.span) for n in numbers_of(value)):
             return None
         result[name] = value
     if signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
-
-
-def _follows_measure(it: Interpreter, value: Value, node: ast.Node) -> bool:
-    numbers = (value.x, value.y) if isinstance(value, PointVal) else (value,)
-    return any(isinstance(number, Num) and refuses_measure(it, number, node.span) for number in numbers)
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
@@ -166,11 +164,9 @@ def _as_list(it: Interpreter, value: Value, kind: ListType, node: ast.Node, env:
     if isinstance(kind.element, PointType) and (items := members(value)) is not None:
         points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
         return ListVal(tuple(p for p in points if p is not None))
-    if isinstance(value, Array):
-        return ListVal(tuple(value.items()))
-    if isinstance(value, RangeVal):
-        numbers = run(it, value, node)
-        return ListVal(tuple(numbers)) if numbers is not None else None
+    if isinstance(value, Array | RangeVal):
+        held = items_of(it, value, node)
+        return ListVal(tuple(held)) if held is not None else None
     return value
 
 
@@ -213,7 +209,7 @@ def invoke(
                 ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
             return condition
         case ast.ShapeDefinition():
-            return _shape(it, candidate, definition, arguments, node, env)
+            return _shape(it, candidate, arguments, node, env)
         case ast.Structure():
             return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
 
@@ -280,14 +276,9 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
         it.report("E0343", message, node, hints=[hint])
 
 
-def _shape(
-    it: Interpreter,
-    candidate: Candidate,
-    definition: ast.ShapeDefinition,
-    arguments: Arguments,
-    node: ast.Call,
-    env: Env,
-) -> Value:
+def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: ast.Call, env: Env) -> Value:
+    definition = candidate.signature.node
+    assert isinstance(definition, ast.ShapeDefinition)
     it.count_entity(node)
     geometry = Geometry(definition.name.text, env.here, it.place(node))
     scope = Scope(candidate.scope, geometry)
@@ -332,7 +323,7 @@ def _bind_shape(
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]
-    placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points], geometry.owner)
+    placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points])
     moved = dict(zip((n for n, _ in points), placed, strict=True))
     for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
         value = given[name]
@@ -413,19 +404,12 @@ def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope
 
 def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Statement]) -> None:
     for node in statements:
-        match node:
-            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
-                _hoist(it, scope, node)
-            case ast.Structure(parameters=parameters) if parameters is not None:
-                _hoist(it, scope, node)
-            case ast.Alias(name=name, target=target):
-                scope.aliases[name.text] = target.text
-
-
-def _hoist(it: Interpreter, scope: Scope, node: ast.Callable) -> None:
-    if node not in it.signatures:
-        it.signatures[node] = signature(node)
-    scope.define(Candidate(it.signatures[node], scope))
+        if isinstance(node, ast.Alias):
+            scope.aliases[node.name.text] = node.target.text
+        elif isinstance(node, ast.Callable) and is_definition(node):
+            if node not in it.signatures:
+                it.signatures[node] = signature(node)
+            scope.define(Candidate(it.signatures[node], scope))
 
 
 def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:
@@ -457,9 +441,6 @@ def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
                     yield node.name.text
             case ast.Var() if not indexed:
                 yield node.name.text
-            case ast.For(body=body):
-                yield from declared_names(body, indexed=indexed)
-            case ast.If(then=then, otherwise=otherwise):
-                for branch in (then, otherwise):
-                    if branch is not None:
-                        yield from declared_names(branch, indexed=indexed)
+            case ast.For() | ast.If():
+                for inner in blocks(node):
+                    yield from declared_names(inner, indexed=indexed)

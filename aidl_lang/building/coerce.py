@@ -13,7 +13,6 @@ from aidl_lang.building.model import Geometry, Structure, common_ancestor
 from aidl_lang.building.state import Arguments, Env, Function, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
-    Array,
     Exactness,
     ListVal,
     Nothing,
@@ -27,14 +26,16 @@ from aidl_lang.building.values import (
     length,
     members,
     number,
+    numbers_of,
     type_of,
+    with_numbers,
 )
 from aidl_lang.checking import rules
-from aidl_lang.checking.rules import shown
+from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import find, nearest
-from aidl_lang.common.prose import first_few, ticked
+from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -45,15 +46,7 @@ from aidl_lang.syntax import ast
 
 def as_written(value: Value) -> Value:
     """Returns a value out of reach as the numbers it has at the first guesses."""
-    match value:
-        case Num():
-            return _guessed(value)
-        case PointVal(x, y):
-            return PointVal(_guessed(x), _guessed(y))
-        case ListVal(items):
-            return ListVal(tuple(map(as_written, items)))
-        case _:
-            return value
+    return with_numbers(value, _guessed)
 
 
 def _guessed(value: Num) -> Num:
@@ -79,15 +72,10 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
 
 def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
     """Yields the structures other than `here` whose unknowns a number, a point or a holder of these needs."""
-    match value:
-        case Num(expression=e):
-            yield from (u.owner for u in ex.unknowns([e]) if u.owner is not here)
-        case PointVal(x, y):
-            yield from owners_of(x, here)
-            yield from owners_of(y, here)
-        case ListVal() | Array() | RecordVal():
-            for item in value.fields.values() if isinstance(value, RecordVal) else members(value) or ():
-                yield from owners_of(item, here)
+    for n in numbers_of(value):
+        yield from (u.owner for u in ex.unknowns([n.expression]) if u.owner is not here)
+    for item in value.fields.values() if isinstance(value, RecordVal) else members(value) or ():
+        yield from owners_of(item, here)
 
 
 def all_within(it: Interpreter, values: Iterable[Value], node: ast.Node, env: Env) -> bool:
@@ -123,7 +111,7 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
     if found.dimension not in (None, PLAIN, LENGTH):
         it.misfit(rules.no_coordinate(shown(node), type_of(found)), node)
         return None
-    return Num(found.expression, LENGTH, found.status)
+    return length(found.expression, found.status)
 
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
@@ -159,8 +147,7 @@ def _side_of_box(node: ast.Node) -> Fix | None:
     """Returns the fix `plate.left` → `plate.bb.left`; None for other names."""
     if not isinstance(node, ast.Member) or node.name.text not in SIDES:
         return None
-    at = node.name.span
-    return Fix("take the side of the box", (Edit(Span(at.source, at.start, at.start), "bb."),))
+    return Fix("take the side of the box", (Edit(place_before(node.name), "bb."),))
 
 
 def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVal | None:
@@ -172,7 +159,7 @@ def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVa
             at = look(it, value, node, env)["at"]
             return at if isinstance(at, PointVal) else None
         case ListVal((Num() as x, Num() as y)):
-            return PointVal(Num(x.expression, LENGTH, x.status), Num(y.expression, LENGTH, y.status))
+            return PointVal(length(x.expression, x.status), length(y.expression, y.status))
         case _:
             return None
 
@@ -266,10 +253,9 @@ def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value
     """Returns a field of a record by its name, in any spelling that `find` accepts."""
     key = find(name, value.fields)
     if key is None:
-        like = nearest(name, value.fields)
         known = first_few(ticked(value.fields), 12, "")
-        hint = f"did you mean `{like[0]}`?" if like else f"it has {known}" if known else "it is empty"
-        it.report("E0202", f"this record has no `{name}`", node, hints=[hint])
+        hints = did_you_mean(nearest(name, value.fields)) or [f"it has {known}" if known else "it is empty"]
+        it.report("E0202", f"this record has no `{name}`", node, hints=hints)
         return NOTHING
     return value.fields[key]
 

@@ -12,11 +12,12 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
 from aidl_lang.building.curves import direction, distance, polar
 from aidl_lang.building.expression import Expression
-from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
+from aidl_lang.building.model import Constraint, Geometry, Holder, Measurement, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
 from aidl_lang.building.wording import all_of, compare_numbers
 from aidl_lang.checking.builtins import SIGNATURES
+from aidl_lang.checking.rules import place_before
 from aidl_lang.checking.types import PRIMITIVES, NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.diagnostics import Edit, Fix
@@ -37,8 +38,6 @@ _CODE = "W0503"
 _BY_CENTER = ("center", "start", "end")
 _BY_MIDDLE = ("start", "mid", "end")
 
-_HINT = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`"
-
 
 def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, Value]) -> None:
     """Warns of an arc whose unnamed first point is taken as its centre, if that is not as far from both."""
@@ -53,12 +52,17 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     if any(d.code == _CODE and d.span == it.place(node) for d in it.diagnostics):
         return  # reported in an earlier turn of a loop
     is_through = differ(start, across) <= differ(start, end)
-    is_plain = _is_plain(node)
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
     far = f"the start is {start:g} from the centre and the end {end:g}"
     message = f"the points of `{node.callee.text}` are centre, start and end, and here {far}"
-    hint = f"or write `{_named(node, other)}` if that is meant" if is_plain else _HINT
-    it.report(_CODE, message, node, hints=[hint], fix=_fix(node, meant) if is_plain else None)
+    hint, fix = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`", None
+    if _is_plain(node):
+        points = node.arguments[:3]
+        said = ", ".join(f"{name}: {p.span.one_line}" for name, p in zip(other, points, strict=True))
+        hint = f"or write `{node.callee.text}({said})` if that is meant"
+        edits = tuple(Edit(place_before(p), f"{name}: ") for name, p in zip(meant, points, strict=True))
+        fix = Fix(f"name them `{meant[0]}`, `{meant[1]}` and `{meant[2]}`", edits)
+    it.report(_CODE, message, node, hints=[hint], fix=fix)
 
 
 def _apart(a: PointVal, b: PointVal) -> float:
@@ -74,17 +78,6 @@ def _is_plain(node: ast.Call) -> bool:
     """Tells whether the three points are the first arguments of the call, all without a name."""
     points = node.arguments[:3]
     return node.receiver is None and len(points) == 3 and all(p.name is None for p in points)
-
-
-def _named(node: ast.Call, names: tuple[str, ...]) -> str:
-    inside = ", ".join(f"{n}: {a.span.one_line}" for n, a in zip(names, node.arguments, strict=False))
-    return f"{node.callee.text}({inside})"
-
-
-def _fix(node: ast.Call, names: tuple[str, ...]) -> Fix:
-    places = [Span(a.span.source, a.span.start, a.span.start) for a in node.arguments[:3]]
-    edits = tuple(Edit(at, f"{name}: ") for at, name in zip(places, names, strict=True))
-    return Fix(f"name them `{names[0]}`, `{names[1]}` and `{names[2]}`", edits)
 
 
 # --- Drawings of other programs in a program: one geometry each, of which the parts are views.
@@ -143,8 +136,8 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
         hint = f"write {-value.value:g}; directions belong to angles and positions"
         it.report("E0515", message, holder.span, hints=[hint])
     if expression.is_constant and value.status in (Exactness.NUMBER, Exactness.GUESS):
-        kept, owner = value.status is Exactness.NUMBER, holder.owner
-        expression = it.unknown(value.value, holder, name, owner=owner, dimension=dimension, kept=kept)
+        kept = value.status is Exactness.NUMBER
+        expression = it.unknown(value.value, holder, name, dimension=dimension, kept=kept)
         it.became(value, expression, holder, name, dimension)
     return Num(expression, dimension, Exactness.REFERENCE)
 
@@ -154,7 +147,7 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
-    made = it.unknown(value.value, holder, name, owner=holder.owner, dimension=ANGLE)
+    made = it.unknown(value.value, holder, name, dimension=ANGLE)
     assert isinstance(made.payload, ex.Unknown)
     made.payload.locked = made.payload.exact = not rotatable and value.status is not Exactness.GUESS
     it.became(value, made, holder, name, ANGLE)
@@ -162,13 +155,7 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
 
 
 def positions(
-    it: Interpreter,
-    points: Sequence[PointVal],
-    holder: Geometry | Structure,
-    names: Sequence[str],
-    owner: Structure,
-    *,
-    edges: bool = True,
+    it: Interpreter, points: Sequence[PointVal], holder: Holder, names: Sequence[str], *, edges: bool = True
 ) -> list[PointVal]:
     """Returns points given as positions to one constructor; literal ones move as one.
 
@@ -183,11 +170,10 @@ def positions(
     before: tuple[PointVal, PointVal, str] | None = None
     for at, name in zip(points, names, strict=True):
         if edges and literal(at) and before is not None and _differ(before[0], at):
-            made = _beyond(it, before, at, holder, name, owner)
+            made = _beyond(it, before, at, holder, name)
         else:
-            x = _coordinate(it, "x", at.x, anchors, holder, name, owner)
-            y = _coordinate(it, "y", at.y, anchors, holder, name, owner)
-            made = point(x, y)
+            x = _coordinate(it, "x", at.x, anchors, holder, name)
+            made = point(x, _coordinate(it, "y", at.y, anchors, holder, name))
         if literal(at):
             before = (at, made, name)
         it.became_point(at, made, holder, name)
@@ -208,19 +194,12 @@ def _differ(a: PointVal, b: PointVal) -> bool:
 
 
 def _beyond(
-    it: Interpreter,
-    before: tuple[PointVal, PointVal, str],
-    at: PointVal,
-    holder: Geometry | Structure,
-    name: str,
-    owner: Structure,
+    it: Interpreter, before: tuple[PointVal, PointVal, str], at: PointVal, holder: Holder, name: str
 ) -> PointVal:
     """Returns a literal point by its distance and direction from the literal point before it."""
     written, base, since = before
     way, angle = (
-        it.unknown(
-            n.value, holder, f"{name}.{what}", owner=owner, dimension=n.dimension, kept=True, since=since
-        )
+        it.unknown(n.value, holder, f"{name}.{what}", dimension=n.dimension, kept=True, since=since)
         for n, what in zip(_way(written, at), ("length", "angle"), strict=True)
     )
     return polar(base, way, angle)
@@ -236,23 +215,21 @@ def _coordinate(
     axis: str,
     number: Num,
     anchors: dict[str, tuple[Num, Expression, str]],
-    holder: Geometry | Structure,
+    holder: Holder,
     name: str,
-    owner: Structure,
 ) -> Expression:
     """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
     if number.status >= Exactness.FIXED:
         return solvable(it, number, holder.span)
     if axis not in anchors or number.status is Exactness.GUESS:
-        made = it.unknown(number.value, holder, f"{name}.{axis}", owner=owner, dimension=LENGTH)
+        made = it.unknown(number.value, holder, f"{name}.{axis}", dimension=LENGTH)
         anchors.setdefault(axis, (number, made, name))
         return made
     first, base, since = anchors[axis]
     offset = number.value - first.value
     if Exactness.PARAM in (number.status, first.status):
         return ex.add(base, ex.constant(offset))
-    field = f"{name}.d{axis}"
-    kept = it.unknown(offset, holder, field, owner=owner, dimension=LENGTH, kept=True, since=since)
+    kept = it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
     return ex.add(base, kept)
 
 
@@ -272,7 +249,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     return point(*loose_place(it, at, g))
 
 
-def loose_place(it: Interpreter, at: PointVal, of: Geometry | Structure) -> tuple[Expression, Expression]:
+def loose_place(it: Interpreter, at: PointVal, of: Holder) -> tuple[Expression, Expression]:
     """Returns the coordinates of a point or a frame: exact ones as they are, else unknowns `x` and `y`."""
     owner, moved = (of.owner, None) if isinstance(of, Geometry) else (of.parent or of, of)
 
@@ -287,7 +264,7 @@ def loose_place(it: Interpreter, at: PointVal, of: Geometry | Structure) -> tupl
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
     """Returns the named point arguments as positions of one geometry; a missing one is guessed at (0, 0)."""
-    found = positions(it, [_written(a, name) for name in names], g, names, g.owner)
+    found = positions(it, [_written(a, name) for name in names], g, names)
     return dict(zip(names, found, strict=True))
 
 
@@ -391,7 +368,7 @@ def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
     x = (start.x.value + end.x.value) / 2 + height * c
     y = (start.y.value + end.y.value) / 2 + height * s
     center = PointVal(Num(ex.constant(x), LENGTH), Num(ex.constant(y), LENGTH))
-    g.fields["center"] = positions(it, [center], g, ["center"], g.owner)[0]
+    g.fields["center"] = positions(it, [center], g, ["center"])[0]
 
 
 def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> None:
@@ -410,7 +387,7 @@ def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     direction that may be left out stays 0 until something asks for another.
     """
     points, numbers = _given(g.type)
-    placed = positions(it, [_written(a, name) for name in points], g, points, g.owner, edges=False)
+    placed = positions(it, [_written(a, name) for name in points], g, points, edges=False)
     g.fields = dict(zip(points, placed, strict=True))
     for name, kind, is_optional in numbers:
         if is_optional and kind.dimension == ANGLE:

@@ -396,10 +396,10 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
             return xy(value)
         case Structure():
             return convert(*NOWHERE, value, here)
-        case StructureCopy(Structure() as source, Motion() as motion):
-            return motion.place(*convert(*NOWHERE, source, here))
-        case StructureCopy(_, Motion() as motion):
-            return motion.place(*NOWHERE)
+        case StructureCopy(source, motion):
+            return motion.place(
+                *(convert(*NOWHERE, source, here) if isinstance(source, Structure) else NOWHERE)
+            )
         case Geometry():
             if (known := _own_centre(it, value, node, here)) is not None:
                 return xy(known)

@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     convert_point,
     own_geometry,
 )
-from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, numbers_of, point
 from aidl_lang.checking.types import Signature, fields_of
 from aidl_lang.checking.units import ANGLE, MaybeDimension
 from aidl_lang.common.records import record
@@ -56,11 +56,7 @@ def is_reflected(owner: Structure, here: Structure) -> bool:
     if owner is here:
         return False
     meeting = common_ancestor(owner, here)
-    flips = 0
-    for start in (owner, here):
-        path = chain(start)
-        flips += sum(s.frame.mirrored for s in path[: path.index(meeting)])
-    return flips % 2 == 1
+    return sum(s.frame.mirrored for start in (owner, here) for s in chain(start, meeting)) % 2 == 1
 
 
 def view(geometry: Geometry, here: Structure) -> dict[str, Value]:
@@ -130,10 +126,7 @@ def defining(geometry: Geometry, here: Structure) -> list[Expression]:
     """Returns every number that defines a geometry, compound ones through their parts and arguments."""
     found: list[Expression] = []
     for value in view(geometry, here).values():
-        if isinstance(value, Num):
-            found.append(value.expression)
-        elif isinstance(value, PointVal):
-            found += [value.x.expression, value.y.expression]
+        found += [n.expression for n in numbers_of(value)]
     for part in own_geometry(geometry.parts, geometry):
         found += defining(part, here)
     return found

@@ -30,10 +30,12 @@ from aidl_lang.building.values import (
     Value,
     kind_of,
     number,
+    numbers_of,
     type_of,
 )
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import EDITS
+from aidl_lang.checking.rules import blocks
 from aidl_lang.checking.types import Binding, PointType, given_to
 from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.names import fold
@@ -103,11 +105,8 @@ def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> froze
                 path := _path(it, _target(call))
             ) is not None:
                 found.add(path[0])
-            case ast.For(body=body):
-                found |= _edited_names(it, body.statements)
-            case ast.If(then=then, otherwise=otherwise):
-                found |= _edited_names(it, then.statements)
-                found |= _edited_names(it, otherwise.statements) if otherwise else set()
+            case ast.For() | ast.If():
+                found |= {name for block in blocks(statement) for name in _edited_names(it, block.statements)}
     it.edited_names[id(statements)] = frozenset(found)
     return it.edited_names[id(statements)]
 
@@ -250,12 +249,10 @@ def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
     """Reports an edit of a thing with nothing of its own to change."""
     word, other = _asked(cause, name)
     source: Geometry | Structure | Instantiation | None = None
-    if isinstance(value, Structure):
+    if isinstance(value, Structure | StructureCopy):
         source = value.source
     elif isinstance(value, Geometry):
         source = value.recipe.sources[0] if value.recipe is not None else value.source or value
-    elif isinstance(value, StructureCopy):
-        source = value.source
     if isinstance(value, Pattern):
         message = f"`{name}` follows from a pattern: its members have no place of their own"
         hint = f"change its centre, its pitch or its radius, or make a copy: `other = {other}`"
@@ -270,8 +267,7 @@ def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
 
 def referred(value: PointVal | Num) -> str | None:
     """Returns what a number or a point refers to; None if it was written in numbers."""
-    numbers = (value.x, value.y) if isinstance(value, PointVal) else (value,)
-    found = next(ex.unknowns([n.expression for n in numbers]), None)
+    found = next(ex.unknowns([n.expression for n in numbers_of(value)]), None)
     if found is None:
         return None
     path = found.path.partition(".")[2]
@@ -283,7 +279,7 @@ def frame_edited(
 ) -> tuple[PointVal, Num | None]:
     """Returns the place of a structure, with the edits below it applied."""
     assert s.parent is not None
-    motion = motion_of(it, edits, s, (at.x.expression, at.y.expression), s.parent)
+    motion = motion_of(it, edits, s, xy(at), s.parent)
     if motion.scale.value != 1.0:
         message = f"`{s.name}` is a structure, and its contents have the sizes that are written in it"
         hint = f"make a copy of another size: `{s.name}_2 = copy({s.name}, scale: …, at: …)`"
@@ -375,29 +371,17 @@ def edited(
         return value
     match value:
         case PointVal():
-            return _edited_point(it, node.name.text, value, edits, env, cause, placed)
+            if (source := referred(value)) is not None:
+                follows(it, cause, node.name.text, source)
+                return value
+            start = placed.motion if placed is not None else STILL
+            moved = motion_of(it, edits, value, xy(value), env.here, start).point(value)
+            return placed.point(moved) if placed is not None else moved
         case Geometry(source=None, recipe=None, name=None):
             return _Editing(it, node, value, edits, env, cause, placed).run()
         case _:
             refuse(it, cause, node.name.text, value)
             return value
-
-
-def _edited_point(
-    it: Interpreter,
-    name: str,
-    at: PointVal,
-    edits: Sequence[EditCall],
-    env: Env,
-    cause: ast.Node,
-    placed: GeometryPlacement | None,
-) -> Value:
-    if (source := referred(at)) is not None:
-        follows(it, cause, name, source)
-        return at
-    motion = placed.motion if placed is not None else STILL
-    moved = motion_of(it, edits, at, (at.x.expression, at.y.expression), env.here, motion).point(at)
-    return placed.point(moved) if placed is not None else moved
 
 
 @record(frozen=False)
@@ -436,7 +420,7 @@ class _Editing:
         made.known_as = None
         asked = self.placed.turn if self.placed is not None else None
         if asked is not None and asked.status is Exactness.GUESS:
-            turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
+            turn = self.it.unknown(motion.turn.value, made, "rotation", dimension=ANGLE)
             motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
         turned.source = None  # to the author it is what was written, and no copy
@@ -523,20 +507,12 @@ def _is_same(a: Geometry, b: Geometry) -> bool:
     if a.type != b.type or a.clockwise != b.clockwise:
         return False
     pairs = [(n, v, b.fields[n]) for n, v in a.fields.items() if n in b.fields]
-    size = max([1.0, *(abs(x) for _, v, _ in pairs for x in _values(v))])
+    size = max([1.0, *(abs(x.value) for _, v, _ in pairs for x in numbers_of(v))])
     for name, v, w in pairs:
-        for x, y in zip(_values(v), _values(w), strict=True):
-            away = (x - y + 180.0) % 360.0 - 180.0 if name in DIRECTIONS else x - y
+        for x, y in zip(numbers_of(v), numbers_of(w), strict=True):
+            away = x.value - y.value
+            if name in DIRECTIONS:
+                away = (away + 180.0) % 360.0 - 180.0
             if not abs(away) <= _CLOSE * size:
                 return False
     return True
-
-
-def _values(value: Value) -> tuple[float, ...]:
-    match value:
-        case PointVal(x, y):
-            return x.value, y.value
-        case Num():
-            return (value.value,)
-        case _:
-            return ()

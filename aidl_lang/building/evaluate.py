@@ -36,6 +36,7 @@ from aidl_lang.building.values import (
     number,
     spliced,
     type_of,
+    with_numbers,
 )
 from aidl_lang.building.wording import compare, conjunction, holds, negation
 from aidl_lang.checking import rules, units
@@ -213,7 +214,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if isinstance(value, Array):
         if (position,) in value.members:
             return value.members[(position,)]
-        if (row := value.row(position)) is not None:
+        if (row := value.row(position)).members:
             return row
         if position >= 0:
             return no_index(it, node, sorted({k[0] for k in value.members}), position)
@@ -232,7 +233,7 @@ def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
     if isinstance(value, Nothing) or node.operator == "+":
         return value
     if isinstance(value, PointVal):
-        return PointVal(_negative(value.x), _negative(value.y))
+        return with_numbers(value, _negative)
     found = numeric(it, value, node.operand, env)
     return _negative(found) if found else NOTHING
 
@@ -257,13 +258,13 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
         return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
     if a is not None or b is not None:
-        return _vector(it, node, a if a is not None else left, b if b is not None else right, env)
+        return _vector(it, node, a if a is not None else left, b if b is not None else right)
     x = numeric(it, left, node.left, env)
     y = numeric(it, right, node.right, env)
     return arithmetic(it, node.operator, x, y, node) if x is not None and y is not None else NOTHING
 
 
-def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value, env: Env) -> Value:
+def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value) -> Value:
     """Evaluates points as vectors: sum, difference, and product or quotient with a number."""
     op = node.operator
     if isinstance(left, PointVal) and isinstance(right, PointVal) and op in "+-":
@@ -355,8 +356,7 @@ def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
     values = [evaluate(it, operand, env) for operand in node.operands]
     result: Value = True
     for i, operator in enumerate(node.operators):
-        sides = node.operands[i : i + 2]
-        pair = compare(it, operator, values[i], values[i + 1], node, env, *sides)
+        pair = compare(it, operator, values[i], values[i + 1], node, env, node.operands[i : i + 2])
         result = conjunction(it, "and", result, pair, node)
     return result
 
@@ -365,10 +365,10 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
     value, container = evaluate(it, node.value, env), evaluate(it, node.container, env)
     if isinstance(value, Nothing) or isinstance(container, Nothing):
         return NOTHING
+    sides = node.value, node.container
     if isinstance(container, RangeVal):
-        low = compare(it, ">=", value, container.start, node, env, node.value, node.container)
-        relation = "<" if container.exclusive else "<="
-        high = compare(it, relation, value, container.end, node, env, node.value, node.container)
+        low = compare(it, ">=", value, container.start, node, env, sides)
+        high = compare(it, "<" if container.exclusive else "<=", value, container.end, node, env, sides)
         return conjunction(it, "and", low, high, node)
     items = members(container)
     if items is None:
@@ -376,7 +376,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         return NOTHING
     result: Value = False
     for item in items:
-        equal = compare(it, "==", value, item, node, env, node.value, node.container)
+        equal = compare(it, "==", value, item, node, env, sides)
         result = conjunction(it, "or", result, equal, node)
     return result
 

@@ -10,7 +10,7 @@ from functools import partial
 from aidl_lang.building import coerce, copies, patterns
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
-from aidl_lang.building.coerce import as_point, as_written, constant, look, numeric
+from aidl_lang.building.coerce import as_point, as_text, as_written, constant, look, numeric
 from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
@@ -31,6 +31,7 @@ from aidl_lang.building.values import (
     members,
     number,
     point,
+    with_numbers,
 )
 from aidl_lang.building.wording import compare_numbers
 from aidl_lang.checking import rules, units
@@ -116,21 +117,12 @@ def color_of(it: Interpreter, values: Sequence[Value], node: ast.Node) -> str | 
                 return None
             plain.append(known)
         else:
-            plain.append(_text(value))
+            text = as_text(value)
+            plain.append(text if text is not None else kind_of(value))
     color = css_color(plain)
     if color is None:
         _unknown(it, plain, node)
     return color
-
-
-def _text(value: Value) -> str:
-    match value:
-        case TextVal(text):
-            return text
-        case bool():
-            return str(value).lower()
-        case _:
-            return kind_of(value)
 
 
 def _unknown(it: Interpreter, values: Sequence[str | float], node: ast.Node) -> None:
@@ -287,17 +279,13 @@ def _rounded(function: Callable[[float], float]) -> Function:
 
 
 def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    items: Sequence[Value] | None
-    match values := a["values"]:
-        case TextVal(text):
-            return number(float(len(text)))
-        case RangeVal():
-            items = coerce.run(it, values, node)
-        case _:
-            items = members(values)
-            if items is None:
-                what = f"the members of a list or the letters of a text, and this is {kind_of(values)}"
-                it.report("E0302", f"`len` counts {what}", node)
+    values = a["values"]
+    if isinstance(values, TextVal):
+        return number(float(len(values.value)))
+    items = coerce.items_of(it, values, node)
+    if items is None and not isinstance(values, RangeVal):
+        what = f"the members of a list or the letters of a text, and this is {kind_of(values)}"
+        it.report("E0302", f"`len` counts {what}", node)
     return number(float(len(items))) if items is not None else NOTHING
 
 
@@ -307,8 +295,7 @@ def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     assert isinstance(word, TextVal)
     meant = find(word.value, words) or find(_SAME_WORD.get(word.value, ""), words)
     if meant is None:
-        like = nearest(word.value, words)
-        hints = [f'did you mean `"{like[0]}"`?'] if like else []
+        hints = did_you_mean(f'"{like}"' for like in nearest(word.value, words))
         allowed = ", ".join(f'`"{w}"`' for w in words)
         message = f'"{word.value}" is not one of the words that are meant here'
         it.report("E0516", message, node, hints=[*hints, f"it is one of {allowed}"])
@@ -322,22 +309,12 @@ _SAME_WORD = {"middle": "center", "centre": "center", "horizontal": "x", "vertic
 def _mark(status: Exactness) -> Function:
     """Makes `fixed(x)` or `guess(x)`: the value with another status, points and lists by member."""
 
-    def mark(value: Value) -> Value:
-        match value:
-            case Num(expression, dimension, _):
-                return Num(expression, dimension, status)
-            case PointVal(x, y):
-                return PointVal(*(Num(c.expression, c.dimension, status) for c in (x, y)))
-            case ListVal(items):
-                return ListVal(tuple(map(mark, items)))
-            case _:
-                return value
-
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         value = a["value"]
         value = as_point(it, value, node, env) or value if isinstance(value, Geometry) else value
         if isinstance(value, Num | PointVal | ListVal):
-            return mark(as_written(value) if status is Exactness.GUESS else value)
+            value = as_written(value) if status is Exactness.GUESS else value
+            return with_numbers(value, lambda n: Num(n.expression, n.dimension, status))
         message = f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}"
         hint = "to hold a geometry where it was written: `constrain fixed(…)`"
         it.report("E0310", message, node, hints=[hint])

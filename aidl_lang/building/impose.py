@@ -32,12 +32,12 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    numbers_of,
     type_of,
 )
 from aidl_lang.building.wording import (
     EXACT,
     RELATIONS,
-    Read,
     Wording,
     all_of,
     compare_numbers,
@@ -88,7 +88,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         return
     things = measured(node)
     values = [evaluate(it, thing, env) for thing in things]
-    reason = next(_reasons(it, things, values), "")
+    reason = next(_reasons(things, values), "")
     if reason:
         hint = "as in `dimension(body.left, eye.center)`, `dimension(a.x, b.x)` or `dimension(rim)`"
         it.report("E0590", f"this dimension measures nothing: {reason}", node, hints=[hint])
@@ -102,9 +102,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         hint = "`tolerance: 0.1` is written as ±0.1"
         it.report("E0590", "a tolerance is above 0", options(node)["tolerance"], hints=[hint])
     else:
-        text, span, turn = it.said(node, env)
-        wording = Wording(node, it, env, evaluate)
-        it.by_hand.append(Constraint(env.here, (), text, span, None, turn, wording))
+        it.by_hand.append(_constraint(Wording(node, it, env, evaluate), ()))
 
 
 def axis_of(node: ast.Expression, value: Value) -> int | None:
@@ -115,7 +113,7 @@ def axis_of(node: ast.Expression, value: Value) -> int | None:
     return None
 
 
-def _reasons(it: Interpreter, things: list[ast.Expression], values: list[Value]) -> Iterator[str]:
+def _reasons(things: list[ast.Expression], values: list[Value]) -> Iterator[str]:
     for thing, value in zip(things, values, strict=True):
         is_coordinate = axis_of(thing, value) is not None
         if not is_coordinate and not isinstance(value, PointVal | Geometry | Structure | Box):
@@ -142,21 +140,20 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         for inner in handed:
             impose(it, inner, env, weight)
         return
+    said = Wording(node, it, env, _read)
     if isinstance(node, ast.Call) and _holds_place(it, node):
         value = _held(it, node, env)
     else:
         value = _read(it, node, env)
     match value:
-        case Nothing():
-            return
         case bool() if it.states_constants and weight is None:
-            _state_constants(it, node, env, _read)
-        case True:
+            _state_constants(said)
+        case Nothing() | True:
             return
         case False:
-            _never(it, node, env, weight)
+            _never(said, weight)
         case Condition():
-            _impose_condition(it, value, node, env, weight)
+            _impose_condition(said, value, weight)
         case Geometry():
             message = f"this {value.type} has no name, so it is not part of the model"
             it.report("E0323", message, node, hints=[f"give it one: `{value.type}_1 = {node.span.text}`"])
@@ -199,17 +196,16 @@ def _turn(env: Env) -> str:
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
-def _never(it: Interpreter, node: ast.Expression, env: Env, weight: float | None) -> None:
+def _never(wording: Wording, weight: float | None) -> None:
     """Reports a condition, or a wish, over constants that is false."""
+    it, node = wording.it, wording.node
     if any(part in it.watched for part in ast.walk(node)):
         return  # reported as a breach of validity, and read with values as written
-    shape = _library_shape(it, node, env)
-    wording = Wording(node, it, env, _read)
-    found = compared(wording)
+    shape, found = _library_shape(wording), compared(wording)
     if _refuses_measured(it, found, node):
         return
     false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
-    values = f", {both}" if both else ""
+    values = (f", {both}" if both else "") + _turn(wording.env)
     places = () if shape is not None else givens(wording)
     change = "one of these, or what is stated" if places else "what it speaks of, or leave it out"
     near = [h for c in found if c.relation == "==" for h in rounding(c.left.value, c.right.value)]
@@ -218,22 +214,24 @@ def _never(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     if not near and any(isinstance(part, ast.Member) for part in ast.walk(node)):
         hints.append("a size that shall move is written as a first guess, as in `radius: guess(5)`")
     code = "E0513" if weight is None else "N0605"
-    message = f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}"
+    message = f"{wish}`{node.span.one_line}` can never hold: both sides are constants{values}"
     place = shape.span if shape is not None else node
     label = "; ".join(false) or "false as written"
     it.report(code, message, place, label=label, hints=hints, secondary=places)
 
 
-def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
+def _constraint(said: Wording, comparisons: Iterable[Comparison], weight: float | None = None) -> Constraint:
+    text, span, turn = said.it.said(said.node, said.env)
+    return Constraint(said.env.here, tuple(comparisons), text, span, weight, turn, said)
+
+
+def _state_constants(wording: Wording) -> None:
     """Adds a condition that is decided already as a constraint, so that other constants for it can be
     sought. One that measures what is drawn after solving cannot be.
     """
-    wording = Wording(node, it, env, read)
-    found = compared(wording) if _library_shape(it, node, env) is None else ()
-    if not found or _measurements(found):
-        return
-    text, span, turn = it.said(node, env)
-    it.add_constraint(Constraint(env.here, found, text, span, None, turn, wording))
+    found = compared(wording) if _library_shape(wording) is None else ()
+    if found and not _measurements(found):
+        wording.it.add_constraint(_constraint(wording, found))
 
 
 def _measurements(comparisons: Iterable[Comparison]) -> list[Measurement]:
@@ -254,22 +252,22 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     return True
 
 
-def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
+def _library_shape(said: Wording) -> Geometry | None:
     """Returns the shape of the library that holds a condition for itself; None for others."""
-    shape = env.scope.declaring().container
-    return shape if isinstance(shape, Geometry) and node.span.source in it.library_sources else None
+    shape = said.env.scope.declaring().container
+    is_standard = said.node.span.source in said.it.library_sources
+    return shape if isinstance(shape, Geometry) and is_standard else None
 
 
-def _impose_condition(
-    it: Interpreter, condition: Condition, node: ast.Expression, env: Env, weight: float | None
-) -> None:
+def _impose_condition(said: Wording, condition: Condition, weight: float | None) -> None:
+    it, node = said.it, said.node
     comparisons: list[Comparison] = []
     for part in condition.parts if condition.operator == "and" else (condition,):
-        if part is False and it.states_constants:
-            _state_constants(it, node, env, _read)
-            return
         if part is False:
-            _never(it, node, env, weight)
+            if it.states_constants:
+                _state_constants(said)
+            else:
+                _never(said, weight)
             return
         if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
             word = part.operator if isinstance(part, Condition) else part.relation
@@ -280,43 +278,33 @@ def _impose_condition(
             comparisons.append(part)
     if any(map(_is_angle, ast.walk(node))):
         ask_to_turn(comparisons)
-    comparisons = _by_formulas(it, comparisons, node, env, weight)
+    comparisons = _by_formulas(said, comparisons, weight)
     if _refuses_measured(it, comparisons, node):
         return
-    if found := _measurements(comparisons):
-        comparisons = _with_foreseen_boxes(it, comparisons, found[0], node, env, weight)
-    shape = _library_shape(it, node, env)
-    if comparisons and shape is not None:
-        _impose_within(it, shape, tuple(comparisons), node, env)
-    elif (follower := _following(it, comparisons, env.here)) is not None:
-        _box_follows(it, follower, node, env)
+    comparisons = _with_foreseen_boxes(said, comparisons, weight)
+    if comparisons and (shape := _library_shape(said)) is not None:
+        _impose_within(said, shape, comparisons)
+    elif (follower := _following(it, comparisons, said.env.here)) is not None:
+        _box_follows(said, follower)
     elif comparisons:
-        comparisons = _placed_in_call(it, node, comparisons, env)
-        (text, span, turn), wording = it.said(node, env), Wording(node, it, env, _read)
-        it.add_constraint(Constraint(env.here, tuple(comparisons), text, span, weight, turn, wording))
+        it.add_constraint(_constraint(said, _placed_in_call(said, comparisons), weight))
 
 
 def _with_foreseen_boxes(
-    it: Interpreter,
-    comparisons: list[Comparison],
-    box: Measurement,
-    node: ast.Expression,
-    env: Env,
-    weight: float | None,
+    said: Wording, comparisons: list[Comparison], weight: float | None
 ) -> list[Comparison]:
-    """Returns comparisons that speak of the boxes of outlines made of others with these as they can be
-    foreseen; they are looked at again in the drawing, but for a wish.
+    """Returns comparisons with the boxes of outlines made of others as they can be foreseen; they are looked
+    at again in the drawing, but for a wish.
     """
-    if weight is None:
-        (outline,) = box.of
+    measured = _measurements(comparisons)
+    if measured and weight is None:
+        (outline,) = measured[0].of
         assert isinstance(outline, Geometry)
-        _look_again(it, comparisons, None, node, env, outline)
-    return [_foreseen(comparison) for comparison in comparisons]
+        _look_again(said, comparisons, outline=outline)
+    return [_foreseen(comparison) for comparison in comparisons] if measured else comparisons
 
 
-def _by_formulas(
-    it: Interpreter, comparisons: list[Comparison], node: ast.Expression, env: Env, weight: float | None
-) -> list[Comparison]:
+def _by_formulas(said: Wording, comparisons: list[Comparison], weight: float | None) -> list[Comparison]:
     """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
@@ -325,7 +313,7 @@ def _by_formulas(
     sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):
-        _look_again(it, comparisons, OTHERWISE, node, env)
+        _look_again(said, comparisons, OTHERWISE)
     return found
 
 
@@ -338,17 +326,12 @@ def _foreseen(comparison: Comparison) -> Comparison:
 
 
 def _look_again(
-    it: Interpreter,
-    comparisons: list[Comparison],
-    message: str | None,
-    node: ast.Expression,
-    env: Env,
-    outline: Geometry | None = None,
+    said: Wording, comparisons: list[Comparison], message: str | None = None, outline: Geometry | None = None
 ) -> None:
     """Keeps a constraint to be looked at in the drawing; with an `outline`, one on its box as foreseen."""
-    both, wording = Condition("and", tuple(comparisons)), Wording(node, it, env, _read)
-    said = it.said(node, env)
-    it.assertions.append(Assertion(env.here, both, message, *said, wording=wording, outline=outline))
+    both, told = Condition("and", tuple(comparisons)), said.it.said(said.node, said.env)
+    again = Assertion(said.env.here, both, message, *told, wording=said, outline=outline)
+    said.it.assertions.append(again)
 
 
 def _is_angle(node: ast.Node) -> bool:
@@ -375,41 +358,38 @@ def _boxes_of(g: Geometry) -> set[Structure]:
     return around
 
 
-def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
+def _box_follows(said: Wording, follower: Geometry) -> None:
     """Reports a constraint on a box with geometry in it that follows something outside of its holder."""
-    span = it.place(node) or node.span
-    why = f"which is derived of geometry outside of `{env.here.path}`"
-    message = f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, {why}"
-    hint = f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"
-    it.report("E0402", message, span, hints=[hint])
+    here, span = said.env.here, said.it.place(said.node) or said.node.span
+    why = f"which is derived of geometry outside of `{here.path}`"
+    message = f"a constraint of `{here.path}` cannot use a box that `{follower.path}` is in, {why}"
+    hint = f"say it in `{follower.bound_to.path}`, or name a geometry of `{here.name}`, not its box"
+    said.it.report("E0402", message, span, hints=[hint])
 
 
-def _impose_within(
-    it: Interpreter, shape: Geometry, comparisons: tuple[Comparison, ...], node: ast.Expression, env: Env
-) -> None:
+def _impose_within(said: Wording, shape: Geometry, comparisons: list[Comparison]) -> None:
     """Adds a constraint that a library's shape holds for itself, named after it, at its author's line."""
     if shape.name is not None and shape.span is not None:
-        text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
-        turn = ", ".join(env.scope.labels)
-        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, turn, is_inherent=True))
+        text = f"{shape.path.removeprefix(said.env.here.path + '.')}: {said.node.span.one_line}"
+        own, turn = tuple(comparisons), ", ".join(said.env.scope.labels)
+        said.it.add_constraint(Constraint(said.env.here, own, text, shape.span, None, turn, is_inherent=True))
 
 
 def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     return evaluate(it, _as_relation(node), env)
 
 
-def _placed_in_call(
-    it: Interpreter, node: ast.Expression, comparisons: list[Comparison], env: Env
-) -> list[Comparison]:
+def _placed_in_call(said: Wording, comparisons: list[Comparison]) -> list[Comparison]:
     """Holds the last argument of the call in `distance(a, b) == 18`, as in every call."""
+    node = said.node
     if not isinstance(node, ast.Comparison) or not isinstance(call := node.operands[0], ast.Call):
         return comparisons
     positional = [call.receiver] if call.receiver is not None else []
     positional += [a.value for a in call.arguments if a.name is None]
     if len(positional) < 2 or any(isinstance(p, ast.Call) for p in positional):
         return comparisons
-    values = [evaluate(it, p, env) for p in positional[:-1]]
-    placed = frozenset(u for v in values for u in value_unknowns(v, env.here))
+    values = [evaluate(said.it, p, said.env) for p in positional[:-1]]
+    placed = frozenset(u for v in values for u in value_unknowns(v, said.env.here))
     return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
 
 
@@ -422,18 +402,18 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         it.misfit(rules.needed("a condition", type_of(value)), node.test)
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
+    told = message.value if isinstance(message, TextVal) else None
+    wording = Wording(node.test, it, env, evaluate)
     if value is False and shape:
-        why = message.value if isinstance(message, TextVal) else f"`{node.test.span.one_line}` is false"
-        false = differences(Wording(node.test, it, env, evaluate), ex.Evaluator({}), EXACT)
+        why = told if told is not None else f"`{node.test.span.one_line}` is false"
+        false = differences(wording, ex.Evaluator({}), EXACT)
         label = "; ".join(false) or "false as written"
         it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label=label)
         return
     if isinstance(value, bool) and it.states_constants and not shape:
-        _state_constants(it, node.test, env, evaluate)
+        _state_constants(wording)
         return
-    said, told = it.said(node.test, env), message.value if isinstance(message, TextVal) else None
-    wording = Wording(node.test, it, env, evaluate)
-    it.assertions.append(Assertion(env.here, value, told, *said, shape, wording))
+    it.assertions.append(Assertion(env.here, value, told, *it.said(node.test, env), shape, wording))
 
 
 def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
@@ -454,15 +434,12 @@ def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
 
 def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> Iterator[Num]:
     match value:
-        case Num():
-            yield value
-        case PointVal(x, y):
-            yield x
-            yield y
+        case Num() | PointVal():
+            yield from numbers_of(value)
         case Geometry():
             at = as_point(it, value, node, env)
             if at is not None:
-                yield from (at.x, at.y)
+                yield from numbers_of(at)
             else:
                 yield from (Num(e, LENGTH) for e in defining(value, env.here))
         case Structure():

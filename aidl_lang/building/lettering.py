@@ -36,7 +36,7 @@ class NoFontError(Exception):
 
 
 def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
-    """Returns the font of this name, for the text that is being built. Raises NoFontError."""
+    """Returns the font of this name, for the text that is being built. Raises NoFontError or FontError."""
     if name == PLAIN_FONT:
         return lettering.bold_font() if bold else lettering.plain_font()
     if name == SINGLE_LINE:
@@ -58,7 +58,7 @@ def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
     return _of_file(it, name)
 
 
-def broken(name: str, reason: FontError) -> NoFontError:
+def _broken(name: str, reason: FontError) -> NoFontError:
     """Returns what to say of a font file that cannot be drawn with."""
     again = "get the file anew, or save it anew as .ttf or .otf with a program for fonts"
     return NoFontError("E0360", f"`{name}` cannot be drawn with: {reason}", again)
@@ -78,8 +78,6 @@ def _of_file(it: Interpreter, name: str) -> Font:
         if error.reason is ReadFailure.OUTSIDE:
             hint = "copy it beside the program: only its own folder and those below it are read"
         raise NoFontError("E0359", f"`{name}` cannot be read: {error.reason}", hint) from None
-    except FontError as reason:
-        raise broken(name, reason) from None
 
 
 def _writer(it: Interpreter) -> str:
@@ -120,11 +118,9 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
         if unknown := lettering.unknown_characters(text.value, font):
             _report_unknown(it, unknown, node, name)
             return ()
-        try:
-            glyphs = lettering.typeset(text.value, align.value, apart, font)
-        except FontError as reason:
-            raise broken(name, reason) from None
-    except NoFontError as lack:
+        glyphs = lettering.typeset(text.value, align.value, apart, font)
+    except (NoFontError, FontError) as reason:
+        lack = reason if isinstance(reason, NoFontError) else _broken(name, reason)
         report_once(it, lack.code, lack.message, node, lack.hints)
         return ()
     if not glyphs:

@@ -299,9 +299,7 @@ class _Lowering:
 
     def _name_thing(self, holder: Structure, s: Structure, thing: Hashable) -> None:
         """Notes a thing of `s` in it, and in each structure up to the holder the one that it is in."""
-        for structure in chain(s):
-            if structure is holder:
-                return
+        for structure in chain(s, holder):
             self.named_things.setdefault(structure, set()).add(thing)
             thing = structure
 
@@ -477,10 +475,8 @@ def _axis(unknown: Unknown) -> int:
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
     """Yields the frames that place a structure in the one that holds it."""
-    for s in chain(structure):
-        if s is holder:
-            return
-        yield from (s.frame.x, s.frame.y, s.frame.rotation)
+    for frame in (s.frame for s in chain(structure, holder)):
+        yield from (frame.x, frame.y, frame.rotation)
 
 
 _Seen = tuple[Expression, Expression] | tuple[Expression]

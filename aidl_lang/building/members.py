@@ -44,7 +44,9 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    numbers_of,
     type_of,
+    with_numbers,
 )
 from aidl_lang.building.wording import compare_numbers
 from aidl_lang.checking import rules, units
@@ -98,16 +100,15 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
     match binding.value:
         case Num(status=Exactness.REFERENCE) as number:
             refuses_measure(it, number, binding.node.span)
-            made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
+            made = it.unknown(number.value, here, binding.name, dimension=number.dimension)
             own = Num(made, number.dimension, Exactness.REFERENCE)
             _hold_equal(it, binding, [(own, number)])
             return own
         case Num(status=Exactness.NUMBER) as number if here is binding.instance:
-            made = it.unknown(
-                number.value, here, binding.name, owner=here, dimension=number.dimension, kept=True, cell=True
-            )
-            it.became(number, made, here, binding.name, number.dimension)
-            return Num(made, number.dimension, Exactness.NUMBER)
+            name, dimension = binding.name, number.dimension
+            made = it.unknown(number.value, here, name, dimension=dimension, kept=True, cell=True)
+            it.became(number, made, here, name, dimension)
+            return Num(made, dimension, Exactness.NUMBER)
         case PointVal() as point if here is not binding.instance and not _refers(point):
             return point
         case PointVal() as point:
@@ -125,15 +126,9 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
 
 
 def _refers(value: Value) -> bool:
-    match value:
-        case Num(status=status):
-            return status is Exactness.REFERENCE
-        case PointVal(x, y):
-            return _refers(x) or _refers(y)
-        case ListVal(items):
-            return any(map(_refers, items))
-        case _:
-            return False
+    if isinstance(value, ListVal):
+        return any(map(_refers, value.items))
+    return any(n.status is Exactness.REFERENCE for n in numbers_of(value))
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
@@ -144,7 +139,7 @@ def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: S
         at = as_written(convert_point(numbers, binding.holder, here))
         assert isinstance(at, PointVal)
         point = at
-    return positions(it, [point], here, [binding.name], here)[0]
+    return positions(it, [point], here, [binding.name])[0]
 
 
 def _hold_equal(it: Interpreter, binding: PassedBinding, pairs: list[tuple[Num, Num]]) -> None:
@@ -216,10 +211,8 @@ _READERS: Mapping[type, Callable[..., Value]] = {
 def is_same_everywhere(value: Value) -> bool:
     """Tells whether a value does not depend on the frame or the reach of the code that reads it."""
     match value:
-        case Num(expression=e):
-            return e.is_constant
-        case PointVal(x, y):
-            return x.expression.is_constant and y.expression.is_constant
+        case Num() | PointVal():
+            return all(n.expression.is_constant for n in numbers_of(value))
         case ListVal(items):
             return all(map(is_same_everywhere, items))
         case RecordVal(fields):
@@ -366,29 +359,20 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
     if name.casefold() in ("bb", "box", "boundingbox", "bounding_box"):
         return box
     key = find(name, _BOX_FIELDS)
-    if key is None:
+    value: Value | None = box.field(key) if key is not None else None
+    if value is None:
         return None
-    value = box.field(key)
     if env.reach is Reach.ABOVE:
         if any(isinstance(s, Structure) and env.here.is_within(s) for s in box.sources):
             env = Env(env.scope, env.here, Reach.OWN)  # it follows from what is made here
         else:
-            value = _at_once(value)
-    if value is not None and env.reach is Reach.OWN and env.here in box.sources:
+            # over the unknowns of what is in it by now
+            value = with_numbers(value, lambda n: replace(n, expression=boxes.spelled_out(n.expression)[0]))
+    if env.reach is Reach.OWN and env.here in box.sources:
         return as_written(value) if it.watched else _refuse_own_box(it, node, env)
     owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)
     reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
-    return value if reached or value is None else as_written(value)
-
-
-def _at_once(value: Num | PointVal | None) -> Num | PointVal | None:
-    """Returns a side, a measure or a point of a box over the unknowns of what is in it by now."""
-    if isinstance(value, Num):
-        return replace(value, expression=boxes.spelled_out(value.expression)[0])
-    if isinstance(value, PointVal):
-        x, y = boxes.spelled_out(value.x.expression, value.y.expression)
-        return PointVal(replace(value.x, expression=x), replace(value.y, expression=y))
-    return value
+    return value if reached else as_written(value)
 
 
 def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
@@ -455,7 +439,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
         return NOTHING
     low, high, choices = _domain(it, domain, node)
     path = knob_path(binding.structure, node.name.text)
-    value = _from_outside(it, path, written, choices)
+    value = _from_outside(it, path, written)
     counts = node in it.program.counts and _is_whole(written)
     if counts and not _is_whole(value):
         message = f"`{path}` is {literal(_plain(value))} as set from outside, and it counts something"
@@ -477,7 +461,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     it.knobs.append(Knob(path, _plain(value), low, high, choices, pace, unit, node.doc, node.span))
     if isinstance(value, Num):
         return Num(value.expression, value.dimension, Exactness.PARAM)
-    return TextVal(value.value, is_param=True) if isinstance(value, TextVal) else value
+    return value
 
 
 def _is_whole(value: Value) -> bool:
@@ -529,9 +513,7 @@ def _is_allowed(
     return isinstance(value, Num) and low - slack <= value.value <= high + slack
 
 
-def _from_outside(
-    it: Interpreter, path: str, written: Value, choices: tuple[float | str | bool, ...]
-) -> Value:
+def _from_outside(it: Interpreter, path: str, written: Value) -> Value:
     """Returns the value set for a path with `-D path=value` or `compile(params=…)`, else the written one."""
     names = {fold(path), fold(f"{it.root.name if it.root else ''}.{path}")}
     key = next((key for key in it.overrides if fold(key.strip()) in names), None)

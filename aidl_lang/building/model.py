@@ -32,8 +32,6 @@ SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 
 _SIZE_WORDS = SIZES | {"size", "side", "flats"}
 
-KINDS = ("assembly", "solid", "hole", "drawing")
-
 
 def is_size(name: str) -> bool:
     """Tells whether a name is a size by its last word: `radius`, `inner_radius`, `top_width`."""
@@ -317,6 +315,10 @@ class Structure:
         return here is other
 
 
+Holder = Geometry | Structure
+"""What numbers belong to."""
+
+
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
     """Returns the geometry among named values that belongs to the container, members of arrays and lists
     included; each once, however many names it has.
@@ -333,11 +335,13 @@ def all_parts(g: Geometry) -> Iterator[Geometry]:
         yield from all_parts(part)
 
 
-def chain(structure: Structure) -> list[Structure]:
-    """Returns the structure and its ancestors, innermost first."""
-    found = [structure]
-    while (parent := found[-1].parent) is not None:
-        found.append(parent)
+def chain(structure: Structure, up_to: Structure | None = None) -> list[Structure]:
+    """Returns the structure and its ancestors, innermost first; with `up_to`, those below that one."""
+    found: list[Structure] = []
+    here: Structure | None = structure
+    while here is not None and here is not up_to:
+        found.append(here)
+        here = here.parent
     return found
 
 
@@ -364,13 +368,9 @@ def convert(
     if (known := source.converted.get(key)) is not None:
         return known
     meeting = common_ancestor(source, target)
-    here = source
-    while here is not meeting:
-        x, y = here.frame.outward(x, y)
-        assert here.parent is not None
-        here = here.parent
-    below = chain(target)
-    for structure in reversed(below[: below.index(meeting)]):
+    for structure in chain(source, meeting):
+        x, y = structure.frame.outward(x, y)
+    for structure in reversed(chain(target, meeting)):
         x, y = structure.frame.inward(x, y)
     source.converted[key] = x, y
     return x, y
@@ -387,18 +387,15 @@ def convert_point(point: PointVal, source: Structure, target: Structure) -> Poin
 def convert_angle(angle: Expression, source: Structure, target: Structure) -> Expression:
     """Converts a direction in degrees in the frame of `source` to that of `target`."""
     meeting = common_ancestor(source, target)
-    for start, outward in ((source, True), (target, False)):
-        path: list[Structure] = chain(start)
-        path = path[: path.index(meeting)]
-        for structure in path if outward else reversed(path):
-            frame = structure.frame
-            if not outward:
-                angle = ex.sub(angle, frame.rotation)
-            if frame.mirrored:
-                angle = ex.sub(ex.constant(180.0), angle)
-            if outward:
-                angle = ex.add(angle, frame.rotation)
+    for frame in (s.frame for s in chain(source, meeting)):
+        angle = ex.add(_mirrored(angle, frame), frame.rotation)
+    for frame in (s.frame for s in reversed(chain(target, meeting))):
+        angle = _mirrored(ex.sub(angle, frame.rotation), frame)
     return angle
+
+
+def _mirrored(angle: Expression, frame: Frame) -> Expression:
+    return ex.sub(ex.constant(180.0), angle) if frame.mirrored else angle
 
 
 @record(eq=False)

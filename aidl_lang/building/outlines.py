@@ -259,7 +259,7 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
 
     def held(v: Num) -> Num:
         if v.expression.is_constant and v.status is Exactness.NUMBER:
-            return length(it.unknown(v.value, owner, name, owner=owner, dimension=LENGTH, kept=True))
+            return length(it.unknown(v.value, owner, name, dimension=LENGTH, kept=True))
         return v
 
     return tuple(map(held, numbers))

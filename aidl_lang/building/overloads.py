@@ -16,6 +16,7 @@ from aidl_lang.building.values import (
     TextVal,
     Value,
     kind_of,
+    length,
     members,
     spliced,
     type_of,
@@ -33,15 +34,14 @@ from aidl_lang.checking.types import (
     Binding,
     BoxType,
     GeometryType,
-    GivenArgument,
     Mismatch,
     PointType,
     Signature,
     StructureType,
     Type,
+    given_to,
     with_article,
 )
-from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
@@ -62,7 +62,7 @@ def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
     if source.other is not None:
         x, y = value, values[source.other]
         if isinstance(x, Num) and isinstance(y, Num):
-            return PointVal(_coordinate(x), _coordinate(y))
+            return PointVal(length(x.expression, x.status), length(y.expression, y.status))
         return NOTHING
     match value:
         case PointVal(x, y) if source.part is not None:
@@ -71,10 +71,6 @@ def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
             return items[source.part]
         case _:
             return value
-
-
-def _coordinate(value: Num) -> Num:
-    return Num(value.expression, LENGTH, value.status)
 
 
 # --- The roles of a call's arguments: those it places and those it holds.
@@ -169,6 +165,7 @@ class CallSite:
     def __init__(
         self, node: ast.Call, signatures: list[Signature], names: Mapping[ast.Node, Symbol] = _NO_NAMES
     ) -> None:
+        self.node = node
         self.signatures = signatures
         self.nodes = tuple(a.value for a in node.arguments)
         words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
@@ -183,9 +180,8 @@ class CallSite:
         self.derives = bool(signatures) and signatures[0].name in DERIVING
         self.connects = bool(signatures) and all(s.standard and s.name in CONNECTING for s in signatures)
         self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
-        self._names = tuple(a.name.text if a.name else None for a in node.arguments)
         if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:
-            self.derives = any(name is not None and fold(name) in followed for name in self._names)
+            self.derives = any(a.name is not None and fold(a.name.text) in followed for a in node.arguments)
         self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
         self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
 
@@ -199,9 +195,7 @@ class CallSite:
         if known is None:
             if len(self._meanings) >= _MOST_MEANINGS:
                 self._meanings.clear()
-            names = (None,) * (len(kinds) - len(self._names)) + self._names
-            given = [GivenArgument(name, kind) for name, kind in zip(names, kinds, strict=True)]
-            known = self._meanings[kinds] = select(self.signatures, given)
+            known = self._meanings[kinds] = select(self.signatures, given_to(self.node, kinds))
         self._last = kinds, known
         return known
 

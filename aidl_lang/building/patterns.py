@@ -103,7 +103,7 @@ class _Call:
         """Returns a position of the pattern: a first guess if literal, the origin if missing."""
         value = self.a.get(name, _ORIGIN)
         assert isinstance(value, PointVal)
-        (made,) = positions(self.it, [value], self.settings, [name], self.settings.owner)
+        (made,) = positions(self.it, [value], self.settings, [name])
         self.settings.fields[name] = made
         return xy(made)
 

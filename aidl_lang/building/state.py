@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Unknown
-from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
+from aidl_lang.building.model import (
+    Assertion,
+    Comparison,
+    Constraint,
+    Geometry,
+    Holder,
+    Knob,
+    Literal,
+    Structure,
+)
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, RecordVal, TextVal, Value, point
 from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
@@ -439,17 +448,20 @@ class Interpreter:
     def unknown(
         self,
         guess: float,
-        holder: Geometry | Structure,
+        holder: Holder,
         name: str,
         *,
-        owner: Structure,
+        owner: Structure | None = None,
         dimension: MaybeDimension = None,
         kept: bool = False,
         frame_of: Structure | None = None,
         cell: bool = False,
         since: str = "",
     ) -> ex.Expression:
-        """Makes an unknown. Returns it as an expression."""
+        """Makes an unknown, which the structure of its holder owns if no other does. Returns it as an
+        expression.
+        """
+        owner = owner or (holder.owner if isinstance(holder, Geometry) else holder)
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
@@ -457,7 +469,7 @@ class Interpreter:
         self.unknowns.append(new)
         return ex.unknown(new)
 
-    def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
+    def _tamed(self, guess: float, holder: Holder, name: str) -> float:
         """Reports a first guess at which the solver could not begin. Returns another."""
         if math.isnan(guess):
             return guess
@@ -467,12 +479,7 @@ class Interpreter:
         return 0.0
 
     def became(
-        self,
-        written: Num,
-        made: ex.Expression,
-        holder: Geometry | Structure,
-        name: str,
-        dimension: MaybeDimension = LENGTH,
+        self, written: Num, made: ex.Expression, holder: Holder, name: str, dimension: MaybeDimension = LENGTH
     ) -> ex.Expression:
         """Notes that `made` stands for a number of the text, if `written` is one. Returns `made`."""
         if written.expression.op == "constant" and made.op != "constant":
@@ -481,9 +488,7 @@ class Interpreter:
                 self.literals.append(Literal(node, made, holder, name, dimension))
         return made
 
-    def became_point(
-        self, written: PointVal, made: PointVal, holder: Geometry | Structure, name: str
-    ) -> None:
+    def became_point(self, written: PointVal, made: PointVal, holder: Holder, name: str) -> None:
         """Notes the same for both coordinates of a point."""
         if written.x.expression.op == "constant":
             self.became(written.x, made.x.expression, holder, f"{name}.x")

@@ -17,7 +17,7 @@ from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.members import read_param
-from aidl_lang.building.model import Frame, Geometry, Structure
+from aidl_lang.building.model import Frame, Geometry, Holder, Structure, chain
 from aidl_lang.building.state import (
     Env,
     Executor,
@@ -54,12 +54,7 @@ from aidl_lang.syntax import ast
 
 
 def declare(
-    it: Interpreter,
-    scope: Scope,
-    name: ast.Identifier,
-    indices: tuple[int, ...],
-    value: Value | VarBinding,
-    node: ast.Node,
+    it: Interpreter, scope: Scope, name: ast.Identifier, indices: tuple[int, ...], value: Value | VarBinding
 ) -> None:
     """Gives a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
@@ -104,7 +99,7 @@ def index_values(
 
 
 def give_name(
-    geometry: Geometry, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
+    geometry: Geometry, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign
 ) -> None:
     geometry.name = indexed(name, indices)
     geometry.container = container
@@ -113,9 +108,7 @@ def give_name(
         geometry.span = node.span
 
 
-def adopt(
-    value: Value, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
-) -> None:
+def adopt(value: Value, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign) -> None:
     """Gives nameless geometry the name it is assigned to; geometry with a name keeps it."""
     if isinstance(value, Geometry):
         if value.name is None:
@@ -189,8 +182,7 @@ class Assignment:
         for index, member in pattern.members.items():
             place = (*indices, *index)
             if isinstance(member, Geometry):
-                if member.name is None:
-                    give_name(member, name, place, container, self.node)
+                adopt(member, name, place, container, self.node)
             else:
                 pattern.members[index] = self.value(member, place)
         self._moves_as_frame(pattern)
@@ -254,9 +246,9 @@ class Assignment:
 
 def _framed(source: Structure, here: Structure) -> Frame:
     """Returns the frame of a structure as one above it sees it."""
-    frame, around = source.frame, source.parent
-    while around is not None and around is not here:
-        frame, around = of_frame(around.frame).frame(frame), around.parent
+    frame = source.frame
+    for around in chain(source, here)[1:]:
+        frame = of_frame(around.frame).frame(frame)
     return frame
 
 
@@ -266,7 +258,7 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
         return
     value = _made(it, node, scope, here, indices)
     if isinstance(value, Nothing):
-        declare(it, scope, node.name, indices, NOTHING, node)
+        declare(it, scope, node.name, indices, NOTHING)
         return
     is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
     was_there = holds(value, Structure)
@@ -279,7 +271,7 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
     if not indices and not isinstance(value, Array | Structure | Geometry | ListVal | PointVal):
         scope.values[node.name.text] = LetBinding(node.value, scope)
         return
-    declare(it, scope, node.name, indices, value, node)
+    declare(it, scope, node.name, indices, value)
 
 
 def _made(
@@ -333,7 +325,7 @@ def _structure(it: Interpreter, node: ast.Structure, scope: Scope, here: Structu
     indices = index_values(it, node.indices, scope, here)
     if indices is not None:
         made = build_structure(it, node, scope, here, indices)
-        declare(it, scope, node.name, indices, made, node)
+        declare(it, scope, node.name, indices, made)
 
 
 def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> None:
@@ -352,19 +344,19 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
         return
     found = numeric(it, value, node.value, Env(scope, here, Reach.OWN))
     if found is None:
-        declare(it, scope, node.name, (), NOTHING, node)
+        declare(it, scope, node.name, (), NOTHING)
         return
     if found.status is Exactness.FIXED:
-        declare(it, scope, node.name, (), found, node)  # nothing is left to find
+        declare(it, scope, node.name, (), found)  # nothing is left to find
         return
     holder = scope.declaring().container or here
     if not refuses_measure(it, found, node.value.span) and not math.isfinite(found.value):
         it.report("E0504", f"`{node.value.span.one_line}` has no value at the first guesses", node.value)
-    made = it.unknown(found.value, holder, node.name.text, owner=here, dimension=found.dimension)
+    made = it.unknown(found.value, holder, node.name.text, dimension=found.dimension)
     assert isinstance(made.payload, ex.Unknown)
     it.became(found, made, holder, node.name.text, found.dimension)
     var = VarBinding(Num(made, found.dimension, Exactness.REFERENCE), made.payload)
-    declare(it, scope, node.name, (), var, node)
+    declare(it, scope, node.name, (), var)
 
 
 def _for(it: Interpreter, node: ast.For, scope: Scope, here: Structure) -> None:

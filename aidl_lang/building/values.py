@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
@@ -82,7 +82,6 @@ class PointVal:
 class TextVal:
     value_type = TextType()
     value: str
-    is_param: bool = False
 
 
 @record(slots=True)
@@ -173,22 +172,17 @@ class Array:
     def items(self) -> list[Value]:
         """Returns the members in index order; of a many-index array its rows."""
         firsts = sorted({index[0] for index in self.members})
-        return [self.members[(i,)] if (i,) in self.members else self._row(i) for i in firsts]
-
-    def _row(self, index: int) -> Array:
-        row = self.row(index)
-        assert row is not None
-        return row
+        return [self.members[(i,)] if (i,) in self.members else self.row(i) for i in firsts]
 
     @property
     def value_type(self) -> Type:
         return _list_type(self.items())
 
-    def row(self, index: int) -> Array | None:
-        """Returns the members of a many-index array whose first index is `index`."""
+    def row(self, index: int) -> Array:
+        """Returns the members of a many-index array whose first index is `index`, none or more."""
         row = Array(f"{self.name}[{index}]")
         row.members = {key[1:]: v for key, v in self.members.items() if key[0] == index and len(key) > 1}
-        return row if row.members else None
+        return row
 
 
 class Pattern(Array):
@@ -260,6 +254,24 @@ def length(expression: Expression, status: Exactness = Exactness.REFERENCE) -> N
 
 def point(x: Expression, y: Expression, status: Exactness = Exactness.REFERENCE) -> PointVal:
     return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
+
+
+def numbers_of(value: Value) -> tuple[Num, ...]:
+    """Returns a number, or both coordinates of a point; none for anything else."""
+    return (value,) if isinstance(value, Num) else (value.x, value.y) if isinstance(value, PointVal) else ()
+
+
+def with_numbers(value: Value, change: Callable[[Num], Num]) -> Value:
+    """Returns a number, or a point or a list with the numbers in it, changed; anything else as it is."""
+    match value:
+        case Num():
+            return change(value)
+        case PointVal(x, y):
+            return PointVal(change(x), change(y))
+        case ListVal(items):
+            return ListVal(tuple([with_numbers(item, change) for item in items]))
+        case _:
+            return value
 
 
 def members(value: Value) -> Sequence[Value] | None:

@@ -1,11 +1,11 @@
-"""Conditions, and statements that constrain, kept to be read again in other words and in numbers."""
+"""Conditions, and statements that constrain, kept to be read again in parts and in numbers."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import fields, replace
-from typing import TypeAlias, TypeVar
+from dataclasses import replace
+from typing import TypeAlias
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
@@ -24,6 +24,7 @@ from aidl_lang.building.values import (
     Value,
     leaves,
     members,
+    numbers_of,
     type_of,
 )
 from aidl_lang.checking import rules, units
@@ -53,14 +54,15 @@ def compare(
     right: Value,
     node: ast.Node,
     env: Env,
-    left_node: ast.Node,
-    right_node: ast.Node,
+    sides: Sequence[ast.Node],
 ) -> Value:
-    """Returns `left relation right`, a truth if both are constants; of a list it is asked of each member."""
+    """Returns `left relation right`, a truth if both are constants; of a list it is asked of each member. The
+    `sides` are the texts that they come from.
+    """
 
     def incomparable() -> Nothing:
-        sides = shown(left_node), shown(right_node)
-        it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *sides), node)
+        texts = map(shown, sides)
+        it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *texts), node)
         return NOTHING
 
     if isinstance(left, Nothing) or isinstance(right, Nothing):
@@ -73,15 +75,15 @@ def compare(
     if (pairs := _one_by_one(relation, left, right)) is not None:
         every: Value = True
         for first, second in pairs:
-            pair = compare(it, relation, first, second, node, env, left_node, right_node)
+            pair = compare(it, relation, first, second, node, env, sides)
             every = conjunction(it, "and", every, pair, node)
         return every
-    a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
+    a, b = (as_point(it, v, n, env) for v, n in zip((left, right), sides, strict=True))
     if a is not None and b is not None:
         return _compare_points(it, relation, a, b, node)
     if a is not None or b is not None:
         return incomparable()
-    x, y = numeric(it, left, left_node, env), numeric(it, right, right_node, env)
+    x, y = (numeric(it, v, n, env) for v, n in zip((left, right), sides, strict=True))
     return compare_numbers(it, relation, x, y, node) if x is not None and y is not None else NOTHING
 
 
@@ -249,12 +251,7 @@ def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
                 yield from source_unknowns(source, here)
 
 
-# --- A statement that constrains, kept so that it can be read again in other words at its place.
-#
-# Messages about conflicts try other numbers in it: only the definitions themselves, a user's as well as the
-# library's, decide what a number does to the equations.
-
-_Tree = TypeVar("_Tree", bound=ast.Node)
+# --- A statement that constrains, kept so that it can be read again, part by part, at its place.
 
 Read = Callable[[Interpreter, ast.Expression, Env], Value]
 """Evaluates a statement in an environment."""
@@ -262,33 +259,12 @@ Read = Callable[[Interpreter, ast.Expression, Env], Value]
 
 @record(eq=False)
 class Wording:
-    """A statement that can be read again: `node` as it was written; `read` evaluates one in its stead."""
+    """A statement that can be read again: `node` as it was written; `read` evaluates it, or a part of it."""
 
     node: ast.Expression
     it: Interpreter
     env: Env
     read: Read
-
-    def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
-        """Returns the comparisons that `node` would state here; none if senseless or decided already."""
-        value = self.value(node)
-        return tuple(value.comparisons()) if isinstance(value, Condition) else ()
-
-    def dials(self) -> Iterator[tuple[ast.Expression, float]]:
-        """Yields the literals and the names of constants in the statement with their values, in mm or
-        degrees; a literal with its sign. Indices are left out: they choose a thing.
-        """
-        stack: list[ast.Node] = [self.node]
-        while stack:
-            match stack.pop():
-                case (ast.Number() | ast.Unary(operator="-", operand=ast.Number()) | ast.Name()) as node:
-                    value = self.value(node)
-                    if isinstance(value, Num) and value.expression.is_constant:
-                        yield node, value.value
-                case ast.Index(value=inner):
-                    stack.append(inner)
-                case other:
-                    stack.extend(reversed(list(ast.children(other))))
 
     def held(self) -> Iterator[str]:
         """Yields the texts of parts of the statement that no solving moves."""
@@ -314,13 +290,6 @@ class Wording:
                     continue
             stack.extend(reversed(list(ast.children(node))))
 
-    def param(self, name: ast.Expression) -> ast.Param | None:
-        """Returns the declaration of a `param` that nothing but this name reads; None for other names."""
-        uses = self.it.program.resolution.uses
-        symbol = uses.get(name)
-        readers = [node for node, other in uses.items() if other is symbol and isinstance(node, ast.Name)]
-        return symbol.node if symbol and len(readers) == 1 and isinstance(symbol.node, ast.Param) else None
-
     def value(self, node: ast.Expression) -> Value | None:
         """Returns the value of a part of the statement at its place; None if that takes too long."""
         it = self.it
@@ -332,32 +301,10 @@ class Wording:
 
 
 def _is_exact(value: Value | None) -> bool:
-    match value:
-        case Num(expression=e):
-            return e.is_constant
-        case PointVal(x, y):
-            return x.expression.is_constant and y.expression.is_constant
-        case Geometry(fields=defining):
-            return bool(defining) and all(map(_is_exact, defining.values()))
-    return False
-
-
-def replaced(node: _Tree, old: ast.Node, new: ast.Node) -> _Tree:
-    """Returns the tree with one node below `node` exchanged."""
-    changed: dict[str, object] = {}
-    for field in fields(node):
-        value = getattr(node, field.name)
-        if value is old:
-            changed[field.name] = new
-        elif isinstance(value, ast.Node) and (inner := replaced(value, old, new)) is not value:
-            changed[field.name] = inner
-        elif isinstance(value, tuple):
-            items = tuple(
-                new if v is old else replaced(v, old, new) if isinstance(v, ast.Node) else v for v in value
-            )
-            if any(a is not b for a, b in zip(items, value, strict=True)):
-                changed[field.name] = items
-    return replace(node, **changed) if changed else node  # type: ignore[arg-type]
+    if isinstance(value, Geometry):
+        return bool(value.fields) and all(map(_is_exact, value.fields.values()))
+    numbers = numbers_of(value) if value is not None else ()
+    return bool(numbers) and all(n.expression.is_constant for n in numbers)
 
 
 # --- The comparisons of a statement in numbers, `14 - 11 = 3, which is not >= 4`, and where these come from.
@@ -371,20 +318,15 @@ _ROUNDED = 1e-4
 """Relative difference up to which two numbers may be one and its rounding."""
 
 Evaluate = Callable[[Expression], float]
-Side = tuple[ast.Expression, tuple[Num, ...]]
+Stated = tuple[ast.Expression, str, ast.Expression]
 
 
 def differences(wording: Wording, evaluate: Evaluate, tolerance: float) -> list[str]:
     """Returns a text for each false comparison in a statement; empty if it cannot be read so."""
     if isinstance(wording.node, ast.Membership):
         return _beyond(wording, wording.node, evaluate)
-    found = []
-    for left, relation, right in _comparisons(wording.node):
-        one, other = (left, _numbers(wording, left)), (right, _numbers(wording, right))
-        if one[1] and len(one[1]) == len(other[1]):
-            text = _difference(wording, one, relation, other, evaluate, tolerance)
-            found += [text] if text else []
-    return found
+    texts = (_difference(wording, each, evaluate, tolerance) for each in _comparisons(wording.node))
+    return [text for text in texts if text]
 
 
 def rounding(one: float, other: float) -> tuple[str, ...]:
@@ -436,7 +378,7 @@ def givens(wording: Wording) -> tuple[Label, ...]:
     return tuple(Label(at, ", ".join(texts)) for at, texts in list(found.items())[:_GIVEN])
 
 
-def _comparisons(node: ast.Expression) -> Iterator[tuple[ast.Expression, str, ast.Expression]]:
+def _comparisons(node: ast.Expression) -> Iterator[Stated]:
     match node:
         case ast.Comparison(operands=operands, operators=operators):
             yield from zip(operands, operators, operands[1:], strict=False)
@@ -448,33 +390,28 @@ def _comparisons(node: ast.Expression) -> Iterator[tuple[ast.Expression, str, as
 def _numbers(wording: Wording, node: ast.Expression) -> tuple[Num, ...]:
     """Returns the number of a side, or the two of a point; empty for anything else."""
     value = wording.value(node)
-    if isinstance(value, Num):
-        return (value,)
-    is_place = isinstance(value, PointVal) or (isinstance(value, Geometry) and value.type == "point")
-    point = as_point(wording.it, value, node, wording.env) if value is not None and is_place else None
-    return (point.x, point.y) if point is not None else ()
+    if isinstance(value, Geometry) and value.type == "point":
+        value = as_point(wording.it, value, node, wording.env)
+    return numbers_of(value) if value is not None else ()
 
 
-def _difference(
-    wording: Wording, one: Side, relation: str, other: Side, evaluate: Evaluate, tolerance: float
-) -> str:
-    """Returns the text for a false comparison; empty for one that holds."""
-    pairs = _pairs(one, relation, other)
-    if not pairs:
-        return ""
+def _difference(wording: Wording, stated: Stated, evaluate: Evaluate, tolerance: float) -> str:
+    """Returns the text for a false comparison; empty for one that holds, or that is not one of numbers."""
+    (left, relation, right), pairs = stated, _pairs(wording, stated)
     met = [holds(pair, evaluate, tolerance) for pair in pairs]
-    if any(met) if relation == "!=" else all(met):
+    if not pairs or (any(met) if relation == "!=" else all(met)):
         return ""
     x, y = _apart([evaluate(pair.left) for pair in pairs], [evaluate(pair.right) for pair in pairs])
-    sums = [_in_numbers(wording, node, evaluate) for node, _ in (one, other)]
+    sums = [_in_numbers(wording, side, evaluate) for side in (left, right)]
     left_side = f"{sums[0]} = {x}, which" if sums[0] else x
     return f"{left_side} is not {relation} {y}" + (f" = {sums[1]}" if sums[1] else "")
 
 
-def _pairs(one: Side, relation: str, other: Side) -> list[Comparison]:
+def _pairs(wording: Wording, stated: Stated) -> list[Comparison]:
     """Returns the comparisons of numbers that a comparison stands for; empty if they do not go together."""
-    pairs = []
-    for a, b in zip(one[1], other[1], strict=True):
+    relation, pairs = stated[1], list[Comparison]()
+    one, other = (_numbers(wording, side) for side in (stated[0], stated[2]))
+    for a, b in zip(one, other, strict=True) if len(one) == len(other) else ():
         left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
         try:
             dimension = units.add(a.dimension, b.dimension)
@@ -491,10 +428,8 @@ def compared(wording: Wording) -> tuple[Comparison, ...]:
     if any(isinstance(n, ast.Binary) and n.operator == "or" for n in ast.walk(wording.node)):
         return ()
     found: list[Comparison] = []
-    for left, relation, right in _comparisons(wording.node):
-        one, other = (left, _numbers(wording, left)), (right, _numbers(wording, right))
-        is_known = relation in RELATIONS and one[1] and len(one[1]) == len(other[1])
-        pairs = _pairs(one, relation, other) if is_known else []
+    for stated in _comparisons(wording.node):
+        pairs = _pairs(wording, stated) if stated[1] in RELATIONS else []
         if not pairs:
             return ()
         found += pairs

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TypeAlias
@@ -224,14 +224,15 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -
         plain = [bind(c, given) for c in among if c.may_take(positional, words)]
         if any(isinstance(outcome, Binding) for outcome in plain):
             return plain
+    named = [i for i, g in enumerate(given) if g.name is not None]
     for among in choices:
         loose = [_loosely(candidate, given) for candidate in among]
-        if fits := _unambiguous([b for b in loose if isinstance(b, Binding)], given):
+        if fits := _agreeing(loose, given, named):
             return fits
     if following := _following(given):
         for among in choices:
             filled = [_filling(candidate, given, following) for candidate in among]
-            if fits := _agreeing([b for b in filled if isinstance(b, Binding)], given, following):
+            if fits := _agreeing(filled, given, following):
                 return fits
     return loose
 
@@ -245,14 +246,19 @@ def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> B
     return min(fits, key=lambda b: b.cost) if fits else [o for o in found if isinstance(o, Mismatch)]
 
 
-def _unambiguous(fits: Sequence[Binding], given: Sequence[GivenArgument]) -> list[Binding | Mismatch]:
-    """Returns the candidates that fit; a mismatch if a word means one parameter here and another there."""
-    for index, argument in enumerate(given):
-        if argument.name is None or isinstance(argument.type, AnyType):
-            continue
-        meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
-        if len(meant) > 1 and fold(argument.name) not in map(fold, meant):
-            return [_ambiguous(fit.signature, argument.name, list(meant), index) for fit in fits]
+def _agreeing(
+    found: Outcomes, given: Sequence[GivenArgument], asked: Iterable[int]
+) -> list[Binding | Mismatch]:
+    """Returns the candidates that fit; a mismatch if one of the arguments `asked` for is one parameter here
+    and another there, and does not say which by its name.
+    """
+    fits = [outcome for outcome in found if isinstance(outcome, Binding)]
+    for index in asked:
+        word = given[index].name
+        meant = list(dict.fromkeys(n for fit in fits if (n := fit.parameter_of(index)) is not None))
+        is_said = word is not None and fold(word) in map(fold, meant)
+        if len(meant) > 1 and not is_said and not isinstance(given[index].type, AnyType):
+            return [_ambiguous(fit.signature, word, meant, index) for fit in fits]
     return list(fits)
 
 
@@ -300,21 +306,9 @@ def _filling(
     return outcome
 
 
-def _agreeing(
-    fits: Sequence[Binding], given: Sequence[GivenArgument], following: Sequence[int]
-) -> list[Binding | Mismatch]:
-    """Returns what fits; a mismatch if an argument without a name is one parameter here and another there."""
-    for index in following:
-        meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
-        if len(meant) > 1 and not isinstance(given[index].type, AnyType):
-            why = f"does not tell whether {' or '.join(ticked(meant))} is meant"
-            return [Mismatch(fit.signature, why, index, tuple(meant)) for fit in fits]
-    return list(fits)
-
-
-def _ambiguous(signature: Signature, word: str, meant: Sequence[str], index: int) -> Mismatch:
-    names = " or ".join(ticked(meant))
-    return Mismatch(signature, f"does not tell by `{word}` whether {names} is meant", index, tuple(meant))
+def _ambiguous(signature: Signature, word: str | None, meant: Sequence[str], index: int) -> Mismatch:
+    by, names = f" by `{word}`" if word is not None else "", " or ".join(ticked(meant))
+    return Mismatch(signature, f"does not tell{by} whether {names} is meant", index, tuple(meant))
 
 
 def _loosely(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mismatch:
@@ -428,7 +422,7 @@ def _renamed(signature: Signature, read: _Read) -> _Read | Mismatch:
     for g, source in read:
         meant = _meanings(signature, g.name, taken) if g.name in open_words and g.name else []
         if len(meant) > 1:
-            return _ambiguous(signature, g.name or "", meant, source.index)
+            return _ambiguous(signature, g.name, meant, source.index)
     return [(replace(g, name=known.get(g.name or "", g.name)), source) for g, source in read]
 
 

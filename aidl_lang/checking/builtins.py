@@ -24,6 +24,12 @@ from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
+
+def word_set(*lines: str) -> frozenset[str]:
+    """Returns the words of some lines."""
+    return frozenset(word for line in lines for word in line.split())
+
+
 # --- The fields that every program can name behind a dot, of primitives and boxes, and their types.
 
 FINISHES = frozenset({"fillet", "chamfer"})
@@ -48,11 +54,7 @@ def _type(word: str) -> Type:
     return ListType(GeometryType(kind)) if kind != word else _TYPES[word]
 
 
-_TYPES: Mapping[str, Type] = {
-    **dict.fromkeys(("length", "size"), _LENGTH),
-    **dict.fromkeys(("angle", "direction"), _ANGLE),
-    "point": _POINT,
-}
+_TYPES: Mapping[str, Type] = {**PARAMETER_TYPES, "size": _LENGTH, "direction": _ANGLE}
 
 PRIMITIVE: Mapping[str, Mapping[str, Type]] = {
     kind: {name: _type(word) for name, word in each.types.items()} for kind, each in PRIMITIVES.items()
@@ -78,11 +80,9 @@ PATTERN: Mapping[str, Mapping[str, Type]] = {
 }
 """Fields of a pattern, beside its members."""
 
-OUTLINE = frozenset(
-    (
-        *("corner", "corners", "segment", "segments", "edge", "edges", "point", "points", "fillet"),
-        *("chamfer", "outline", "parts", "source", "member", "members"),
-    )
+OUTLINE = word_set(
+    "corner corners segment segments edge edges point points fillet",
+    "chamfer outline parts source member members",
 )
 """Names that operations give to shapes beside those of their definitions; only the builder knows which."""
 
@@ -231,9 +231,7 @@ def _table() -> dict[str, tuple[Signature, ...]]:
 
 SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
 
-OUTLINES = frozenset(
-    ("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip", "tiled")
-)
+OUTLINES = word_set("offset shell thick hull union intersect difference cut clip tiled")
 """Operations that make an outline of others by exact geometry, after solving."""
 
 EDITS = frozenset({"move", "translate", "rotate", "scale"})
@@ -242,19 +240,15 @@ EDITS = frozenset({"move", "translate", "rotate", "scale"})
 PATTERNS = frozenset({"along", "linear_array", "grid", "polar_array"})
 """Operations that make members of an array."""
 
-CUTS = frozenset(
-    (
-        *("clearance_hole", "through_hole", "tap_hole", "tapped_hole", "counterbore", "countersink"),
-        *("hex_pocket", "nut_trap", "nut_pocket", "bearing_seat"),
-    )
+CUTS = word_set(
+    "clearance_hole through_hole tap_hole tapped_hole counterbore countersink",
+    "hex_pocket nut_trap nut_pocket bearing_seat",
 )
 """Ready-made cuts of the library: holes in a solid or an assembly, outlines elsewhere."""
 
-FILLINGS = frozenset(
-    (
-        *("hatching", "crosshatch", "bricks", "tiles", "shingles", "planks", "ribs", "knurling", "dots"),
-        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers", "rays"),
-    )
+FILLINGS = word_set(
+    "hatching crosshatch bricks tiles shingles planks ribs knurling dots",
+    "scales threads mesh honeycomb wood_grain slats checkers rays",
 )
 """Patterns of the library that fill an outline: each is made by `tiled`."""
 
@@ -267,21 +261,15 @@ DERIVING = COPYING | OUTLINES | FILLINGS
 FOLLOWED = {"text": ("along", "fit")}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
-CONNECTING = frozenset(
-    (
-        *("coil", "spring", "chain", "cord", "wire", "hose", "hose_way", "ray_lines"),
-        *("strip", "ram", "link", "hinge", "bracket", "fitted_text"),
-    )
+CONNECTING = word_set(
+    "coil spring chain cord wire hose hose_way ray_lines strip ram link hinge bracket fitted_text",
 )
 """Shapes of the library that follow points, an ancestor's included, and hold no equations."""
 
-WORDS = frozenset(
-    (
-        *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
-        *("sharp", "miter", "round", "butt", "square", "here", "corner", "max"),
-        *("close", "medium", "loose", "tabs", "notches", "ink", "baseline", "line"),
-        *("hex", "socket", "pan", "countersunk", "lines", "teeth", "none"),
-    )
+WORDS = word_set(
+    "x y left right center top bottom middle horizontal vertical both",
+    "sharp miter round butt square here corner max close medium loose tabs notches ink baseline line",
+    "hex socket pan countersunk lines teeth none",
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
 

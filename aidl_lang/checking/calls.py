@@ -6,15 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking import builtins, rules, units
+from aidl_lang.checking import builtins, rules
 from aidl_lang.checking.binding import outcomes
 from aidl_lang.checking.builtins import COPYING, EDITS, FINISHES, MATH, PATTERNS, PRIMITIVE, is_word
 from aidl_lang.checking.complaints import meant_outside
 from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined, result
 from aidl_lang.checking.resolve import made_by
-from aidl_lang.checking.rules import shown
+from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
@@ -62,7 +63,7 @@ def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressio
         value = node.arguments[0].value
         message = f"`{shown(node)}` is about its centre, here as everywhere"
         hint = "for one that begins at the origin: `constrain s.bottom_left == origin`"
-        fix = Fix("name the size", (Edit(_before(value), "size: "),), is_sure=True)
+        fix = Fix("name the size", (Edit(place_before(value), "size: "),), is_sure=True)
         check.report("N0502", message, node, hints=[hint], fix=fix)
     pair = next((s for s in fit.sources if s.other is not None and "width" in fit.signature.by_fold), None)
     if pair is not None and pair.other is not None:
@@ -136,15 +137,14 @@ def check_unused_params(check: Inference) -> None:
 
 def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
     """Reports numbers of radians read as degrees, and the reverse."""
-    called = _called(check, node)
-    wanted = {name: kind for name, kind, _ in fit.signature.parameters}
+    called = check.called(node)
     for index, value in enumerate(nodes):
-        kind = wanted.get(fit.parameter_of(index) or "")
-        if isinstance(kind, NumberType) and kind.dimension == ANGLE and _called(check, value) == "radians":
+        kind = fit.kind_of(index)
+        if isinstance(kind, NumberType) and kind.dimension == ANGLE and check.called(value) == "radians":
             assert isinstance(value, ast.Call)
             inner = value.arguments[0].value
             _not_degrees(check, value, inner, "deg", f"`{shown(value)}` is a plain number")
-        elif called in _TRIGONOMETRY and _is_module(check, node) and _is_plain(check, value):
+        elif called in _TRIGONOMETRY and _is_of_module(check, node) and _is_plain(check, value):
             _not_degrees(check, value, value, "rad", f"`{shown(node)}` is read in radians elsewhere")
         elif called == "degrees" and _is_written(check, value):
             message = f"`{shown(node)}` turns radians into an angle"
@@ -177,14 +177,9 @@ def _not_degrees(
     check.report("E0348", message, place, hints=[hint], fix=fix)
 
 
-def _called(check: Inference, node: ast.Expression) -> str | None:
-    return check.called(node) if isinstance(node, ast.Call) else None
-
-
-def _is_module(check: Inference, node: ast.Call) -> bool:
-    receiver = node.receiver
-    symbol = check.resolution.uses.get(receiver) if isinstance(receiver, ast.Name) else None
-    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.name in MATH
+def _is_of_module(check: Inference, node: ast.Call) -> bool:
+    space = check.namespace(node.receiver)
+    return space is not None and space.name in MATH
 
 
 def _is_written(check: Inference, node: ast.Expression) -> bool:
@@ -202,7 +197,7 @@ def _is_plain(check: Inference, node: ast.Expression) -> bool:
 
 def check_square(check: Inference, node: ast.Expression) -> None:
     """Reports `s = square(10)`, which could be a shape or a number."""
-    if _called(check, node) != "square" or not isinstance(node, ast.Call) or len(node.arguments) != 1:
+    if check.called(node) != "square" or not isinstance(node, ast.Call) or len(node.arguments) != 1:
         return
     value = node.arguments[0].value
     kind = check.fact(value).type
@@ -212,16 +207,12 @@ def check_square(check: Inference, node: ast.Expression) -> None:
     if isinstance(kind, NumberType):
         message = f"`{shown(node)}` could mean a square of that size, or the number multiplied by itself"
         hint = f"write `square(size: {text})` for the shape, `{text} ^ 2` for the number"
-        fix = Fix("make it the shape", (Edit(_before(value), "size: "),))
+        fix = Fix("make it the shape", (Edit(place_before(value), "size: "),))
         check.report("E0344", message, node, label="say which", hints=[hint], fix=fix)
     elif isinstance(kind, PointType) or (isinstance(kind, ListType) and kind.length == 2):
         from aidl_lang.checking.misfits import two_sizes
 
         two_sizes(check, node, node.arguments[0])
-
-
-def _before(node: ast.Node) -> Span:
-    return Span(node.span.source, node.span.start, node.span.start)
 
 
 _SAME_AS_ARGUMENT = frozenset({"fixed", "guess", "written", "abs", "min", "max"})
@@ -259,11 +250,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
     if (subject := next((i for i in range(len(facts)) if fits[0].parameter_of(i) == "x"), 0)) > 0:
         facts = [facts[subject], *facts]  # `mirror(about: axis, x: a)` has the type of `a`
     if len(fits) > 1 and any(isinstance(f.type, AnyType) for f in facts):
-        results = [_result(check, fit.signature, nodes, facts, reads) for fit in fits]
-        result = results[0]
-        for other in results[1:]:
-            result = joined(result, other)
-        return result
+        return reduce(joined, [_result(check, fit.signature, nodes, facts, reads) for fit in fits])
     chosen = fits[0].signature
     if chosen.node is not None and (symbol := check.resolution.of_definition.get(chosen.node)) is not None:
         check.resolution.uses[node] = symbol
@@ -279,14 +266,9 @@ def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) ->
 def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
     """Returns the arguments of a call, the receiver first."""
     nodes = [argument.value for argument in node.arguments]
-    receiver = node.receiver
-    if receiver is None:
+    if node.receiver is None or check.namespace(node.receiver) is not None:
         return nodes
-    if isinstance(receiver, ast.Name):
-        symbol = check.resolution.uses.get(receiver)
-        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE:
-            return nodes
-    return [receiver, *nodes]
+    return [node.receiver, *nodes]
 
 
 def _spell(
@@ -315,17 +297,10 @@ def _serve(
     for index, fact in enumerate(facts):
         if fact.bare is None:
             continue
-        wanted = {_dimension_for(fit, index) for fit in fits}
+        kinds = [fit.kind_of(index) for fit in fits]
+        wanted = {kind.dimension if isinstance(kind, NumberType) else None for kind in kinds}
         if len(wanted) == 1:
             check.serves(fact, wanted.pop(), nodes[index])
-
-
-def _dimension_for(fit: Binding, index: int) -> units.MaybeDimension:
-    taken = fit.parameter_of(index)
-    for name, kind, _ in fit.signature.parameters:
-        if name == taken and isinstance(kind, NumberType):
-            return kind.dimension
-    return None
 
 
 def _result(
@@ -398,7 +373,7 @@ _OPERATIONS = EDITS | FINISHES
 
 def check_operation(infer: Inference, node: ast.Expression) -> bool:
     """Checks the arguments of an operation on geometry. Returns whether the statement is one."""
-    if not isinstance(node, ast.Call) or infer.called(node) not in _OPERATIONS:
+    if infer.called(node) not in _OPERATIONS:
         return False
     infer.fact(node)
     return True
@@ -406,9 +381,8 @@ def check_operation(infer: Inference, node: ast.Expression) -> bool:
 
 def operation(infer: Inference, node: ast.Expression) -> str | None:
     """Returns the name of the operation that an expression calls; None for anything else."""
-    if not isinstance(node, ast.Call) or isinstance(infer.fact(node).type, TruthType):
-        return None
-    return name if (name := infer.called(node)) in _OPERATIONS else None
+    name = infer.called(node)
+    return name if name in _OPERATIONS and not isinstance(infer.fact(node).type, TruthType) else None
 
 
 # --- The checks of constraints, of constants defined by way of themselves, and of params that count.
@@ -500,15 +474,8 @@ def _asked(check: Inference, nodes: list[ast.Node]) -> Iterator[ast.Expression]:
         if isinstance(node, ast.Index):
             yield node.index
         elif isinstance(node, ast.Call) and node in check.fits:
-            given = arguments(check, node)
-            fits = check.fits[node]
-            for index, value in enumerate(given):
-                kinds = [
-                    kind
-                    for fit in fits
-                    for name, kind, _ in fit.signature.parameters
-                    if name == fit.parameter_of(index)
-                ]
+            for index, value in enumerate(arguments(check, node)):
+                kinds = [kind for fit in check.fits[node] if (kind := fit.kind_of(index)) is not None]
                 if kinds and all(isinstance(k, NumberType) and k.whole for k in kinds):
                     yield value
 
@@ -622,11 +589,11 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
     taken = {symbol.name for symbol in infer.resolution.symbols}
     number = next(n for n in range(1, len(taken) + 2) if f"{kind}_{n}" not in taken)
     name = f"{kind}_{number}"
-    start = Span(node.span.source, node.span.start, node.span.start)
     remedy = "give it a name" if may_make else "make it outside `constrain`"
     message = f"this `{kind}` has no name, so nothing could refer to it"
     hint = f"{remedy}: `{name} = {shown(node)}`"
-    fix = Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None
+    edit = Edit(place_before(node), f"{name} = ")
+    fix = Fix(f"name it `{name}`", (edit,), is_sure=True) if may_make else None
     infer.report("E0323", message, node, label="made and lost", hints=[hint], fix=fix)
 
 

@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aidl_lang.checking.binding import FIELDS, PARAMETERS
-from aidl_lang.checking.builtins import WORDS
+from aidl_lang.checking.builtins import WORDS, word_set
+from aidl_lang.checking.rules import place_before
 from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
@@ -28,7 +29,12 @@ _Node = TypeVar("_Node", bound=ast.Node)
 
 
 def _words(*lines: str) -> frozenset[str]:
-    return frozenset(fold(word) for line in lines for word in line.split())
+    return frozenset(map(fold, word_set(*lines)))
+
+
+def _by_word(*rows: tuple[str, str]) -> Mapping[str, str]:
+    """Returns what stands behind the words of each row, by word."""
+    return {fold(word): said for words, said in rows for word in words.split()}
 
 
 IDLE = _words(
@@ -43,73 +49,60 @@ _SOLIDS = _words(
     "extrude linear_extrude rotate_extrude extrude_linear extrude_rotate revolve loft sweep shell",
 )
 
-_INSTEAD: Mapping[str, str] = {
-    fold(word): instead
-    for words, instead in (
-        ("solid part body component module", "solid base { … }"),
-        ("hole cut pocket", "hole bore { rim = circle(radius: 3) }"),
-        ("assembly group compound", "assembly frame { … }"),
-        ("drawing sketch workplane", "drawing plan { … }"),
-    )
-    for word in words.split()
-}
+_INSTEAD = _by_word(
+    ("solid part body component module", "solid base { … }"),
+    ("hole cut pocket", "hole bore { rim = circle(radius: 3) }"),
+    ("assembly group compound", "assembly frame { … }"),
+    ("drawing sketch workplane", "drawing plan { … }"),
+)
 """Kinds of structures called like functions, and how a structure is written."""
 
-_CALLS: Mapping[str, str] = {
-    fold(word): hint
-    for words, hint in (
-        ("int trunc", "whole numbers come from `floor(x)`, `ceil(x)` or `round(x)`"),
-        ("float number double", "numbers need no conversion"),
-        ("pow power", "powers are written `x ^ 2`"),
-        ("mod fmod", "the remainder is written `a % b`"),
-        ("list array tuple", "lists are written `[1, 2, 3]`, or `[i * 10 for i in 0..3]`"),
-        (
-            "require ensure check",
-            "what must hold is written `constrain …`, or `assert …` to check it at the end",
-        ),
-        ("param parameter slider knob", "a parameter is declared by `param w = 80 in 20..200`"),
-        ("var variable unknown", "an unknown is declared by `var gap = 5`"),
-        ("linear_pattern pattern", "copies in a row are made by `linear_array(…)`"),
-        ("circular_pattern", "copies about a centre are made by `polar_array(…)`"),
-        ("if_then_else ternary select", "a choice is written `if c then a else b`"),
-        (
-            "thicker thinner thicker_than thinner_than higher lower",
-            "sizes compare by `wider`, `narrower`, `taller` and `shorter`, or as numbers: "
-            "`a.width <= b.width`; places by `above` and `below`",
-        ),
-        (
-            "orient oriented rotated rotate_by rotate_to turn rotation_angle fixed_angle angle_constraint "
-            "incline inclined inclination slope slant slanted skew skewed spin pivot",
-            "how a thing is turned is an equation: `a.angle == 30deg`, for a structure `a.rotation == 30deg`",
-        ),
-        (
-            "connect connects connected attach attaches attached join joins joined weld welded glue glued "
-            "attached_to attach_to connected_to connect_to joined_to snap snapped mate mated "
-            "fasten fastened link linked bond meet meets hinge hinged pinned",
-            "points become one by `coincident(a.end, b.start)`, "
-            "parts lie against each other by `touching(a, b)`",
-        ),
-    )
-    for word in words.split()
-}
+_CALLS = _by_word(
+    ("int trunc", "whole numbers come from `floor(x)`, `ceil(x)` or `round(x)`"),
+    ("float number double", "numbers need no conversion"),
+    ("pow power", "powers are written `x ^ 2`"),
+    ("mod fmod", "the remainder is written `a % b`"),
+    ("list array tuple", "lists are written `[1, 2, 3]`, or `[i * 10 for i in 0..3]`"),
+    (
+        "require ensure check",
+        "what must hold is written `constrain …`, or `assert …` to check it at the end",
+    ),
+    ("param parameter slider knob", "a parameter is declared by `param w = 80 in 20..200`"),
+    ("var variable unknown", "an unknown is declared by `var gap = 5`"),
+    ("linear_pattern pattern", "copies in a row are made by `linear_array(…)`"),
+    ("circular_pattern", "copies about a centre are made by `polar_array(…)`"),
+    ("if_then_else ternary select", "a choice is written `if c then a else b`"),
+    (
+        "thicker thinner thicker_than thinner_than higher lower",
+        "sizes compare by `wider`, `narrower`, `taller` and `shorter`, or as numbers: "
+        "`a.width <= b.width`; places by `above` and `below`",
+    ),
+    (
+        "orient oriented rotated rotate_by rotate_to turn rotation_angle fixed_angle angle_constraint "
+        "incline inclined inclination slope slant slanted skew skewed spin pivot",
+        "how a thing is turned is an equation: `a.angle == 30deg`, for a structure `a.rotation == 30deg`",
+    ),
+    (
+        "connect connects connected attach attaches attached join joins joined weld welded glue glued "
+        "attached_to attach_to connected_to connect_to joined_to snap snapped mate mated "
+        "fasten fastened link linked bond meet meets hinge hinged pinned",
+        "points become one by `coincident(a.end, b.start)`, parts lie against each other by `touching(a, b)`",
+    ),
+)
 
-_VALUES: Mapping[str, str] = {
-    fold(word): hint
-    for words, hint in (
-        ("null none nil undefined nan", "every name has a value; leave an argument out to take its default"),
-        ("new", "things are made without `new`: `c = circle(radius: 5)`"),
-        ("lambda function", "functions are defined as `fn f(x) = 2 * x`"),
-        ("inf infinity", "give a number that is large enough, or leave the bound out"),
-        ("e euler", "write the number: `2.718281828`"),
-        ("is equals", "equality is written `a == b`"),
-        ("between", "a range is written `x in 3..5`"),
-        (
-            "model sketch doc part cq b3d wp workplane canvas",
-            "constraints and geometry are written without it",
-        ),
-    )
-    for word in words.split()
-}
+_VALUES = _by_word(
+    ("null none nil undefined nan", "every name has a value; leave an argument out to take its default"),
+    ("new", "things are made without `new`: `c = circle(radius: 5)`"),
+    ("lambda function", "functions are defined as `fn f(x) = 2 * x`"),
+    ("inf infinity", "give a number that is large enough, or leave the bound out"),
+    ("e euler", "write the number: `2.718281828`"),
+    ("is equals", "equality is written `a == b`"),
+    ("between", "a range is written `x in 3..5`"),
+    (
+        "model sketch doc part cq b3d wp workplane canvas",
+        "constraints and geometry are written without it",
+    ),
+)
 
 
 _ROUND = "round corners are geometry: `rounded_rectangle(radius: 5, …)`, or `fillet(outline, 5)`"
@@ -180,10 +173,9 @@ def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
 
 def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
     """Reports `h = …` among constraints with a new name: it compares, but was meant to declare one."""
-    start = Span(name.span.source, name.span.start, name.span.start)
     message = f"there is no `{name.text}` here; among constraints `=` compares"
     hint = f"`let {name.text} = …` names an expression; geometry is made outside"
-    fix = Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None
+    fix = Fix("declare it with `let`", (Edit(place_before(name), "let "),)) if is_value else None
     resolver.report("E0201", message, name, label="not declared", hints=(hint,), fix=fix)
 
 

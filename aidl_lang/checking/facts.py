@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import builtins
 from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import (
     ANY,
-    PARAMETER_TYPES,
     AnyType,
     GeometryType,
     ListType,
@@ -18,8 +18,9 @@ from aidl_lang.checking.types import (
     RangeType,
     StructureType,
     Type,
+    parameter_type,
 )
-from aidl_lang.common.names import find, fold
+from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -66,9 +67,6 @@ class Fact:
     def is_any(self) -> bool:
         return isinstance(self.type, AnyType)
 
-    def reading(self, reads: frozenset[ReadPlace]) -> Fact:
-        return replace(self, reads=reads)
-
     def listed(self, times: int = 1) -> Fact:
         """Returns the fact of a list of such values, or of lists of lists."""
         kind = self.type
@@ -113,29 +111,27 @@ def of_symbol(check: Inference, symbol: Symbol) -> Fact:
         case SymbolKind.NAMESPACE:
             return UNKNOWN
         case SymbolKind.STRUCTURE if symbol.scope is None:  # its own name, inside the structure
-            return _structure_itself(check, symbol.node)
+            return _structure_itself(symbol.node)
         case SymbolKind.LOOP:
             return _loop_variable(check, symbol)
         case SymbolKind.ARGUMENT:
-            return _argument(check, symbol)
+            return _argument(symbol)
         case _:
             return _declared(check, symbol)
 
 
 def _builtin(check: Inference, symbol: Symbol) -> Fact:
     if symbol.name == "self":
-        return _structure_itself(check, check.homes[-1])
+        return _structure_itself(check.homes[-1])
     if symbol.name in builtins.STRUCTURE:
         return Fact(builtins.STRUCTURE[symbol.name])
     let = check.resolution.library.constants.get(symbol.name)
-    return UNKNOWN if let is None else _literal(check, let.value)
+    if let is None or not isinstance(let.value, ast.Number | ast.String | ast.Boolean):
+        return UNKNOWN
+    return check.fact(let.value)
 
 
-def _literal(check: Inference, node: ast.Expression) -> Fact:
-    return check.fact(node) if isinstance(node, ast.Number | ast.String | ast.Boolean) else UNKNOWN
-
-
-def _structure_itself(check: Inference, node: ast.Node | None) -> Fact:
+def _structure_itself(node: ast.Node | None) -> Fact:
     if not isinstance(node, ast.Structure):
         return UNKNOWN
     place = ReadPlace(node)
@@ -156,22 +152,16 @@ def _loop_variable(check: Inference, symbol: Symbol) -> Fact:
     return Fact(ANY, element.reads) if isinstance(element.type, NumberType) else element
 
 
-def _argument(check: Inference, symbol: Symbol) -> Fact:
+def _argument(symbol: Symbol) -> Fact:
     parameter = symbol.node
     assert isinstance(parameter, ast.Parameter)
-    if parameter.type is None:
-        return UNKNOWN
-    word = find(parameter.type.text, PARAMETER_TYPES)
-    return Fact(PARAMETER_TYPES[word]) if word else UNKNOWN
+    return Fact(parameter_type(parameter) or ANY)
 
 
 def _declared(check: Inference, symbol: Symbol) -> Fact:
     """Returns the fact of a declared name; of several declarations, what they have in common."""
-    fact: Fact | None = None
-    for node in symbol.nodes:
-        one = _declaration(check, symbol, node)
-        fact = one if fact is None else joined(fact, one)
-    fact = fact or UNKNOWN
+    facts = [_declaration(check, symbol, node) for node in symbol.nodes]
+    fact = reduce(joined, facts) if facts else UNKNOWN
     if isinstance(fact.type, NumberType) and fact.type.dimension is None and not fact.reads:
         fact = replace(fact, bare=symbol)
     return fact
@@ -211,7 +201,7 @@ def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
             elif is_made:
                 # A copy of an ancestor's geometry is for the ancestor to constrain.
                 far = {p for p in fact.reads if p.holder is not home}
-                fact = fact.reading(frozenset({ReadPlace(home), *far}))
+                fact = replace(fact, reads=frozenset({ReadPlace(home), *far}))
             return fact.listed(len(indices))
         case _:
             return UNKNOWN

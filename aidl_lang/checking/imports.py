@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import field, replace
+from operator import is_
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
 from aidl_lang.checking.binding import PARAMETERS
 from aidl_lang.checking.builtins import COPYING, CUTS, OUTLINES, PATTERNS
 from aidl_lang.checking.library import signature
+from aidl_lang.checking.rules import blocks
 from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
@@ -23,7 +25,9 @@ from aidl_lang.common.world import PROGRAM, WHOLE, FileError, ReadFailure, World
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings import DrawingError, OutlineFile, Trace
+    from aidl_lang.common.drawings import OutlineFile, Trace
+
+N = TypeVar("N", bound=ast.Node)
 
 # --- Ready-made cuts, such as `clearance_hole("m3")`: holes in a solid or an assembly, elsewhere outlines.
 #
@@ -37,17 +41,21 @@ _CENTER = 1
 
 
 def with_placed_cuts(module: ast.Module) -> ast.Module:
-    """Returns a file in which the centre given to a hole stands behind `at`."""
-    if not (cuts := _cuts_in(module)):
-        return module
-    return replace(module, statements=_Reader(cuts).placed(module.statements, "", frozenset()))
+    """Returns a file in which the centre given to a hole stands behind `at`, or is that of a copy."""
+    cuts = _cuts_in(module)
+    new: dict[ast.Node, ast.Node] = {}
+    for node in _assignments(module, cuts):
+        if _is_cut(node.value, cuts):
+            new[node] = _placed(node)
+        else:
+            new |= {each: _moved(each) for each in _members(node.value) if _is_cut(each, cuts)}
+    return _exchanged(module, new) if new else module
 
 
 def hole_calls(module: ast.Module) -> frozenset[ast.Call]:
     """Returns the calls of a file that make holes, of cuts that can make outlines as well."""
-    if not (cuts := _cuts_in(module)):
-        return frozenset()
-    return frozenset(_Reader(cuts).calls(module.statements, "", frozenset()))
+    cuts = _cuts_in(module)
+    return frozenset(call for node in _assignments(module, cuts) for call in _made(node.value, cuts))
 
 
 def meant(candidates: Sequence[Signature], is_hole: bool) -> Sequence[Signature]:
@@ -67,102 +75,93 @@ def _cuts_in(module: ast.Module) -> frozenset[str]:
     return frozenset(found)
 
 
-@record()
-class _Reader:
-    """A reader of bodies: `kind` is that of the structure around, of `outlines` others are made."""
+def _assignments(module: ast.Module, cuts: Set[str]) -> Iterator[ast.Assign]:
+    """Yields the assignments of a file in which a cut makes a hole; none if it has no cuts."""
+    return _holding(module, "", frozenset()) if cuts else iter(())
 
-    cuts: frozenset[str]
 
-    def _is_cut(self, call: ast.Call) -> bool:
-        return fold(call.callee.text) in self.cuts
-
-    # --- Finding --------------------------------------------------------------------------------
-
-    def calls(
-        self, statements: Sequence[ast.Statement], kind: str, outlines: frozenset[str]
-    ) -> Iterator[ast.Call]:
-        for node in statements:
-            match node:
-                case ast.Structure(body=body):
-                    yield from self.calls(body.statements, node.kind, _used_as_outlines(body))
-                case ast.For(body=body):
-                    yield from self.calls(body.statements, kind, outlines)
-                case ast.If(then=then, otherwise=otherwise):
-                    for block in (then, otherwise):
-                        yield from self.calls(block.statements, kind, outlines) if block is not None else ()
-                case ast.Assign(name=name, value=value) if kind in _HOLDING and name.text not in outlines:
-                    yield from self._made(value)
-
-    def _made(self, value: ast.Expression) -> Iterator[ast.Call]:
-        """Yields the cuts that an assignment makes: its value, members of it, or what it makes copies of."""
-        match value:
-            case ast.Call() if self._is_cut(value):
-                yield value
-            case ast.Call(callee=callee, receiver=receiver, arguments=arguments):
-                if callee.text in COPYING | PATTERNS:
-                    named = (a.value for a in arguments if a.name is None or fold(a.name.text) == "x")
-                    if (of := receiver or next(named, None)) is not None:
-                        yield from self._made(of)
-            case ast.List(items=items):
-                for item in items:
-                    yield from self._made(item)
-            case ast.Comprehension(element=element):
-                yield from self._made(element)
-            case ast.Conditional(then=then, otherwise=otherwise):
-                yield from self._made(then)
-                yield from self._made(otherwise)
-
-    # --- Placing --------------------------------------------------------------------------------
-
-    def placed(
-        self, statements: Sequence[ast.Statement], kind: str, outlines: frozenset[str]
-    ) -> tuple[ast.Statement, ...]:
-        return tuple(self._statement(node, kind, outlines) for node in statements)
-
-    def _block(self, block: ast.Block, kind: str, outlines: frozenset[str]) -> ast.Block:
-        return replace(block, statements=self.placed(block.statements, kind, outlines))
-
-    def _statement(self, node: ast.Statement, kind: str, outlines: frozenset[str]) -> ast.Statement:
+def _holding(body: ast.Module | ast.Block, kind: str, outlines: Set[str]) -> Iterator[ast.Assign]:
+    """Yields those in a body: `kind` is that of the structure around, of `outlines` others are made."""
+    for node in body.statements:
         match node:
-            case ast.Structure(body=body):
-                return replace(node, body=self._block(body, node.kind, _used_as_outlines(body)))
-            case ast.For(body=body):
-                return replace(node, body=self._block(body, kind, outlines))
-            case ast.If(then=then, otherwise=otherwise):
-                other = self._block(otherwise, kind, outlines) if otherwise is not None else None
-                return replace(node, then=self._block(then, kind, outlines), otherwise=other)
+            case ast.Structure(body=inner):
+                yield from _holding(inner, node.kind, _used_as_outlines(inner))
+            case ast.For() | ast.If():
+                for block in blocks(node):
+                    yield from _holding(block, kind, outlines)
             case ast.Assign(name=name) if kind in _HOLDING and name.text not in outlines:
-                return self._assign(node)
+                yield node
+
+
+def _is_cut(value: ast.Expression, cuts: Set[str]) -> TypeGuard[ast.Call]:
+    return isinstance(value, ast.Call) and fold(value.callee.text) in cuts
+
+
+def _members(value: ast.Expression) -> Iterator[ast.Expression]:
+    """Yields the expressions of which a value is, or which make its members."""
+    match value:
+        case ast.List(items=items):
+            inner: Sequence[ast.Expression] = items
+        case ast.Comprehension(element=element):
+            inner = (element,)
+        case ast.Conditional(then=then, otherwise=otherwise):
+            inner = (then, otherwise)
+        case _:
+            yield value
+            return
+    for each in inner:
+        yield from _members(each)
+
+
+def _made(value: ast.Expression, cuts: Set[str]) -> Iterator[ast.Call]:
+    """Yields the cuts that an assignment makes: its value, members of it, or what it makes copies of."""
+    for each in _members(value):
+        if _is_cut(each, cuts):
+            yield each
+        elif isinstance(each, ast.Call) and each.callee.text in COPYING | PATTERNS:
+            named = (a.value for a in each.arguments if a.name is None or fold(a.name.text) == "x")
+            if (of := each.receiver or next(named, None)) is not None:
+                yield from _made(of, cuts)
+
+
+def _placed(node: ast.Assign) -> ast.Assign:
+    assert isinstance(node.value, ast.Call)
+    placement, (call, center) = node.placement, _without_center(node.value)
+    if center is None or (placement is not None and placement.at is not None):
         return node
+    rotated = placement.rotated if placement is not None else None
+    return replace(node, value=call, placement=ast.Placement(center, rotated, span=center.span))
 
-    def _assign(self, node: ast.Assign) -> ast.Assign:
-        value, placement = node.value, node.placement
-        if not (isinstance(value, ast.Call) and self._is_cut(value)):
-            moved = self._moved(value)
-            return node if moved is value else replace(node, value=moved)
-        call, center = _without_center(value)
-        if center is None or (placement is not None and placement.at is not None):
-            return node
-        rotated = placement.rotated if placement is not None else None
-        return replace(node, value=call, placement=ast.Placement(center, rotated, span=center.span))
 
-    def _moved(self, value: ast.Expression) -> ast.Expression:
-        """Returns a value in which each cut with a centre is a copy moved there."""
-        match value:
-            case ast.Call() if self._is_cut(value):
-                call, center = _without_center(value)
-                if center is None:
-                    return value
-                callee = ast.Identifier("copy", span=value.callee.span)
-                by = ast.Argument(ast.Identifier("by", span=center.span), center, span=center.span)
-                return ast.Call(callee, None, (ast.Argument(None, call, span=call.span), by), span=value.span)
-            case ast.List(items=items):
-                return replace(value, items=tuple(map(self._moved, items)))
-            case ast.Comprehension(element=element):
-                return replace(value, element=self._moved(element))
-            case ast.Conditional(then=then, otherwise=otherwise):
-                return replace(value, then=self._moved(then), otherwise=self._moved(otherwise))
-        return value
+def _moved(cut: ast.Call) -> ast.Call:
+    """Returns a cut with a centre as a copy that is moved there."""
+    call, center = _without_center(cut)
+    if center is None:
+        return cut
+    callee = ast.Identifier("copy", span=cut.callee.span)
+    by = ast.Argument(ast.Identifier("by", span=center.span), center, span=center.span)
+    return ast.Call(callee, None, (ast.Argument(None, call, span=call.span), by), span=cut.span)
+
+
+def _exchanged(node: N, new: Mapping[ast.Node, ast.Node]) -> N:
+    """Returns a tree in which some of the nodes below the first are others; itself if there are none."""
+    changed: dict[str, object] = {}
+    names: tuple[str, ...] = node.__match_args__
+    for name in names:
+        value = getattr(node, name)
+        if isinstance(value, ast.Node):
+            other: object = new.get(value) or _exchanged(value, new)
+        elif type(value) is tuple:
+            other = tuple(
+                (new.get(each) or _exchanged(each, new)) if isinstance(each, ast.Node) else each
+                for each in value
+            )
+            other = value if all(map(is_, value, other)) else other
+        else:
+            continue
+        if other is not value:
+            changed[name] = other
+    return replace(node, **changed) if changed else node  # type: ignore[arg-type]
 
 
 def _used_as_outlines(body: ast.Block) -> frozenset[str]:
@@ -206,11 +205,6 @@ class ImportedDrawing:
             scope.callables.setdefault(node.name.text, []).append(signature(node))
         return scope
 
-    def remarks(self, at: ast.Node) -> Iterator[Diagnostic]:
-        """Yields what there is to be told of the file, at the place where it is imported."""
-        for remark in self.outlines.remarks:
-            yield Diagnostic(remark.code, remark.message, at.span, hints=remark.hints)
-
 
 def digest(data: bytes) -> bytes:
     """Returns what tells the contents of a file from all others."""
@@ -241,10 +235,6 @@ def read(path: str, data: bytes) -> ImportedDrawing:
         for s in parsed.module.statements
     )
     return ImportedDrawing(found, replace(parsed.module, statements=tuple(statements)), digest(data))
-
-
-def refused(error: DrawingError, node: ast.Node) -> Diagnostic:
-    return Diagnostic(error.code, error.message, node.span, hints=error.hints)
 
 
 def _doc(path: str, found: OutlineFile, name: str) -> str:
@@ -316,7 +306,7 @@ class ImportedModules:
     drawings  the files among these that are drawings of other programs
     """
 
-    modules: tuple[ast.Module, ...] = ()
+    modules: list[ast.Module] = field(default_factory=list)
     targets: dict[ast.Import, ast.Module] = field(default_factory=dict)
     drawings: dict[ast.Module, ImportedDrawing] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -326,7 +316,6 @@ def load_imports(main: ast.Module, world: World | None) -> ImportedModules:
     """Reads the files that a program imports, directly or by way of others."""
     loader = _Loader(world)
     loader.visit(main, PurePosixPath(main.source.name.replace("\\", "/")).name)
-    loader.result.modules = tuple(loader.order)
     return loader.result
 
 
@@ -334,7 +323,6 @@ class _Loader:
     def __init__(self, world: World | None) -> None:
         self.world = world
         self.result = ImportedModules()
-        self.order: list[ast.Module] = []
         self.known: dict[str, ast.Module] = {}
         self.open: list[str] = []
         self.characters = self.bytes = 0
@@ -347,7 +335,7 @@ class _Loader:
             if isinstance(statement, ast.Import):
                 self._import(statement, path)
         self.open.pop()
-        self.order.append(module)
+        self.result.modules.append(module)
 
     def _import(self, statement: ast.Import, importer: str) -> None:
         written = statement.path.value
@@ -370,11 +358,34 @@ class _Loader:
         if len(self.known) > MAX_FILES or len(self.open) > MAX_FILES // 4:
             self._report("E0804", f"a program may import at most {MAX_FILES} files", statement.path)
             return None
-        if is_drawing(path):
-            return self._drawing(statement, path)
-        text = self._text(statement, path)
-        if text is None:
+        if is_drawing(path) and statement.alias is None and not statement.names:
+            name = re.sub(r"\W+", "_", PurePosixPath(path).stem).strip("_")
+            self.result.diagnostics.append(nameless(statement, name if name.isidentifier() else "art"))
             return None
+        if self.world is None:
+            message = f"`{statement.path.value}` cannot be imported: only this text is at hand"
+            self._report("E0210", message, statement.path)
+            return None
+        try:
+            read_file = self._drawing if is_drawing(path) else self._program
+            return read_file(statement, path, self.world)
+        except FileError as error:
+            hint = "paths are relative to the file that imports"
+            if error.reason is ReadFailure.NOT_A_PROGRAM:
+                hint = f"`aidl check {path}` tells what is wrong in it"
+            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
+            return None
+
+    def _program(self, statement: ast.Import, path: str, world: World) -> ast.Module | None:
+        if PurePosixPath(path).suffix != SUFFIX:
+            other = "the library needs no import"
+            if PurePosixPath(path).suffix:
+                other = "drawings of other programs end in `.svg` or `.dxf`"
+            hints = f"programs end in `{SUFFIX}`: `{statement.path.value}{SUFFIX}`", other
+            message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
+            self._report("E0210", message, statement.path, *hints)
+            return None
+        text = world.read(path)
         self.characters += len(text)
         if self.characters > MAX_CHARACTERS:
             limit = f"{MAX_CHARACTERS:,} characters"
@@ -388,61 +399,25 @@ class _Loader:
         self.visit(module, path)
         return module
 
-    def _drawing(self, statement: ast.Import, path: str) -> ast.Module | None:
-        if statement.alias is None and not statement.names:
-            name = re.sub(r"\W+", "_", PurePosixPath(path).stem).strip("_")
-            self.result.diagnostics.append(nameless(statement, name if name.isidentifier() else "art"))
-            return None
-        if self.world is None:
-            self._unread(statement)
-            return None
+    def _drawing(self, statement: ast.Import, path: str, world: World) -> ast.Module | None:
         from aidl_lang.common.drawings import DrawingError
 
-        try:
-            data = self.world.read_bytes(path)
-            self.bytes += len(data)
-            if self.bytes > MAX_BYTES:
-                most = f"may have at most {MAX_BYTES // 1_000_000} MB"
-                self._report("E0804", f"drawings that a program imports {most}", statement.path)
-                return None
-            found = read(path, data)
-        except FileError as error:
-            hint = "paths are relative to the file that imports"
-            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
+        data = world.read_bytes(path)
+        self.bytes += len(data)
+        if self.bytes > MAX_BYTES:
+            most = f"may have at most {MAX_BYTES // 1_000_000} MB"
+            self._report("E0804", f"drawings that a program imports {most}", statement.path)
             return None
+        try:
+            found = read(path, data)
         except DrawingError as error:
-            self.result.diagnostics.append(refused(error, statement.path))
+            self._report(error.code, error.message, statement.path, *error.hints)
             return None
         self.known[path] = found.module
         self.result.drawings[found.module] = found
-        self.result.diagnostics += found.remarks(statement.path)
+        for remark in found.outlines.remarks:
+            self._report(remark.code, remark.message, statement.path, *remark.hints)
         return found.module
-
-    def _unread(self, statement: ast.Import) -> None:
-        message = f"`{statement.path.value}` cannot be imported: only this text is at hand"
-        self._report("E0210", message, statement.path)
-
-    def _text(self, statement: ast.Import, path: str) -> str | None:
-        written = statement.path.value
-        if self.world is None:
-            self._unread(statement)
-            return None
-        if PurePosixPath(path).suffix != SUFFIX:
-            other = "the library needs no import"
-            if PurePosixPath(path).suffix:
-                other = "drawings of other programs end in `.svg` or `.dxf`"
-            hints = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", other
-            message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
-            self._report("E0210", message, statement.path, *hints)
-            return None
-        try:
-            return self.world.read(path)
-        except FileError as error:
-            hint = "paths are relative to the file that imports"
-            if error.reason is ReadFailure.NOT_A_PROGRAM:
-                hint = f"`aidl check {path}` tells what is wrong in it"
-            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
-            return None
 
     def _report(self, code: str, message: str, node: ast.Node, *hints: str) -> None:
         self.result.diagnostics.append(Diagnostic(code, message, node.span, hints=hints))

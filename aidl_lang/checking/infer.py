@@ -16,8 +16,8 @@ from aidl_lang.checking import calls, facts, members, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolve import resolve
-from aidl_lang.checking.rules import TypeMisfit, shown
-from aidl_lang.checking.symbols import Resolution, Symbol
+from aidl_lang.checking.rules import TypeMisfit, place_before, shown
+from aidl_lang.checking.symbols import Resolution, Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -95,9 +95,16 @@ class Inference:
         answer: T = _of_standard(self.resolution.library, ask, definition, *more)
         return answer
 
-    def called(self, node: ast.Call) -> str:
-        """Returns the name that a call calls, with aliases resolved."""
-        return self.resolution.canonical.get(node.callee, node.callee.text)
+    def called(self, node: ast.Expression) -> str:
+        """Returns the name that a call calls, with aliases resolved; empty for other expressions."""
+        return (
+            self.resolution.canonical.get(node.callee, node.callee.text) if isinstance(node, ast.Call) else ""
+        )
+
+    def namespace(self, node: ast.Node | None) -> Symbol | None:
+        """Returns the file that an expression names; None for other expressions."""
+        symbol = self.resolution.uses.get(node) if isinstance(node, ast.Name) else None
+        return symbol if symbol is not None and symbol.kind is SymbolKind.NAMESPACE else None
 
     def wants(self, node: ast.Expression, what: str, *allowed: type[Type]) -> Fact:
         """Returns the fact of an expression; reports one that is of none of the types allowed."""
@@ -175,7 +182,7 @@ class Inference:
         return Fact(ListType(kind, len(facts)), reads, first.of if same else None)
 
     def _comprehension(self, node: ast.Comprehension) -> Fact:
-        reads = self.iterable(node.iterable, len(node.variables)).reads
+        reads = self.iterable(node.iterable).reads
         if node.condition is not None:
             self.test(node.condition)
         element = self.fact(node.element)
@@ -183,7 +190,7 @@ class Inference:
         return replace(listed, reads=element.reads | reads)
 
     def _for_arguments(self, node: ast.ForArguments) -> Fact:
-        reads = self.iterable(node.iterable, len(node.variables)).reads
+        reads = self.iterable(node.iterable).reads
         members = self._argument_block(node.body)
         return replace(members.listed(), reads=members.reads | reads)
 
@@ -203,7 +210,7 @@ class Inference:
                 facts.append(fact.element() if isinstance(fact.type, ListType) else fact)
         return reduce(joined, facts) if facts else UNKNOWN
 
-    def iterable(self, node: ast.Expression, variables: int = 1) -> Fact:
+    def iterable(self, node: ast.Expression) -> Fact:
         """Returns the fact of the value that a `for` runs through."""
         fact = self.fact(node)
         match fact.type:
@@ -217,7 +224,7 @@ class Inference:
                 misfit = replace(rules.no_run(fact.type), hints=(f"`{counted}` counts from 0 up to it",))
                 fix = None
                 if isinstance(node, ast.Name | ast.Number | ast.Member | ast.Call):
-                    fix = Fix(f"write `{counted}`", (Edit(_at(node), "0..<"),), is_sure=True)
+                    fix = Fix(f"write `{counted}`", (Edit(place_before(node), "0..<"),), is_sure=True)
                 return self.misfit(misfit, node, fix)
             case _:
                 return self.misfit(rules.no_run(fact.type), node)
@@ -347,10 +354,6 @@ _INFER: dict[type, Callable[..., Fact]] = {
 def _loose(kind: Type) -> Type:
     """Returns a type without the properties that may differ among the members of a list."""
     return NumberType(kind.dimension, whole=kind.dimension is None) if isinstance(kind, NumberType) else kind
-
-
-def _at(node: ast.Node) -> Span:
-    return Span(node.span.source, node.span.start, node.span.start)
 
 
 _EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))

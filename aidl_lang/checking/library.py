@@ -226,14 +226,14 @@ def _opened(data: bytes, sources: tuple[SourceFile, ...]) -> Library:
 
     return Library(
         sources=sources,
-        callables=_Lazy(tuple(index["definitions"]), overloads),
+        callables=Lazy(tuple(index["definitions"]), overloads),
         aliases=index["aliases"],
-        constants=_Lazy(tuple(index["constants"]), lambda name: tree(*index["constants"][name])),
+        constants=Lazy(tuple(index["constants"]), lambda name: tree(*index["constants"][name])),
         _modules=lambda: _parse(sources)[0],
     )
 
 
-class _Lazy(Mapping[str, Any]):
+class Lazy(Mapping[str, Any]):
     """A mapping of known keys to values that are made when first looked up."""
 
     def __init__(self, keys: tuple[str, ...], make: Callable[[str], Any]) -> None:

@@ -187,10 +187,8 @@ def _is_plain(node: ast.Expression) -> bool:
 
 
 def member(check: Inference, node: ast.Member) -> Fact:
-    if isinstance(node.value, ast.Name):
-        symbol = check.resolution.uses.get(node.value)
-        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE:
-            return _of_file(check, node, symbol)
+    if (space := check.namespace(node.value)) is not None:
+        return _of_file(check, node, space)
     return member_of(check, check.fact(node.value), node)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
 from aidl_lang.checking.complaints import called_field, did_you_mean, respell
 from aidl_lang.checking.facts import body_of, is_number, is_point
-from aidl_lang.checking.rules import shown
+from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.types import (
     Binding,
     GeometryType,
@@ -121,9 +121,8 @@ def _closeness(miss: Mismatch, given: Sequence[GivenArgument]) -> tuple[int, int
     names = [g.name for g in given if g.name is not None]
     known = sum(1 for name in names if _knows(miss.signature, name))
     same = sum(1 for name in names if fold(name) in miss.signature.by_fold)
-    needed = sum(1 for _, _, optional in miss.signature.parameters if not optional)
     room = -abs(len(miss.signature.parameters) - len(given))
-    return known, same, int(miss.argument is not None), min(0, len(given) - needed), room
+    return known, same, int(miss.argument is not None), min(0, len(given) - miss.signature.needed), room
 
 
 def _knows(signature: Signature, word: str) -> bool:
@@ -153,13 +152,12 @@ def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgumen
     bottom_center: p)`. Returns whether they would fit by name.
     """
     names = in_order([m.signature for m in misses], given)
-    before = len(given) - len(node.arguments)
-    loose = [(node.arguments[i - before], name) for i, name in sorted(names.items()) if i >= before]
+    first = len(given) - len(node.arguments)
+    loose = [(node.arguments[i - first], name) for i, name in sorted(names.items()) if i >= first]
     if not loose or len(loose) < len(names) or len(names) == len(given):
         return False
     named = [f"{name}: {shown(a.value)}" for a, name in loose]
-    spans = [(a.value.span, name) for a, name in loose]
-    edits = tuple(Edit(Span(s.source, s.start, s.start), f"{name}: ") for s, name in spans)
+    edits = tuple(Edit(place_before(a.value), f"{name}: ") for a, name in loose)
     written = next(a.name for a in node.arguments if a.name is not None)
     check.report(
         "E0311",
@@ -197,11 +195,8 @@ def _loose_coordinates(
         values = [a.value for a in node.arguments]
         edits, texts = [], [shown(v) for v in values]
         for i in range(0, 2 * points, 2):
-            first, second = values[i].span, values[i + 1].span
-            edits += [
-                Edit(Span(first.source, first.start, first.start), "("),
-                Edit(Span(second.source, second.end, second.end), ")"),
-            ]
+            end = values[i + 1].span
+            edits += [Edit(place_before(values[i]), "("), Edit(Span(end.source, end.end, end.end), ")")]
             texts[i], texts[i + 1] = f"({texts[i]}", f"{texts[i + 1]})"
         call = f"{node.callee.text}({', '.join(texts)})"
         message = f"a point is written in parentheses: `{call}`"
@@ -248,15 +243,14 @@ def _half_or_double(check: Inference, node: ast.Call, given: Sequence[GivenArgum
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
         word = fold(argument.name.text)
-        for other in ("diameter", "radius"):
-            wanted = "radius" if other == "diameter" else "diameter"
+        for other, wanted, ratio in (("diameter", "radius", "{} / 2"), ("radius", "diameter", "2 * {}")):
             if word != other and other not in PARAMETERS.get(word, ()):
                 continue
             if not any(wanted in m.signature.by_fold for m in misses):
                 continue
             text = argument.value.span.text
             text = text if isinstance(argument.value, ast.Number | ast.Name | ast.Member) else f"({text})"
-            value = f"{text} / 2" if wanted == "radius" else f"2 * {text}"
+            value = ratio.format(text)
             span = Span(node.span.source, argument.name.span.start, argument.value.span.end)
             message = f"`{node.callee.text}` takes a `{wanted}`, not a {other}"
             fix = Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True)
@@ -277,10 +271,6 @@ def _not_together(check: Inference, node: ast.Call, given: Sequence[GivenArgumen
     return True
 
 
-def _meanings(word: str, names: Sequence[str]) -> list[str]:
-    return [meaning for meaning in PARAMETERS[word] if meaning in names]
-
-
 def _unknown_parameter(
     check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
 ) -> bool:
@@ -297,7 +287,8 @@ def _unknown_parameter(
         is_word = len(identifier.text) <= 4 or fold(identifier.text) in WORDS
         if not like and not is_word and (near := nearest(identifier.text, synonyms)):
             like = [synonyms[near[0]]]
-            is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], free) == like
+            meant = [meaning for meaning in PARAMETERS[near[0]] if meaning in free]
+            is_sure = is_slip(fold(identifier.text), near[0]) and meant == like
             fix = Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),), is_sure)
         if isinstance(closest.node, ast.Structure) and fold(identifier.text) in ("at", "center"):
             _placed_within(check, node, identifier)

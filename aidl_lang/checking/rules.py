@@ -16,6 +16,7 @@ from aidl_lang.checking.types import (
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, MaybeDimension
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 # --- The words of the checker for types and for program text.
@@ -35,6 +36,16 @@ def shown(node: ast.Node) -> str:
     """Returns the text of an expression on one line, shortened if it is long."""
     text = node.span.one_line
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def place_before(node: ast.Node) -> Span:
+    """Returns the place of what is put before an expression."""
+    return Span(node.span.source, node.span.start, node.span.start)
+
+
+def blocks(node: ast.For | ast.If) -> list[ast.Block]:
+    """Returns the body of a loop, or the branches of an `if`."""
+    return [child for child in ast.children(node) if isinstance(child, ast.Block)]
 
 
 def in_box(kind: Type, text: str, other: Type) -> str | None:

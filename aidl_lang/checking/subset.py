@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from enum import StrEnum
 
-from aidl_lang.checking.builtins import EDITS, FINISHES, SIGNATURES
+from aidl_lang.checking.builtins import EDITS, FINISHES, SIGNATURES, word_set
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.types import AnyType, StructureType, TruthType, Type
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
@@ -56,16 +56,14 @@ class Restriction:
     hint: str
 
 
-PAPER_NAMES = frozenset(
-    (  # noqa: SIM905 (a list of words)
-        "point line arc circle rectangle triangle rounded_rectangle polygon "
-        "above below left_of right_of inside centered_in centered_horizontally centered_vertically touching "
-        "taller shorter wider narrower same_width same_height same_size "
-        "horizontal vertical length radius diameter fixed coincident concentric tangent equal equal_length "
-        "equal_radius symmetric parallel perpendicular collinear midpoint on_segment distance "
-        "horizontal_distance vertical_distance angle "
-        "sin cos asin acos sqrt abs norm min max len range enumerate zip reversed sum str vector"
-    ).split()
+PAPER_NAMES = word_set(
+    "point line arc circle rectangle triangle rounded_rectangle polygon",
+    "above below left_of right_of inside centered_in centered_horizontally centered_vertically touching",
+    "taller shorter wider narrower same_width same_height same_size",
+    "horizontal vertical length radius diameter fixed coincident concentric tangent equal equal_length",
+    "equal_radius symmetric parallel perpendicular collinear midpoint on_segment distance",
+    "horizontal_distance vertical_distance angle",
+    "sin cos asin acos sqrt abs norm min max len range enumerate zip reversed sum str vector",
 )
 """What programs may call in `paper`: its primitives, its constraints by the names they have here, its
 operators, and what Python gave it besides.
@@ -144,23 +142,19 @@ _ABSENT: Mapping[Variant, str] = {
     Variant.NO_CONSTRAINTS: r"\b(constrain|prefer|var|guess|fixed)\b|\bas a constraint\b|\bfirst guess\b",
 }
 
-_INSTEAD: Mapping[tuple[Variant, str], str] = {
-    (Variant.NO_HIERARCHY, "W0701"): f"to make it a hole, {_CUT}",
-    (Variant.NO_CONSTRAINTS, "E0401"): "name the value in the structure around both, as in "
-    "`let middle = (10, 0)`, and use the name in both",
+_INSTEAD: Mapping[tuple[Variant, str], tuple[str, ...]] = {
+    (Variant.NO_HIERARCHY, "W0701"): (f"to make it a hole, {_CUT}",),
+    (Variant.NO_CONSTRAINTS, "E0401"): (
+        "name the value in the structure around both, as in `let middle = (10, 0)`, and use the name in both",
+    ),
 }
+"""The hint of a diagnostic whose own hints advise a construct that the variant lacks."""
 
 
 def speaks_of_absent(variant: Variant, text: str) -> bool:
     """Tells whether a hint or an edit advises a construct that the variant lacks."""
     pattern = _ABSENT.get(variant)
     return pattern is not None and re.search(pattern, text) is not None
-
-
-def instead(variant: Variant, code: str) -> tuple[str, ...]:
-    """Returns the hint of a diagnostic whose own hints advise a construct that the variant lacks."""
-    hint = _INSTEAD.get((variant, code))
-    return (hint,) if hint else ()
 
 
 # Only the program and its imports are checked, never the library: a shape made of constraints there is a
@@ -196,7 +190,7 @@ def adapted(diagnostics: Iterable[Diagnostic], variant: Variant) -> list[Diagnos
 def _advice(d: Diagnostic, variant: Variant) -> Diagnostic:
     is_mended = d.fix is not None and any(speaks_of_absent(variant, e.replacement) for e in d.fix.edits)
     hints = [hint for hint in d.hints if not speaks_of_absent(variant, hint)]
-    return replace(d, hints=(*hints, *instead(variant, d.code)), fix=None if is_mended else d.fix)
+    return replace(d, hints=(*hints, *_INSTEAD.get((variant, d.code), ())), fix=None if is_mended else d.fix)
 
 
 class _Walker:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from aidl_lang.checking.builtins import EVERYWHERE, MATH, SIGNATURES
-from aidl_lang.checking.library import Library
+from aidl_lang.checking.library import Lazy, Library
 from aidl_lang.checking.types import Signature
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
@@ -134,13 +134,6 @@ class SymbolScope:
             return self
         return space.scope.spaces[space.name]
 
-    def container(self) -> SymbolScope:
-        """Returns the scope whose members the declarations here become: of the structure or definition."""
-        scope = self
-        while isinstance(scope.owner, ast.For) and scope.parent is not None:
-            scope = scope.parent
-        return scope
-
     def visible(self) -> dict[str, Symbol]:
         """Returns every value that can be named here; inner ones hide outer ones."""
         names: dict[str, Symbol] = {}
@@ -248,7 +241,12 @@ class Resolution:
 def library_scope(library: Library) -> SymbolScope:
     """Returns the outermost scope, of built-in names and the library's, in which nothing is declared."""
     scope = SymbolScope(_NOWHERE)
-    scope.callables = _Joined(SIGNATURES, library.callables)
+
+    def overloads(name: str) -> list[Signature]:
+        return [*SIGNATURES.get(name, ()), *library.callables.get(name, ())]
+
+    names = (*SIGNATURES, *library.callables)
+    scope.callables = Lazy(names, overloads)  # type: ignore[assignment]
     for name, target in library.aliases.items():
         identifier = ast.Identifier(target, span=_NOWHERE.span)
         alias = ast.Alias(ast.Identifier(name, span=_NOWHERE.span), identifier, None, span=_NOWHERE.span)
@@ -261,23 +259,6 @@ def library_scope(library: Library) -> SymbolScope:
         scope.values[name] = Symbol(name, SymbolKind.NAMESPACE, scope=scope)
         scope.spaces[name] = scope
     return scope
-
-
-class _Joined(dict[str, list[Signature]]):
-    """Built-in and library overloads by name, joined, and decoded, when they are looked up."""
-
-    def __init__(self, *tables: Mapping[str, tuple[Signature, ...]]) -> None:
-        super().__init__({name: [] for table in tables for name in table})
-        self._tables = tables
-        self._joined: dict[str, list[Signature]] = {}
-
-    def __getitem__(self, name: str) -> list[Signature]:
-        if name not in self._joined:
-            self._joined[name] = [s for table in self._tables if name in table for s in table[name]]
-        return self._joined[name]
-
-    def get(self, name: str, default: object = None) -> object:  # type: ignore[override]
-        return self[name] if name in self else default  # noqa: SIM401 (that would be this method)
 
 
 # --- Notes and warnings that a program wants unsaid: `@allow("N0602")` before a statement.

@@ -458,6 +458,11 @@ class Binding:
         """Returns the parameter that gets an argument of the call as a whole."""
         return self._meant.get(index)
 
+    def kind_of(self, index: int) -> Type | None:
+        """Returns the type that the parameter asks for which gets an argument of the call as a whole."""
+        meant = self.parameter_of(index)
+        return next((kind for name, kind, _ in self.taken if name == meant), None)
+
     @cached_property
     def _meant(self) -> Mapping[int, str]:
         meant: dict[int, str] = {}

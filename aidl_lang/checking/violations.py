@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CONNECTING, DERIVING, FOLLOWED, PATTERNS, PRIMITIVE
@@ -31,6 +32,7 @@ from aidl_lang.syntax import ast
 
 # --- Relocation of statements from one structure to another above it: paths, names and the place to write.
 
+Written: TypeAlias = Mapping[ast.Node, tuple[float, float] | float]
 _ATOMS = ast.Name | ast.Member | ast.Index | ast.Call | ast.Number | ast.Point | ast.List
 
 
@@ -60,7 +62,7 @@ class StatementSite:
     def inside(self, structure: ast.Structure) -> StatementSite:
         return StatementSite((*self.homes, structure), self.trail)
 
-    def otherwise(self, _: ast.If) -> StatementSite:
+    def otherwise(self) -> StatementSite:
         return StatementSite(self.homes, (*self.trail[:-1], (self.trail[-1][0], True)))
 
 
@@ -146,7 +148,7 @@ class Relocation:
             return self._own_name(node, symbol)
         home = symbol.scope.homes[-1]
         if home in self.between:
-            return self._from_below(node, symbol, symbol.scope, home)
+            return self._from_below(symbol, symbol.scope, home)
         return node.text if self.scope.value(node.text) is symbol else None
 
     def _builtin(self, name: str) -> str:
@@ -160,7 +162,7 @@ class Relocation:
         found = self.scope.value(node.text)
         return node.text if found is not None and found.node is symbol.node else None
 
-    def _from_below(self, node: ast.Name, symbol: Symbol, scope: SymbolScope, home: ast.Node) -> str | None:
+    def _from_below(self, symbol: Symbol, scope: SymbolScope, home: ast.Node) -> str | None:
         """Returns the path of a name declared by a structure between the two; the expression itself if the
         name stands for one over unknowns, or belongs to a turn of a loop.
         """
@@ -269,12 +271,13 @@ class Violation:
             return None
         return min(holders, key=self.site.homes.index)
 
-    def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
+    def diagnostic(self, written: Written) -> Diagnostic:
         """Returns the diagnostic. `written`: the values of `nodes` at the first guesses, if known."""
         home = _name(self.site.home)
         culprit = next(self._far(self.target.node), self.target.node)  # the name with all its members
         owner = self._owner(culprit)
-        subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"
+        stated = "a constraint" if self._operation is None else f"a `{self._operation}`"
+        subject = f"{'geometry' if self.rule == 1 else stated} of {home}"
         ancestor = self.ancestor
         relation = self._relation(ancestor) if ancestor is not None else None
         fix = (
@@ -285,7 +288,9 @@ class Violation:
         if symbol is not None and symbol.declarations:
             secondary.append(Label(symbol.declarations[0].span, "declared here"))
         code = "E0401" if self.rule == 1 else "E0402"
-        message = f"{subject} cannot use `{shown(culprit)}`, which {_whose(shown(culprit), owner)}"
+        is_itself = owner == f"`{shown(culprit)}`"  # a structure, which is only said to lie outside
+        leads = "lies outside it" if is_itself else f"belongs to {owner}"
+        message = f"{subject} cannot use `{shown(culprit)}`, which {leads}"
         hints = (self._hint(relation, ancestor, written),)
         return Diagnostic(code, message, culprit.span, f"outside {home}", tuple(secondary), hints, fix)
 
@@ -297,10 +302,6 @@ class Violation:
 
     # --- Words -----------------------------------------------------------------------------------
 
-    @property
-    def _stated(self) -> str:
-        return "a constraint" if self._operation is None else f"a `{self._operation}`"
-
     def _owner(self, culprit: ast.Node) -> str:
         fact = self.infer.facts.get(culprit)
         far = [p for p in self.far if fact is None or p in fact.reads] or list(self.far)
@@ -309,12 +310,7 @@ class Violation:
             return _name(place.holder)
         return f"`{'.'.join(place.below)}`"
 
-    def _hint(
-        self,
-        relation: str | None,
-        ancestor: ast.Node | None,
-        written: Mapping[ast.Node, tuple[float, float] | float],
-    ) -> str:
+    def _hint(self, relation: str | None, ancestor: ast.Node | None, written: Written) -> str:
         where = _name(ancestor) if ancestor is not None else "the structure that holds both"
         if self.rule == 2:
             said = f": `{relation}`" if relation is not None else ", and call things there by their paths"
@@ -376,9 +372,7 @@ class Violation:
             case _:
                 return None
 
-    def _fix(
-        self, relation: str, ancestor: ast.Node, written: Mapping[ast.Node, tuple[float, float] | float]
-    ) -> Fix:
+    def _fix(self, relation: str, ancestor: ast.Node, written: Written) -> Fix:
         move = Relocation(self.site, ancestor, self.infer)
         where, text = insertion_after(move.anchor, relation)
         if self.rule == 2:
@@ -408,7 +402,7 @@ class Violation:
             inner = statement
         return inner
 
-    def _guess(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> str:
+    def _guess(self, written: Written) -> str:
         """Returns the replacement: the value, or in a loop the expression with values for its references."""
         target = self.target.node
         places = self._references()
@@ -453,11 +447,6 @@ def _root(node: ast.Node) -> ast.Node:
     return node
 
 
-def _whose(written: str, owner: str) -> str:
-    """Returns the words for where a reference leads; a structure itself is only said to lie outside."""
-    return "lies outside it" if owner == f"`{written}`" else f"belongs to {owner}"
-
-
 # --- Validity of references (language reference: validity): the unknowns that each expression may read.
 #
 # Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may
@@ -498,15 +487,14 @@ class _Walker:
                 self._assign(node, site)
                 self._placement(node, site)
             case ast.Var(name, value):
-                made_point = is_point(self.infer.fact(value).type)
-                target = FarReference(value, (name.text,), is_point=made_point, is_size=False)
+                target = FarReference(value, (name.text,), is_point(self.infer.fact(value).type))
                 self._geometry([target], value, site)
             case ast.For(body=body):
                 self.block(body.statements, site)
             case ast.If(then=then, otherwise=otherwise):
                 self.block(then.statements, site)
                 if otherwise is not None:
-                    self.block(otherwise.statements, site.otherwise(node))
+                    self.block(otherwise.statements, site.otherwise())
             case ast.Constrain(items):
                 if node.braces:
                     self.block(items.statements, site)
@@ -590,11 +578,8 @@ class _Walker:
         if isinstance(node, ast.Point):
             return self._coordinates(node, (*path, name))
         if isinstance(node, ast.List) and node.items and self._is_point(node.items[0]):
-            items: list[FarReference] = []
-            for i, item in enumerate(node.items):
-                place = (*path, f"{name}[{i}]")
-                items += self._point(item, place)
-            return items
+            items = ((item, (*path, f"{name}[{i}]")) for i, item in enumerate(node.items))
+            return [target for item, place in items for target in self._point(item, place)]
         return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
 
     def _point(self, node: ast.Expression, path: tuple[str, ...]) -> list[FarReference]:
@@ -615,8 +600,7 @@ class _Walker:
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
         if not isinstance(chosen, Binding):
             return None, ANY
-        meant = chosen.parameter_of(index)
-        return meant, next((kind for name, kind, _ in chosen.taken if name == meant), ANY)
+        return chosen.parameter_of(index), chosen.kind_of(index) or ANY
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
         """Tells whether a parameter of a call is also a field of its result."""

@@ -246,7 +246,7 @@ class _Reader:
     def _orientation(self, s: Structure) -> str:
         """Returns the orientation of a structure: its own, else that of the structure around it."""
         match s.attributes.get("orientation"):
-            case (TextVal(word, _),):
+            case (TextVal(word),):
                 return word
             case _:
                 return self._orientation(s.parent) if s.parent is not None else "top"
@@ -269,7 +269,7 @@ class _Reader:
         match value:
             case Num(expression, _, _):
                 return self.evaluate(expression)
-            case TextVal(text, _):
+            case TextVal(text):
                 return text
             case bool():
                 return value

@@ -139,7 +139,7 @@ def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.
 
 def _role(role: Structure, name: str, source: SourceFile, *, many: bool) -> Role:
     match role.attributes.get("note"):
-        case (TextVal(words, _),):
+        case (TextVal(words),):
             try:
                 return Role.read(name, words, many=many)
             except ValueError as reason:

@@ -346,7 +346,7 @@ def _lines(solved: Solved, name: str, value: Value, env: Env) -> Iterator[str]:
             yield from _geometry(solved, name, value, env)
         case Structure():
             yield from _structure(solved, name, value)
-        case TextVal(text, _):
+        case TextVal(text):
             yield f'{name} = "{text}"'
         case bool() | Condition():
             yield f"{name} = {str(holds(value, solved.evaluate, _TOLERANCE)).lower()}"
