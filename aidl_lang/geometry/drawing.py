@@ -84,6 +84,7 @@ from aidl_lang.geometry.styles import (
     idle_looks,
     idle_orders,
     is_filled,
+    is_inlay,
     stacked,
     styled,
     styles_of,
@@ -233,11 +234,13 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for b, m in zip(bodies, masses, strict=True)
     ]
     touching = contacts(network, solids)
+    inlaid = {s.path for s in root.walk() if is_inlay(s)}  # whose outlines are those of areas
     seams = tuple(
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
         if m.inner
         for path, pieces in visible_seams(network, m, traced)
+        if path not in inlaid
     )
     asked = {path: faces for path, faces in walk.faces.items() if styles[path].has_seams}
     seams += tuple(

@@ -152,6 +152,11 @@ def is_filled(geometry: SolvedGeometry, within: str) -> bool:
     return any(look in stated for look in FILLING) and not is_line
 
 
+def is_inlay(s: SolvedStructure) -> bool:
+    """Tells whether a solid has a look of its own, which in another solid makes an area of it."""
+    return s.kind == "solid" and not s.attributes.keys().isdisjoint(FILLING)
+
+
 def veils(structure: SolvedStructure) -> frozenset[str]:
     """Returns the paths of the translucent and fading areas of a solid, which add no material: they lie on
     what else it has. A solid of nothing else is made of them.
@@ -266,8 +271,7 @@ def idle_looks(
         words = [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
         drawn = [below for below in s.walk() if below.geometry]
         if s.kind == "solid" and any(below.kind == "solid" for below in drawn):
-            is_area = not s.attributes.keys().isdisjoint(FILLING)
-            return [w for w in words if not (is_area and w in OF_AREAS)]
+            return [w for w in words if not (is_inlay(s) and w in OF_AREAS)]
         if "color" in words and any(below.kind == "drawing" for below in drawn):
             words.remove("color")  # the drawing takes it
         return words
