@@ -214,8 +214,7 @@ def direction(piece: Piece, t: float) -> float:
 def within(angle: Floats | float, middle: Floats, half: Floats, slack: float) -> Mask:
     """Tells whether directions lie in ranges, up to some radians."""
     away = np.abs((angle - middle + math.pi) % TAU - math.pi)
-    inside: Mask = away <= half + slack
-    return inside
+    return away <= half + slack
 
 
 # --- Chords at right angles to an outline at both ends, in closed form for all pairs of elements at once.

@@ -94,8 +94,7 @@ class Reach:
     # --- What is possible --------------------------------------------------------------------------
 
     def _missing(self, velocity: Floats) -> Floats:
-        missing: Floats = velocity - self.reach @ (self.reach.T @ velocity)
-        return missing
+        return velocity - self.reach @ (self.reach.T @ velocity)
 
     def is_possible(self, velocity: Floats) -> bool:
         return float(np.linalg.norm(self._missing(velocity))) <= POSSIBLE * float(np.linalg.norm(velocity))
@@ -131,8 +130,7 @@ class Reach:
 
     def _rates(self, velocity: Floats) -> Floats:
         """Returns the rates (k,) of the unknowns of the part in a possible motion."""
-        found: Floats = self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
-        return found
+        return self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
 
     def rates(self, velocity: Floats) -> dict[str, float]:
         """Returns the rates of the parameters that take part in a possible motion, by path."""
@@ -145,8 +143,7 @@ class Reach:
         }
 
     def _moving(self, velocity: Floats) -> Mask:
-        found: Mask = np.abs(velocity) > POSSIBLE * float(np.abs(velocity).max())
-        return found
+        return np.abs(velocity) > POSSIBLE * float(np.abs(velocity).max())
 
     # --- What may move as a whole ------------------------------------------------------------------
 
@@ -544,8 +541,7 @@ def _reduced(basis: Floats) -> Floats:
         own.append(int(np.argmax(np.round((rest * rest).sum(axis=1), 6))))
         direction = rest[own[-1]] / np.linalg.norm(rest[own[-1]])
         rest = rest - np.outer(rest @ direction, direction)
-    found: Floats = basis @ np.linalg.inv(basis[own])
-    return found
+    return basis @ np.linalg.inv(basis[own])
 
 
 __all__ = ["motions", "report"]
