@@ -100,10 +100,8 @@ _FLAT = 1e-9
 
 
 def direction(degrees: float) -> Vec:
-    quarter = degrees / 90
-    if abs(quarter - round(quarter)) < _FLAT:
-        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarter) % 4]
-    return math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    level = 90 * round(degrees / 90)
+    return ex.exact_turn(level if abs(degrees - level) < 90 * _FLAT else degrees)
 
 
 def readable(u: Vec) -> Vec:

@@ -447,12 +447,11 @@ class _Telling(Reach):
     def _growth(self, thing: Thing | None, xs: Floats, ys: Floats) -> Iterator[_Told]:
         missing = np.stack((self._missing(xs), self._missing(ys)), axis=1)
         for mask, words in ((xs, "grow wider"), (ys, "grow taller")):
-            if self.is_done or not mask.any() or not self._whole_things(thing, mask):
+            if self.is_done or not mask.any() or not (things := self._whole_things(thing, mask)):
                 continue
             velocity = mask * (self.places - float(self.places @ mask) / float(mask.sum()))
             shift, *_ = np.linalg.lstsq(missing, -self._missing(velocity), rcond=1e-9)
             if np.linalg.norm(velocity) > POSSIBLE:
-                things = self._whole_things(thing, mask)
                 yield from self._told(velocity + shift[0] * xs + shift[1] * ys, "grow", things, words)
 
     def _growth_from_a_place(self, thing: Thing) -> Iterator[_Told]:
