@@ -208,8 +208,7 @@ class CrossedOutline:
     places: tuple[Vec, ...]
 
 
-OwnFinding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
-Finding = OwnFinding | CrossedOutline
+Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles | CrossedOutline
 
 
 @record(frozen=False)
@@ -556,7 +555,7 @@ def welded_gaps(
         meeting: dict[int, list[End]] = defaultdict(list)
         for shape in shapes[structure.path]:
             if not shape.geometry.parts:
-                for end in _ends(network, [shape]):
+                for end in _ends_of_open(network, [shape]):
                     meeting[network.node(end.at)].append(end)
         for here in meeting.values():
             first = here[0]
@@ -566,20 +565,21 @@ def welded_gaps(
     yield from effective(gaps, findings)
 
 
-def _ends(network: Network, shapes: Iterable[Shape]) -> list[End]:
-    return [
-        End(geometry, number, at, is_last)
-        for shape in shapes
-        for geometry, number in shape.leaves
-        if not is_closed(network.curves[number])
-        for at, is_last in zip(ends(network.curves[number]), (False, True), strict=True)
-    ]
+def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator[End]:
+    """Yields both ends of a curve."""
+    for at, is_last in zip(ends(network.curves[number]), (False, True), strict=True):
+        yield End(geometry, number, at, is_last)
+
+
+def _ends_of_open(network: Network, shapes: Iterable[Shape]) -> Iterator[End]:
+    leaves = (leaf for shape in shapes for leaf in shape.leaves if not is_closed(network.curves[leaf[1]]))
+    return (end for leaf in leaves for end in ends_of(network, *leaf))
 
 
 def _open_ends(network: Network, shapes: Sequence[Shape]) -> list[End]:
     """Returns the ends at which no other curve of the structure has a node."""
     meeting = network.meeting(number for shape in shapes for number in shape.numbers)
-    return [end for end in _ends(network, shapes) if meeting[network.node(end.at)] == 1]
+    return [end for end in _ends_of_open(network, shapes) if meeting[network.node(end.at)] == 1]
 
 
 def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, End]]:

@@ -248,16 +248,13 @@ def _may_hold(region: Region, other: Region) -> bool:
 
 
 def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
-    pieces: list[Piece] = [piece for region in regions for piece in region.pieces]
-    network = Network(pieces)
-    counts = [len(region.pieces) for region in regions]
-    firsts = accumulate([0, *counts][:-1])
+    network = Network([piece for region in regions for piece in region.pieces])
+    firsts = list(accumulate((len(region.pieces) for region in regions), initial=0))
 
-    def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:
-        return trace(
-            network,
-            operation(*(filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)),
-        ).region
+    def traced() -> Region:
+        placed = zip(regions, firsts, strict=False)
+        sections = (filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)
+        return trace(network, operation(*sections)).region
 
     return with_finer_chords(network, traced)
 
@@ -351,12 +348,10 @@ def _stretches(
     cuts += [(t, p) for p in spots if (t := locate(curve, p, tolerance)) is not None]
     start, end = ends(curve)
     cuts.sort(key=lambda cut: cut[0])
-    if not is_closed(curve):
-        cuts = [(0.0, start), *cuts, (1.0, end)]
-    elif cuts:
+    if cuts and is_closed(curve):
         cuts.append((cuts[0][0] + 1, cuts[0][1]))
     else:
-        cuts = [(0.0, start), (1.0, end)]
+        cuts = [(0.0, start), *cuts, (1.0, end)]
     apart = cuts[:1]
     for t, p in cuts[1:]:
         t0, before = apart[-1]
@@ -364,15 +359,12 @@ def _stretches(
             apart.append((t, p))
         elif t == cuts[-1][0] and len(apart) > 1:
             apart[-1] = (t, p)
-    return [_stretch(curve, *before, *after, borders, tolerance) for before, after in pairwise(apart)]
-
-
-def _stretch(
-    curve: Piece, t0: float, start: Vec, t1: float, end: Vec, borders: Sequence[Piece], tolerance: float
-) -> Stretch:
-    middle = point(curve, (t0 + t1) / 2)
-    on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
-    return Stretch(t0, t1, start, end, on_border)
+    found = []
+    for (t0, p), (t1, q) in pairwise(apart):
+        middle = point(curve, (t0 + t1) / 2)
+        on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
+        found.append(Stretch(t0, t1, p, q, on_border))
+    return found
 
 
 def _clipped(

@@ -99,22 +99,17 @@ class Skeleton:
         self.free = is_free[self.piece] & (self.first < 2)
         self.error = max((_error(p) for p in self.pieces), default=0.0)
         self.boxes = self._boxes()
-        inward = (
-            np.arctan2(self.way[:, 0], -self.way[:, 1]),
-            self.middle + np.where(self.side > 0, math.pi, 0),
-        )
-        self.normal = np.concatenate(inward)
+        left = np.arctan2(self.way[:, 0], -self.way[:, 1])
+        self.normal = np.concatenate((left, self.middle + np.where(self.side > 0, math.pi, 0)))
         self.spread = np.concatenate((np.zeros(self.straight), self.half))
 
     def __len__(self) -> int:
         return len(self.piece)
 
     def _boxes(self) -> Floats:
-        ends_ = self.start[: self.straight] + self.way * self.length[:, None]
-        lines = np.concatenate((self.start[: self.straight], ends_), axis=1)
-        lines = np.concatenate(
-            (np.minimum(lines[:, :2], lines[:, 2:]), np.maximum(lines[:, :2], lines[:, 2:])), 1
-        )
+        start = self.start[: self.straight]
+        end = start + self.way * self.length[:, None]
+        lines = np.concatenate((np.minimum(start, end), np.maximum(start, end)), axis=1)
         center, r = self.start[self.straight :], self.radius[:, None]
         # Boxes of arcs from the directions they cover: an axis within the range, or the ends.
         angles = self.middle[:, None] + self.half[:, None] * np.array((-1.0, 1.0))
@@ -204,9 +199,7 @@ def direction(piece: Piece, t: float) -> float:
     dx, dy = derivative(piece, t)
     start, end = ends(piece)
     if math.hypot(dx, dy) <= 1e-9 * max(math.dist(start, end), 1e-300):
-        a, b = (
-            (point(piece, 0.0), point(piece, 1e-4)) if t == 0 else (point(piece, 1 - 1e-4), point(piece, 1.0))
-        )
+        a, b = (point(piece, at) for at in ((0.0, 1e-4) if t == 0 else (1 - 1e-4, 1.0)))
         dx, dy = b[0] - a[0], b[1] - a[1]
     return math.atan2(dy, dx)
 
@@ -214,8 +207,7 @@ def direction(piece: Piece, t: float) -> float:
 def within(angle: Floats | float, middle: Floats, half: Floats, slack: float) -> Mask:
     """Tells whether directions lie in ranges, up to some radians."""
     away = np.abs((angle - middle + math.pi) % TAU - math.pi)
-    inside: Mask = away <= half + slack
-    return inside
+    return away <= half + slack
 
 
 # --- Chords at right angles to an outline at both ends, in closed form for all pairs of elements at once.

@@ -215,9 +215,8 @@ def points(curve: Piece, t: Floats) -> Floats:
         straight: Floats = start + np.multiply.outer(t, end - start)
         return straight
     if isinstance(curve, Bezier):
-        curved: Floats = (_WEIGHTS if t is _SAMPLED else _weights(t)) @ np.array(
-            (curve.p0, curve.p1, curve.p2, curve.p3)
-        )
+        weights = _WEIGHTS if t is _SAMPLED else _weights(t)
+        curved: Floats = weights @ np.array(_VALUES[Bezier](curve))
         return curved
     first, sweep = round_range(curve)
     u = first + sweep * t
@@ -474,8 +473,7 @@ def second_derivative(curve: Piece, t: float) -> Vec:
 def locate(curve: Piece, p: Vec, tolerance: float) -> float | None:
     """Returns the parameter of p if it lies on the curve; else None."""
     t = nearest(curve, p)
-    x, y = point(curve, t)
-    return t if math.hypot(x - p[0], y - p[1]) <= tolerance else None
+    return t if math.dist(point(curve, t), p) <= tolerance else None
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
@@ -493,15 +491,12 @@ def usable(curve: Piece) -> Piece | None:
     """Returns the curve with positive radii; None if it has no finite coordinates, or a radius is nothing."""
     if not is_finite(curve):
         return None
-    if isinstance(curve, Circle):
-        curve = Circle(curve.center, abs(curve.radius))
-    elif isinstance(curve, Ellipse):
+    if isinstance(curve, Circle | Arc):
+        return replace(curve, radius=abs(curve.radius)) if curve.radius else None
+    if isinstance(curve, Ellipse):
         curve = Ellipse(curve.center, abs(curve.rx), abs(curve.ry), curve.angle)
-    elif isinstance(curve, Arc):
-        curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
-    if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
-        return None
-    return None if isinstance(curve, Circle | Arc) and not curve.radius > 0 else curve
+        return curve if curve.rx * curve.ry > 0 else None
+    return curve
 
 
 def has_extent(box: Bounds) -> bool:

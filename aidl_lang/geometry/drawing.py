@@ -432,8 +432,7 @@ def _strokes(
             if pieces := walk.inner_pieces(structure, number):
                 yield Stroke(path, leaf.path, pieces, style, "open")
     if root.kind == "hole" and root.path in regions:
-        outline = tuple(p for loop in regions[root.path].loops for p in loop.pieces)
-        yield Stroke(root.path, root.path, outline, styles[root.path], "hole")
+        yield Stroke(root.path, root.path, regions[root.path].pieces, styles[root.path], "hole")
 
 
 def _inked(

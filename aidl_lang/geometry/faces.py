@@ -167,8 +167,9 @@ def enclosed(
 
 def _ends(network: Network, uses: Iterable[Use]) -> Iterator[int]:
     for number, _ in uses:
-        yield network.edges[number].start
-        yield network.edges[number].end
+        edge = network.edges[number]
+        yield edge.start
+        yield edge.end
 
 
 def _crossings(network: Network, uses: Sequence[Use]) -> list[int]:
@@ -180,15 +181,11 @@ def _crossings(network: Network, uses: Sequence[Use]) -> list[int]:
 def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
     """Yields the runs of edges of which each begins where the one before it ends, as the file has them."""
     walk: list[Use] = []
-    here = -1
-    for number, forward in uses:
-        edge = network.edges[number]
-        start, end = (edge.start, edge.end) if forward else (edge.end, edge.start)
-        if walk and start != here:
+    for use in uses:
+        if walk and first_node(network, use) != last_node(network, walk[-1]):
             yield walk
             walk = []
-        walk.append((number, forward))
-        here = end
+        walk.append(use)
     yield walk
 
 
@@ -321,23 +318,22 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
     """Returns the edges without those that lead to an open end, removed repeatedly."""
     kept = list(uses)
     while True:
-        degree = _degrees(network, kept)
+        degree = Counter(_ends(network, kept))
         if min(degree.values(), default=2) > 1:
             return kept
         ends = ((use, network.edges[use[0]]) for use in kept)
         kept = [use for use, edge in ends if degree[edge.start] > 1 and degree[edge.end] > 1]
 
 
-def _degrees(network: Network, uses: Iterable[Use]) -> Counter[int]:
-    edges = [network.edges[number] for number, _ in uses]
-    return Counter([*(edge.start for edge in edges), *(edge.end for edge in edges)])
+def _has_odd_node(network: Network, uses: Iterable[Use]) -> bool:
+    return any(degree % 2 for degree in Counter(_ends(network, uses)).values())
 
 
 def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
     """Returns the edges that join loops and bound no face, but for those that are run through twice. There
     are none where every node has an even degree.
     """
-    if not any(d % 2 for d in _degrees(network, uses).values()):
+    if not _has_odd_node(network, uses):
         return set()
     _, bounding = _outlines(network, uses)
     return {edge for edge, count in Counter(edge for edge, _ in uses).items() if count == 1} - bounding
@@ -345,7 +341,7 @@ def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
 
 def _alternating(network: Network, uses: list[Use]) -> Section:
     """Returns the loops of one shape by the even-odd rule; at a node of odd degree, all enclosed."""
-    if any(d % 2 for d in _degrees(network, uses).values()):
+    if _has_odd_node(network, uses):
         return fill(_outlines(network, uses)[0], "NonZero")
     return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
 
@@ -356,9 +352,7 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
     for edge, forward in reversed(uses):
         ways[first_node(network, (edge, forward))].append((edge, forward))
         ways[last_node(network, (edge, forward))].append((edge, not forward))
-    left: dict[int, int] = defaultdict(int)
-    for edge, _ in uses:
-        left[edge] += 1
+    left = Counter(edge for edge, _ in uses)
     loops = []
     for use in uses:
         if left[use[0]]:

@@ -9,7 +9,7 @@ Newton's method, following the radius up from 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import partial
 
@@ -161,20 +161,24 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
             result.failures.append(TooLarge(work, fits))
         else:
             done.append(made)
-    lost: dict[tuple[int, bool], Finished] = {}
+    # By curve and end: the finish there, the share it takes, and the point where it touches.
+    lost: dict[tuple[int, bool], tuple[Work, float, Vec]] = {}
     for made in done:
-        for arm in made.work.corner.arms:
-            lost[arm.number, arm.first] = made
-    for number in sorted({key[0] for key in lost}):
+        for arm, cut, at in zip(made.work.corner.arms, made.cuts, ends(made.piece), strict=True):
+            lost[arm.number, arm.first] = made.work, cut, at
+    numbers = sorted({number for number, _ in lost})
+    for number in numbers:
         a, b = lost.get((number, True)), lost.get((number, False))
-        if a is not None and b is not None and _cut(a, number, True) + _cut(b, number, False) > 1 + _EXACT:
-            result.failures.append(TooLarge(b.work, 0.0, a.work, number))
+        if a is not None and b is not None and a[1] + b[1] > 1 + _EXACT:
+            result.failures.append(TooLarge(b[0], 0.0, a[0], number))
     if not result.failures:
         result.finished = done
-        for number in {key[0] for key in lost}:
-            result.curves[number] = _trimmed(
-                curves[number], lost.get((number, True)), lost.get((number, False)), number
-            )
+        for number in numbers:
+            start, end = ends(curve := curves[number])
+            _, t0, start = lost.get((number, True), (None, 0.0, start))
+            _, rest, end = lost.get((number, False), (None, 0.0, end))
+            t1 = 1 - rest
+            result.curves[number] = part(curve, t0, t1, start, end) if t1 - t0 > _EXACT else None
     return result
 
 
@@ -193,52 +197,22 @@ def largest(fits: Callable[[float], bool], too_large: float, halvings: int = _HA
     return low
 
 
-def _cut(made: Finished, number: int, first: bool) -> float:
-    arms = made.work.corner.arms
-    return next(
-        cut for arm, cut in zip(arms, made.cuts, strict=True) if (arm.number, arm.first) == (number, first)
-    )
-
-
-def _trimmed(curve: Piece, start: Finished | None, end: Finished | None, number: int) -> Piece | None:
-    t0, p = 0.0, ends(curve)[0]
-    t1, q = 1.0, ends(curve)[1]
-    if start is not None:
-        t0 = _cut(start, number, True)
-        p = _end_at(start, number, True)
-    if end is not None:
-        t1 = 1 - _cut(end, number, False)
-        q = _end_at(end, number, False)
-    return part(curve, t0, t1, p, q) if t1 - t0 > _EXACT else None
-
-
-def _end_at(made: Finished, number: int, first: bool) -> Vec:
-    """Returns the point where the new curve touches this arm."""
-    arm = made.work.corner.arms[0]
-    return ends(made.piece)[0 if (arm.number, arm.first) == (number, first) else 1]
-
-
 # --- One corner ----------------------------------------------------------------------------------
 
 
 def solve(work: Work) -> Finished | None:
     """Returns the finish of a corner by itself; None if an arm is too short for it."""
-    corner = work.corner
+    corner, (a, b) = work.corner, (arm.curve for arm in work.corner.arms)
     if work.kind == "chamfer":
-        cuts = [_along(arm.curve, size) for arm, size in zip(corner.arms, work.sizes, strict=True)]
-        if None in cuts:
+        u, v = (_along(curve, size) for curve, size in zip((a, b), work.sizes, strict=True))
+        if u is None or v is None:
             return None
-        u, v = (c for c in cuts if c is not None)
-        p, q = point(corner.arms[0].curve, u), point(corner.arms[1].curve, v)
-        return Finished(work, (u, v), Line(p, q))
-    if corner.is_cusp:
-        return None
-    touch = _round(corner, work.sizes[0])
+        return Finished(work, (u, v), Line(point(a, u), point(b, v)))
+    touch = None if corner.is_cusp else _round(corner, work.sizes[0])
     if touch is None:
         return None
     u, v, center = touch
-    p, q = point(corner.arms[0].curve, u), point(corner.arms[1].curve, v)
-    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, p, q))
+    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, point(a, u), point(b, v)))
 
 
 def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
@@ -255,12 +229,8 @@ def _along(curve: Piece, distance: float) -> float | None:
         return None
     if isinstance(curve, Line | Arc):
         return min(1.0, distance / whole)
-    low, high = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        p, q = ends(curve)[0], point(curve, middle)
-        low, high = (middle, high) if length(part(curve, 0.0, middle, p, q)) < distance else (low, middle)
-    return high
+    start = ends(curve)[0]
+    return largest(lambda t: length(part(curve, 0.0, t, start, point(curve, t))) < distance, 1.0)
 
 
 def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
@@ -385,15 +355,13 @@ def _fit(
     runs: Sequence[int],
     known: Mapping[int, float],
     tried: Mapping[int, float],
-    asked: Iterable[int],
+    asked: Sequence[int],
 ) -> bool:
     """Tells whether nothing of the runs that are asked for fails or runs into another."""
     checkpoint()
-    sized = [
-        (w, r) for w, r in zip(_sized(works, runs, {**known, **tried}), runs, strict=True) if w.sizes[0] > 0
-    ]
-    asked_for = set(asked)
-    own = {id(work) for work, run in sized if run in asked_for}
+    changed = zip(_sized(works, runs, {**known, **tried}), runs, strict=True)
+    sized = [(work, run) for work, run in changed if work.sizes[0] > 0]
+    own = {id(work) for work, run in sized if run in asked}
     failures = finish(curves, [work for work, _ in sized]).failures
     return not any(id(f.work) in own or id(f.other) in own for f in failures)
 

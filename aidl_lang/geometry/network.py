@@ -81,8 +81,7 @@ class Hulls:
             checkpoint()
             rows = slice(begin, begin + _AT_ONCE)
             kept[rows] = self._may_meet(pairs[rows, 0], pairs[rows, 1], nodes, places)
-        found: Ints = pairs[kept]
-        return found
+        return pairs[kept]
 
     def may_hold(self, curves: Ints, spots: Floats) -> Mask:
         """Tells of some curves whether each may pass a spot."""
@@ -413,8 +412,7 @@ class Network:
         nodes = [(self.edges[k].start, self.edges[k].end) for k in numbers]
         straight = self.node_grid[np.array(nodes, dtype=np.intp).reshape(-1, 2)].sum(axis=1) * (GRID / 2)
         inner = self._grid[np.where(count, self._offset[edges] + count // 2, 0)] * GRID
-        halfway: Floats = np.where(count[:, None] > 0, inner, straight)
-        return halfway
+        return np.where(count[:, None] > 0, inner, straight)
 
     def look_up(self, polygon: Floats) -> tuple[Ints, Ints]:
         """Returns for each vertex of a result the edge it lies inside of, and its place there.

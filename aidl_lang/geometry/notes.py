@@ -16,13 +16,14 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import (
     CoveredHoles,
     CrossedOutline,
+    End,
     FilledHole,
     Finding,
     Gap,
     IdleHole,
     InnerLoop,
     LooseCurves,
-    OwnFinding,
+    ends_of,
 )
 from aidl_lang.geometry.boolean import Contacts
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
@@ -40,17 +41,6 @@ def at(p: Vec) -> str:
 def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
     """Returns the name of a geometry as the structure writes it."""
     return geometry.path.removeprefix(structure.path + ".")
-
-
-def finding_note(finding: OwnFinding, network: Network) -> Diagnostic | None:
-    """Returns the warning about a finding; open curves are one only in solids and holes."""
-    if isinstance(finding, InnerLoop):
-        return _inner_loop(finding)
-    if isinstance(finding, LooseCurves):
-        return None if finding.structure.kind == "assembly" else _loose_curves(finding, network)
-    if isinstance(finding, IdleHole):
-        return _idle_hole(finding)
-    return _covered_holes(finding) if isinstance(finding, CoveredHoles) else _filled_hole(finding)
 
 
 def _inner_loop(finding: InnerLoop) -> Diagnostic:
@@ -120,18 +110,18 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     gap = _gap(finding, network)
     plural = len(set(names)) > 1
     message = f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
-    if gap is not None and math.dist(gap[0][1], gap[1][1]) <= network.tolerance:
+    if gap is not None and math.dist(gap[0].at, gap[1].at) <= network.tolerance:
         return _lost(finding, message, network)
     hints = [f"to draw without filling, use a `drawing`; {GUIDE}"]
     fix: Fix | None = None
     secondary: tuple[Label, ...] = ()
     if gap is not None:
-        (one, p, _), (other, q, _) = gap
-        distance = math.dist(p, q)
-        message += f": the end at {at(p)} is {rough(distance)} mm away from {at(q)}"
-        if one is not other:
-            hints.insert(0, f"join the ends: `constrain {_end(s, gap[0])} == {_end(s, gap[1])}`")
-            fix = _join_fix(s, f"{_end(s, gap[0])} == {_end(s, gap[1])}")
+        (p, q), other = (end.at for end in gap), gap[1].geometry
+        message += f": the end at {at(p)} is {rough(math.dist(p, q))} mm away from {at(q)}"
+        if gap[0].geometry is not other:
+            equation = " == ".join(_end(s, end) for end in gap)
+            hints.insert(0, f"join the ends: `constrain {equation}`")
+            fix = _join_fix(s, equation)
             secondary = (Label(other.span, f"the nearest other end, at {at(q)}"),) if other.span else ()
         else:
             hints.insert(0, "close the outline: draw the missing curve, sharing the end points")
@@ -139,7 +129,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
         hints.insert(0, f"its strokes become material with a width, as in `thick({shape.type}(…), 1.2)`")
     else:
         hints.insert(0, "a face needs a closed outline that is not flat: look at its sizes and its points")
-    span = gap[0][0].span if gap else finding.curves[0][0].span
+    span = gap[0].geometry.span if gap else finding.curves[0][0].span
     return Diagnostic(
         "W0702",
         message,
@@ -148,7 +138,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
         secondary,
         tuple(hints),
         fix,
-        tuple(p for _, p, _ in gap or ()),
+        tuple(end.at for end in gap or ()),
     )
 
 
@@ -191,39 +181,34 @@ def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
 
 
-End = tuple[SolvedGeometry, Vec, str]
-
-
 def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
     """Returns the open end that is nearest to another one, ends of one curve only if there are no others."""
     meeting = network.meeting(finding.numbers)
-    open_ends: list[End] = []
-    for geometry, number in finding.curves:
-        for p, name in zip(ends(network.curves[number]), ("start", "end"), strict=True):
-            if meeting[network.node(p)] <= 1:
-                open_ends.append((geometry, p, name))
-    pairs = [(a, b) for i, a in enumerate(open_ends) for b in open_ends[i + 1 :]]
-    return min(pairs, key=lambda ab: (ab[0][0] is ab[1][0], math.dist(ab[0][1], ab[1][1])), default=None)
+    every = (end for geometry, number in finding.curves for end in ends_of(network, geometry, number))
+    pairs = combinations((end for end in every if meeting[network.node(end.at)] <= 1), 2)
+    return min(
+        pairs, key=lambda ab: (ab[0].geometry is ab[1].geometry, math.dist(ab[0].at, ab[1].at)), default=None
+    )
 
 
 def _end(structure: SolvedStructure, end: End) -> str:
-    geometry, _, name = end
+    geometry, name = end.geometry, "end" if end.is_last else "start"
     if geometry.piece_of:
         # Of an imported drawing the shape that it belongs to is told as well, which stands between the two.
         shape = geometry.path.removeprefix(geometry.piece_of).rpartition(".")[0].partition("[")[0]
         return f"{geometry.piece_of.removeprefix(structure.path + '.')}{shape}.{name}"
     if isinstance(geometry.curve, Bezier):
-        name = {"start": "p0", "end": "p3"}[name]
+        name = "p3" if end.is_last else "p0"
     return f"{local(structure, geometry)}.{name}"
 
 
 def gap_note(gap: Gap) -> Diagnostic:
     """Returns the note that two ends which do not quite meet were taken for one."""
     s = gap.structure
-    moved, kept = ((e.geometry, e.at, "end" if e.is_last else "start") for e in (gap.moved, gap.kept))
+    moved, kept = gap.moved, gap.kept
     one, other = _end(s, moved), _end(s, kept)
-    name, itself = local(s, gap.moved.geometry), gap.moved.number == gap.kept.number
-    round_ = itself and not isinstance(gap.moved.geometry.curve, Bezier)
+    name, itself = local(s, moved.geometry), moved.number == kept.number
+    round_ = itself and not isinstance(moved.geometry.curve, Bezier)
     hint = (
         f"to close it exactly, write a `circle` in place of `{name}`"
         if round_
@@ -231,14 +216,14 @@ def gap_note(gap: Gap) -> Diagnostic:
     )
     return Diagnostic(
         "N0708",
-        f"a gap of {rough(gap.width)} mm between `{one}` and `{other}` at {at(kept[1])} was closed "
+        f"a gap of {rough(gap.width)} mm between `{one}` and `{other}` at {at(kept.at)} was closed "
         f"in {s.kind} `{s.path}`",
-        gap.moved.geometry.span or s.span,
+        moved.geometry.span or s.span,
         "its end was moved",
-        (Label(gap.kept.geometry.span, "to this end"),) if gap.kept.geometry.span and not itself else (),
+        (Label(kept.geometry.span, "to this end"),) if kept.geometry.span and not itself else (),
         (hint,),
         None if round_ else _join_fix(s, f"{one} == {other}"),
-        (moved[1], kept[1]),
+        (moved.at, kept.at),
     )
 
 
@@ -455,20 +440,27 @@ _MOST_ENDS = 100
 
 
 def finding_notes(finding: Finding, network: Network) -> Iterator[Diagnostic]:
-    """Yields the warnings about a finding, what is imported apart."""
-    if isinstance(finding, CrossedOutline):
-        yield _crossed(finding)
-        return
-    if isinstance(finding, LooseCurves) and finding.structure.kind != "assembly":
-        imported = {g.path: g for top in finding.structure.geometry for g in top.walk() if g.type == "traced"}
-        own = [curve for curve in finding.curves if curve[0].piece_of in imported]
-        if own:
-            yield _open(finding, own, imported[own[0][0].piece_of or ""], network)
-            finding = replace(finding, curves=tuple(c for c in finding.curves if c not in own))
-            if not finding.curves:
-                return
-    if (note := finding_note(finding, network)) is not None:
-        yield note
+    """Yields the warnings about a finding: open curves are one only in solids and holes, those imported
+    apart.
+    """
+    match finding:
+        case InnerLoop():
+            yield _inner_loop(finding)
+        case IdleHole():
+            yield _idle_hole(finding)
+        case FilledHole():
+            yield _filled_hole(finding)
+        case CoveredHoles():
+            yield _covered_holes(finding)
+        case CrossedOutline():
+            yield _crossed(finding)
+        case LooseCurves(structure, curves) if structure.kind != "assembly":
+            traced = {g.path: g for top in structure.geometry for g in top.walk() if g.type == "traced"}
+            own = [curve for curve in curves if curve[0].piece_of in traced]
+            if own:
+                yield _open(finding, own, traced[own[0][0].piece_of or ""], network)
+            if rest := tuple(curve for curve in curves if curve not in own):
+                yield _loose_curves(replace(finding, curves=rest), network)
 
 
 def _label(path: str) -> str:

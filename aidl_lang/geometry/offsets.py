@@ -156,38 +156,34 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
 # --- Corners and ends ----------------------------------------------------------------------------
 
 
-def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Strip | None:
-    """Returns the strip that a corner adds on its outer side; None if that is not the side asked for.
+def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> list[Strip]:
+    """Returns the strip that a corner adds on its outer side; none if that is not the side asked for.
     `arriving` and `leaving` are unit directions.
     """
     turn = turn_between(arriving, leaving)
     if abs(turn) < 1e-9 or (turn * left >= 0 and abs(turn) < math.pi - 1e-9):
-        return None
+        return []
     p = at[0] - left * arriving[1], at[1] + left * arriving[0]
     q = at[0] - left * leaving[1], at[1] + left * leaving[0]
     if sharp and abs(turn) < _SHARPEST:
         reach = math.tan(turn / 2) * -left
         tip = p[0] + reach * arriving[0], p[1] + reach * arriving[1]
-        return ((Line(at, p), Line(p, tip), Line(tip, q), Line(q, at)),)
+        return [((Line(at, p), Line(p, tip), Line(tip, q), Line(q, at)),)]
     sweep = -math.copysign(abs(turn), left)
-    return ((Line(at, p), Arc(at, abs(left), p, q, sweep), Line(q, at)),)
+    return [((Line(at, p), Arc(at, abs(left), p, q, sweep), Line(q, at)),)]
 
 
-def cap(at: Vec, outward: Vec, half: float, form: str) -> Strip | None:
-    """Returns the strip that an end adds to both sides: `round`, `square`, or None for `butt`."""
+def cap(at: Vec, outward: Vec, half: float, form: str) -> list[Strip]:
+    """Returns the strip that an end adds to both sides: `round`, `square`, or none for `butt`."""
     p = at[0] + half * outward[1], at[1] - half * outward[0]
     q = at[0] - half * outward[1], at[1] + half * outward[0]
     if form == "butt":
-        return None
+        return []
     if form == "round":
-        return ((Arc(at, half, p, q, math.pi), Line(q, p)),)
+        return [((Arc(at, half, p, q, math.pi), Line(q, p)),)]
     x, y = half * outward[0], half * outward[1]
     a, b = (p[0] + x, p[1] + y), (q[0] + x, q[1] + y)
-    return ((Line(p, a), Line(a, b), Line(b, q), Line(q, p)),)
-
-
-def disc(at: Vec, radius: float) -> Strip:
-    return ((Circle(at, radius),),)
+    return [((Line(p, a), Line(a, b), Line(b, q), Line(q, p)),)]
 
 
 # --- Regions grown, shrunk and drawn with a thick pen: exact sums of curves and discs.
@@ -208,25 +204,17 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
     for loop in region.loops:
         left = distance if loop.reversed else -distance  # material lies to the left
         parts: list[Piece] = []
-        for piece, along, corner in _along(loop.pieces, left, sharp):
-            strips += along + corner
+        for piece, after in zip(loop.pieces, (*loop.pieces[1:], loop.pieces[0]), strict=True):
+            along = list(beside(piece, left))
+            strips += along
+            if not is_closed(piece):
+                strips += wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
             # Cut where its strips are, so that the outline and they have the same curves.
             is_whole = isinstance(piece, Line | Arc | Circle)
             parts += [piece] if is_whole else [strip[0][0] for strip in along]
         loops.append(Loop(tuple(parts), loop.reversed))
     # Loops are only filled together here, so that they may all count as outer ones.
     return _combined(Region(tuple(map(Face, loops))), strips, cut=distance < 0)
-
-
-def _along(
-    pieces: Sequence[Piece], left: float, sharp: bool
-) -> Iterator[tuple[Piece, list[Strip], list[Strip]]]:
-    """Yields each piece of a closed outline with the strips on one side of it, and that at its end."""
-    for piece, after in zip(pieces, (*pieces[1:], pieces[0]), strict=True):
-        corner = None
-        if not is_closed(piece):
-            corner = wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
-        yield piece, list(beside(piece, left)), [] if corner is None else [corner]
 
 
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
@@ -236,15 +224,13 @@ def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: boo
     strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
     for at, leaving in _joints(curves, near):
         if len(leaving) > 2:
-            strips.append(disc(at, half))
-        elif len(leaving) == 2:
-            a, b = leaving
-            found = [wedge(at, (-a[0], -a[1]), b, side, sharp) for side in (half, -half)]
-            strips += [s for s in found if s is not None]
+            strips.append(((Circle(at, half),),))
+            continue
+        arriving = -leaving[0][0], -leaving[0][1]
+        if len(leaving) == 2:
+            strips += [s for side in (half, -half) for s in wedge(at, arriving, leaving[1], side, sharp)]
         else:
-            (a,) = leaving
-            end = cap(at, (-a[0], -a[1]), half, caps)
-            strips += [end] if end is not None else []
+            strips += cap(at, arriving, half, caps)
     return _combined(Region(), strips, cut=False)
 
 

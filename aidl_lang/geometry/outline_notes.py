@@ -10,7 +10,6 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import (
     Corner,
     Result,
@@ -69,31 +68,21 @@ def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) 
 
 def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeometry]) -> Diagnostic:
     names = [one.name for one in operand]
-    word = _OPERATION.get(recipe.kind, recipe.kind)
-    plural = len(names) > 1
-    return Diagnostic(
-        "E0338",
-        f"{named(names)} {'enclose' if plural else 'encloses'} nothing, and `{word}` needs an outline",
-        g.span,
-        "the curves are not closed",
-        hints=(
-            "close the outline, sharing the end points",
-            f"for a stroke along open curves: `thick({names[0]}, 4)`",
-        ),
-    )
+    need = f"`{_OPERATION.get(recipe.kind, recipe.kind)}` needs an outline"
+    return _open(names, need, g.span, f"for a stroke along open curves: `thick({names[0]}, 4)`")
 
 
 def open_clip(s: SolvedStructure) -> Diagnostic:
     """Returns the diagnostic on a structure clipped to curves that enclose nothing."""
-    names = [g.name for g in s.clip]
-    enclose, it = ("enclose", "them") if len(names) > 1 else ("encloses", "it")
-    return Diagnostic(
-        "E0338",
-        f"{named(names)} {enclose} nothing, and `{s.path}` is clipped to {it}",
-        s.span,
-        "the curves are not closed",
-        hints=("close the outline, sharing the end points", "curves that close together are given as a list"),
-    )
+    need = f"`{s.path}` is clipped to {'them' if len(s.clip) > 1 else 'it'}"
+    return _open([g.name for g in s.clip], need, s.span, "curves that close together are given as a list")
+
+
+def _open(names: Sequence[str], need: str, span: Span | None, hint: str) -> Diagnostic:
+    enclose = "enclose" if len(names) > 1 else "encloses"
+    message = f"{named(names)} {enclose} nothing, and {need}"
+    hints = ("close the outline, sharing the end points", hint)
+    return Diagnostic("E0338", message, span, "the curves are not closed", hints=hints)
 
 
 def no_lattice(g: SolvedGeometry, recipe: Recipe) -> Diagnostic:
@@ -218,9 +207,9 @@ def misfits(
 ) -> Iterator[Misfit]:
     """Yields the finishes that do not fit, each fault once, by statements that meet."""
     reason_of = {id(work): reason for work, reason in zip(works, reasons, strict=True)}
-    curves = [curve for _, curve in leaves]
     for group in _groups(result.failures, reason_of):
-        yield _Fault(group, curves, works, reason_of, leaves, told).misfit()
+        fault = _Fault(group, works, reason_of, leaves, told)
+        yield Misfit(fault.spans, fault.most, fault.note())
 
 
 def _groups(failures: Sequence[TooLarge], reason_of: dict[int, Finish]) -> list[list[TooLarge]]:
@@ -247,14 +236,12 @@ class _Fault:
     def __init__(
         self,
         failures: Sequence[TooLarge],
-        curves: Sequence[Piece],
         works: Sequence[Work],
         reason_of: dict[int, Finish],
         leaves: Leaves,
         told: SolvedStructure,
     ) -> None:
-        self.failures, self.curves, self.works = failures, curves, works
-        self.reason_of, self.leaves, self.told = reason_of, leaves, told
+        self.works, self.reason_of, self.leaves, self.told = works, reason_of, leaves, told
         self.first = failures[0]
         self.reason = reason_of[id(self.first.work)]
         self.spans = frozenset(reason_of[id(w)].span for f in failures for w in _works(f))
@@ -263,6 +250,7 @@ class _Fault:
         if not self.is_equal:
             self.own = self._of({self.reason.span})
         self.is_cusp = any(f.work.corner.is_cusp for f in failures)
+        self.most = 0.0 if self.is_cusp else self._most()
 
     def _of(self, spans: frozenset[Span] | set[Span]) -> list[Work]:
         return [w for w in self.works if self.reason_of[id(w)].span in spans]
@@ -270,10 +258,6 @@ class _Fault:
     @property
     def what(self) -> str:
         return "radius" if self.reason.kind == "fillet" else "size"
-
-    def misfit(self) -> Misfit:
-        most = 0.0 if self.is_cusp else self._most()
-        return Misfit(self.spans, most, self._note(most))
 
     def _most(self) -> float:
         """Returns the largest size, as it is printed, with which all corners of these statements work out."""
@@ -288,17 +272,16 @@ class _Fault:
         own = {id(w) for w in self.own}
         turned = [sized(w, size) if id(w) in own else w for w in self.works]
         mine = {id(t) for t, w in zip(turned, self.works, strict=True) if id(w) in own}
-        result = finish(self.curves, turned)
+        result = finish([curve for _, curve in self.leaves], turned)
         return not any(id(w) in mine for failure in result.failures for w in _works(failure))
 
-    def _note(self, most: float) -> Diagnostic:
+    def note(self) -> Diagnostic:
         failure, f = self.first, self.reason
         message, points = self._message()
         other = self.reason_of[id(failure.other)] if failure.other is not None else f
         labels = (Label(other.span, "the other one"),) if other.span != f.span else ()
-        hint = self._hint(most)
-        fix = self._fix(most) if most > 0 else None
-        return Diagnostic("E0518", message, f.span, "too large", labels, (hint,), fix, points)
+        fix = self._fix() if self.most > 0 else None
+        return Diagnostic("E0518", message, f.span, "too large", labels, (self._hint(),), fix, points)
 
     def _message(self) -> tuple[str, tuple[tuple[float, float], ...]]:
         failure, f = self.first, self.reason
@@ -325,19 +308,19 @@ class _Fault:
             )
         return message, (failure.work.corner.at,)
 
-    def _hint(self, most: float) -> str:
+    def _hint(self) -> str:
         if self.is_cusp:
             return "let them meet at an angle"
         beside = len(self.spans) > 1
-        if not most > 0:
+        if not self.most > 0:
             other = "the other one" if beside else "this shape"
             return f"no {self.what} fits here beside {other}: that has to change"
         if beside and self.is_equal:
-            return f"with the same {self.what} in all of them at most {rough(most)} fits"
+            return f"with the same {self.what} in all of them at most {rough(self.most)} fits"
         where = " beside the other" if beside else " at all its corners" if len(self.own) > 1 else ""
-        return f"at most {rough(most)} fits{where}"
+        return f"at most {rough(self.most)} fits{where}"
 
-    def _fix(self, most: float) -> Fix | None:
+    def _fix(self) -> Fix | None:
         """Returns the size in the statements, where each has it as a number that nothing else decides."""
         edits: dict[Span, Edit] = {}
         for work in self.own:
@@ -348,7 +331,7 @@ class _Fault:
             factor = UNITS[literal.unit][0] if literal.unit else 1.0
             if abs(literal.value * factor - max(work.sizes)) > 1e-9 * max(work.sizes):
                 return None  # a copy in another size, or a size that gave way
-            text = f"{most / factor:.12g}{literal.unit or ''}"
+            text = f"{self.most / factor:.12g}{literal.unit or ''}"
             edits[literal.span] = Edit(literal.span, text)
         texts = list(dict.fromkeys(f"`{edit.replacement}`" for edit in edits.values()))
         where = f" in all {len(edits)}" if len(edits) > 2 else " in both"
@@ -360,8 +343,8 @@ def merged_notes(found: Sequence[Misfit]) -> list[Diagnostic]:
     """Returns one note for each set of statements: that of the smallest size, which fits everywhere."""
     least: dict[frozenset[Span], Misfit] = {}
     for misfit in found:
-        known = least.get(misfit.statements)
-        if known is None or misfit.most < known.most:
+        known = least.setdefault(misfit.statements, misfit)
+        if misfit.most < known.most:
             least[misfit.statements] = misfit
     return [misfit.note for misfit in least.values()]
 

@@ -6,6 +6,7 @@ import math
 import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from functools import reduce
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
@@ -182,9 +183,15 @@ class _Outliner:
                 region = thick(curves[0], width, words["caps"], sharp) if width > 0 else Region()
             case _:
                 return self._from_regions(g, recipe, groups, curves[0])
-        if not region:
-            self.notes.append(notes.nothing_left(g, recipe))
-        return [*region.pieces]
+        return self._left(g, recipe, region.pieces)
+
+    def _left(
+        self, g: SolvedGeometry, recipe: Recipe, pieces: Sequence[Piece], depth: float | None = None
+    ) -> list[Piece]:
+        """Returns what is left of an outline, and tells if that is nothing."""
+        if not pieces:
+            self.notes.append(notes.nothing_left(g, recipe, depth))
+        return list(pieces)
 
     def _operand(self, group: Iterable[SolvedGeometry]) -> list[SolvedGeometry]:
         """Returns the geometry that an outline is made of, as it is drawn."""
@@ -198,10 +205,8 @@ class _Outliner:
             return self._tiled(g, recipe, groups, first)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
-            lines = [piece for one in clipped_each(first, regions[1]) for piece in one.inner]
-            if not lines:
-                self.notes.append(notes.nothing_left(g, recipe))
-            return lines
+            clipped = clipped_each(first, regions[1])
+            return self._left(g, recipe, [piece for one in clipped for piece in one.inner])
         if empty := [r for r, region in zip(recipe.operands, regions, strict=True) if not region]:
             self.notes.append(notes.not_closed(g, recipe, empty[0]))
             return []
@@ -223,17 +228,15 @@ class _Outliner:
         whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
         try:
             if area:
-                found = [*tiled_areas(area, region, lattice, whole=whole).pieces]
+                found: Sequence[Piece] = tiled_areas(area, region, lattice, whole=whole).pieces
             elif width > 0:
-                found = [*tiled_bars(cell, region, lattice, width).pieces]
+                found = tiled_bars(cell, region, lattice, width).pieces
             else:
                 found = tiled_strokes(cell, region, lattice, whole=whole)
         except TooManyCopiesError as many:
             self.notes.append(notes.too_many(g, recipe, many.count, MOST))
             return []
-        if not found:
-            self.notes.append(notes.nothing_left(g, recipe))
-        return found
+        return self._left(g, recipe, found)
 
     def _combined(self, g: SolvedGeometry, recipe: Recipe, regions: Sequence[Region]) -> list[Piece]:
         sharp = recipe.words.get("corners") != "round"
@@ -254,13 +257,10 @@ class _Outliner:
             case "difference":
                 result = without(*regions)
             case _:
-                result = region
-                for other in regions[1:]:
-                    result = common(result, other)
-        if not result:
-            depth = _deepest(region, -recipe.numbers["distance"]) if recipe.kind == "offset" else None
-            self.notes.append(notes.nothing_left(g, recipe, depth))
-        return [*result.pieces]
+                result = reduce(common, regions)
+        is_gone = not result and recipe.kind == "offset"
+        depth = _deepest(region, -recipe.numbers["distance"]) if is_gone else None
+        return self._left(g, recipe, result.pieces, depth)
 
     # --- Finished corners --------------------------------------------------------------------------
 

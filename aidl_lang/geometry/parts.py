@@ -31,8 +31,6 @@ from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.region import COARSE, Region, face_polygons, length, region_bounds
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
-# --- The parts of a drawing, each by itself, with what is engraved on it.
-
 # --- The parts that drawings are engraved on, for drawings whose parts are taken from one another.
 
 
@@ -170,7 +168,7 @@ class Part:
 def parts_of(root: SolvedStructure, drawing: Drawing) -> tuple[list[Part], list[Stroke]]:
     """Returns the parts, each turned as its own frame is, and what drawings have beside all of them."""
     on, off = engraved(drawing.bodies, drawing.strokes)
-    turns = dict(_turns(root))
+    turns = dict(_turns(root, 0.0, 1.0))
     found = [
         part.moved(Motion(-turn)) if (turn := turns[part.body.path] % 360.0) else part
         for part in _parts(drawing, on)
@@ -178,16 +176,12 @@ def parts_of(root: SolvedStructure, drawing: Drawing) -> tuple[list[Part], list[
     return found, off
 
 
-def _turns(root: SolvedStructure) -> Iterator[tuple[str, float]]:
-    """Yields the path of each structure and how far it is turned, degrees."""
-
-    def visit(s: SolvedStructure, turn: float, sense: float) -> Iterator[tuple[str, float]]:
-        turn += sense * s.frame.rotation
-        yield s.path, turn
-        for child in s.structures:
-            yield from visit(child, turn, -sense if s.frame.mirrored else sense)
-
-    yield from visit(root, 0.0, 1.0)
+def _turns(s: SolvedStructure, turn: float, sense: float) -> Iterator[tuple[str, float]]:
+    """Yields the path of each structure, in one that is turned, and how far it is turned, degrees."""
+    turn += sense * s.frame.rotation
+    yield s.path, turn
+    for child in s.structures:
+        yield from _turns(child, turn, -sense if s.frame.mirrored else sense)
 
 
 def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:

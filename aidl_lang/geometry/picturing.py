@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -102,8 +102,6 @@ def _most_drawn(model: SolvedModel) -> Span | None:
 
 
 # --- Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root.
-
-_FULL_TURN = 2 * math.pi
 
 
 def read_out(
@@ -319,17 +317,8 @@ class _Reader:
         recipe: SolvedRecipe | None = None,
     ) -> SolvedGeometry:
         source = g.source.path if g.source is not None else None
-        known = (
-            g.type,
-            values,
-            curve,
-            parts,
-            g.construction,
-            g.span,
-            recipe,
-            source,
-            self._looks(g) | self._attributes(g),
-        )
+        looks = self._looks(g) | self._attributes(g)
+        known = g.type, values, curve, parts, g.construction, g.span, recipe, source, looks
         return SolvedGeometry(g.name or g.type, g.path, *known)
 
     def _recipe(self, recipe: Recipe) -> SolvedRecipe:
@@ -440,12 +429,10 @@ class _Reader:
         center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
         first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
         is_clockwise = clockwise(g, self.model.root)
-        sweep = (first - last if is_clockwise else last - first) % _FULL_TURN
-        if sweep < 1e-12:
-            sweep = _FULL_TURN
-        return curves.Arc(
-            center, self._number(g.fields["radius"]), start, end, -sweep if is_clockwise else sweep
-        )
+        turn = (first - last if is_clockwise else last - first) % math.tau
+        turn = math.tau if turn < 1e-12 else turn
+        radius = self._number(g.fields["radius"])
+        return curves.Arc(center, radius, start, end, -turn if is_clockwise else turn)
 
 
 def _glyph(
@@ -475,8 +462,8 @@ def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     """Returns the model without curves and numbers that have no place, and diagnostics on them."""
     if all(map(_is_sound, model.root.walk())):
         return model, []
-    cleaner = _Cleaner()
-    return replace(model, root=cleaner.structure(model.root)), cleaner.notes
+    notes: list[Diagnostic] = []
+    return replace(model, root=_cleaned(model.root, notes)), notes
 
 
 def _is_sound(structure: SolvedStructure) -> bool:
@@ -511,30 +498,21 @@ def _is_within(value: object) -> bool:
     return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
 
 
-@record(frozen=False)
-class _Cleaner:
-    notes: list[Diagnostic] = field(default_factory=list)
-
-    def structure(self, s: SolvedStructure) -> SolvedStructure:
-        geometry = tuple(self._drawable(s, g) for g in s.geometry)
-        children = tuple(map(self.structure, s.structures))
-        frame, box = s.frame, s.box
-        if not _is_within((frame.x, frame.y, frame.rotation)):
-            frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
-        if box is None or not s.is_empty:
-            curves = (curve for g in geometry for curve in g.curves() if is_finite(curve))
-            box = Box.around(curves, children)
-        elif not _is_within(box.bounds):
-            box = None
-        return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
-
-    def _drawable(self, s: SolvedStructure, whole: SolvedGeometry) -> SolvedGeometry:
-        if _has_place(whole):
-            return whole
-        lost = list(_lost(whole))
-        is_whole = all(g in lost for g in whole.walk() if not g.parts)
-        self.notes.append(unusable_note(s, lost[0], whole if is_whole else lost[0]))
-        return _stripped(whole)
+def _cleaned(s: SolvedStructure, notes: list[Diagnostic]) -> SolvedStructure:
+    for whole in s.geometry:
+        if lost := list(_lost(whole)):
+            is_whole = all(g in lost for g in whole.walk() if not g.parts)
+            notes.append(unusable_note(s, lost[0], whole if is_whole else lost[0]))
+    geometry = tuple(map(_stripped, s.geometry))
+    children = tuple(_cleaned(child, notes) for child in s.structures)
+    frame, box = s.frame, s.box
+    if not _is_within((frame.x, frame.y, frame.rotation)):
+        frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
+    if box is None or not s.is_empty:
+        box = Box.around((c for g in geometry for c in g.curves() if is_finite(c)), children)
+    elif not _is_within(box.bounds):
+        box = None
+    return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
 
 
 def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:

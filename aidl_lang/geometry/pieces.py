@@ -17,7 +17,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
 from aidl_lang.geometry.curves import Bounds
-from aidl_lang.geometry.faces import OwnFace
+from aidl_lang.geometry.faces import OwnFace, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
@@ -94,10 +94,8 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
     if len(faces) < 2:
         return []
     sections = union([*(f.section for f in faces), *(v.section for v in mass.voids)]).decompose()
-    if len(sections) < 2:
-        return []
-    if len({_area(section) for section in sections}) == 1:
-        return []  # all alike
+    if len({_area(section) for section in sections}) < 2:
+        return []  # one, or all alike
     of: list[list[OwnFace]] = [[] for _ in sections]
     count = len(sections)
     for i, j in sorted(near_pairs([s.bounds() for s in (*sections, *(f.section for f in faces))], 0.0)):
@@ -192,21 +190,21 @@ def _cut_free(
     walk: Bodies, mass: Mass, holes: Sequence[SolvedStructure], others: Sequence[Solid]
 ) -> Iterator[Diagnostic]:
     """Yields the warnings on pieces that holes cut off a body, and that neither it nor others hold."""
-    islands = union([face.section for face in _faces(walk, _islands(mass.structure))])
+    islands = union_of(_faces(walk, _islands(mass.structure)))
     yield from _severed(walk, mass, holes, others, islands)
     if mass.section.num_contour() < _RING:
         return
-    loose: dict[str, _Loose] = {}
+    loose: dict[str, tuple[SolvedStructure, list[Section], dict[str, None]]] = {}
     for piece, gap in _enclosed(mass.section.decompose()):
         if not is_nothing(intersection(piece, islands)):
             continue  # put there on purpose
         if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
             for hole, around in _cutting(walk, holes, gap, piece):
-                fallen = loose.setdefault(hole.path, _Loose(hole, [], {}))
-                fallen.pieces.append(piece)
-                fallen.around.update(around)
+                _, pieces, names = loose.setdefault(hole.path, (hole, [], {}))
+                pieces.append(piece)
+                names.update(around)
     for fallen in loose.values():
-        yield _fallen(mass.structure, walk, fallen)
+        yield _fallen(mass.structure, walk, *fallen)
 
 
 def _severed(
@@ -221,8 +219,7 @@ def _severed(
     pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
     enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
     beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
-    faces = _faces(walk, _material(mass.structure))
-    for whole in union([face.section for face in faces]).decompose():
+    for whole in union_of(_faces(walk, _material(mass.structure))).decompose():
         parts = [piece for piece in beside if covers(whole, piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
         # Those with which filled again pieces would hang together.
@@ -251,15 +248,6 @@ def _cut_through(
             f"if that is meant, say so: `@detached` before `{solid.name}`",
         ),
     )
-
-
-@record()
-class _Loose:
-    """The pieces that a hole cuts free, and the names of its geometries that are around them."""
-
-    hole: SolvedStructure
-    pieces: list[Section]
-    around: dict[str, None]
 
 
 def _islands(structure: SolvedStructure) -> Iterator[SolvedStructure]:
@@ -334,13 +322,19 @@ def _cutting(
             yield hole, {g.name: None for f in faces for g in f.geometries}
 
 
-def _fallen(solid: SolvedStructure, walk: Bodies, loose: _Loose) -> Diagnostic:
-    hole = loose.hole
-    count, largest = len(loose.pieces), max(loose.pieces, key=lambda piece: piece.area())
+def _fallen(
+    solid: SolvedStructure,
+    walk: Bodies,
+    hole: SolvedStructure,
+    pieces: Sequence[Section],
+    around: Iterable[str],
+) -> Diagnostic:
+    """Returns the warning on pieces that a hole cuts free; `around`: the names of its geometries there."""
+    count, largest = len(pieces), max(pieces, key=lambda piece: piece.area())
     left, bottom, right, top = region_bounds(trace_all(walk.network, [largest])[0].region)
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
-    pieces = "a piece falls" if count == 1 else f"{count} pieces fall"
+    fall = "a piece falls" if count == 1 else f"{count} pieces fall"
     hints = [f"leave a bridge: a `solid` in `{hole.name}` stays, so one across the gap holds the piece"]
     fix = None
     if all(g.type == LETTERING for g in cuts):
@@ -350,10 +344,10 @@ def _fallen(solid: SolvedStructure, walk: Bodies, loose: _Loose) -> Diagnostic:
     hints.append(f"if that is meant, say so: `@detached` before `{solid.name}`")
     return Diagnostic(
         "W0714",
-        f"{pieces} out of {solid.kind} `{solid.path}`: hole `{hole.path}` cuts all around "
+        f"{fall} out of {solid.kind} `{solid.path}`: hole `{hole.path}` cuts all around "
         f"{'it' if count == 1 else 'them'}",
         hole.span or solid.span,
-        f"nothing holds what is inside {named(loose.around)}: "
+        f"nothing holds what is inside {named(around)}: "
         f"{size if count == 1 else f'{count} pieces, the largest {size}'}",
         hints=tuple(hints),
         fix=fix,

@@ -113,10 +113,7 @@ def difference(a: Section, b: Section) -> Section:
 
 
 def intersection(a: Section, b: Section) -> Section:
-    if not boxes_meet(a, b):
-        nothing: Section = _manifold().CrossSection()
-        return nothing
-    return a ^ b
+    return a ^ b if boxes_meet(a, b) else union([])
 
 
 def boxes_meet(a: Section, b: Section) -> bool:

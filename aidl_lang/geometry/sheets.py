@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -184,20 +185,6 @@ class Layout:
     oversize: tuple[tuple[str, Size], ...] = ()
 
 
-@record()
-class _Place:
-    """How a part gets to its sheet: turned by quarters about the origin, then moved by (`x`, `y`), mm."""
-
-    part: Part
-    quarters: int
-    x: float
-    y: float
-
-    @property
-    def moved(self) -> Part:
-        return self.part.moved(Motion(90.0 * self.quarters, self.x, self.y))
-
-
 def laid_out(
     root: SolvedStructure, drawing: Drawing, sheet: Size, spacing: float = SPACING, nest: float | None = None
 ) -> Layout:
@@ -214,19 +201,11 @@ def laid_out(
     oversize = {part.body.path: part.size for part in parts if not _lies_in(part, room, gap)}
     if oversize:
         return Layout((), tuple(off), tuple(oversize.items()))
-    stocks = gathered(parts, lambda part: part.stock)
-
-    def nesting(group: Sequence[Part]) -> _Nesting | None:
-        return _Nesting(sheet, spacing, nest * len(group) / len(parts)) if nest else None
-
-    return Layout(
-        tuple(
-            drawn(drawing, [place.moved for place in places], (0.0, 0.0, *sheet))
-            for group in sorted(stocks, key=lambda group: group[0].stock)
-            for places in _packed(group, room, gap, nesting(group))
-        ),
-        tuple(off),
-    )
+    share = (nest or 0.0) / max(1, len(parts))
+    stocks = sorted(gathered(parts, lambda part: part.stock), key=lambda group: group[0].stock)
+    packed = (_packed(group, room, gap, sheet, spacing, share * len(group)) for group in stocks)
+    sheets = (drawn(drawing, on_it, (0.0, 0.0, *sheet)) for found in packed for on_it in found)
+    return Layout(tuple(sheets), tuple(off))
 
 
 def _fitting(part: Part, room: Cell, gap: int) -> Part:
@@ -259,41 +238,32 @@ def _floor(length: float) -> int:
     return math.floor(length * GRID + SLACK)
 
 
-@record()
-class _Nesting:
-    """The sheet and the spacing, mm, and the seconds for packing by outlines."""
-
-    sheet: Size
-    spacing: float
-    seconds: float
-
-
-def _packed(parts: Sequence[Part], room: Cell, gap: int, nesting: _Nesting | None) -> list[list[_Place]]:
-    """Returns the places on each sheet: by boxes, or by outlines if that saves sheets or room on the last."""
-    by_boxes = _in_boxes(parts, room, gap)
-    if nesting is None or len(parts) == 1:
-        return by_boxes
-    by_outlines = _by_outlines(parts, nesting)
-    found = [by_boxes, by_outlines] if by_outlines else [by_boxes]
-    return min(found, key=lambda sheets: _used(sheets, nesting.sheet))
+def _packed(
+    parts: Sequence[Part], room: Cell, gap: int, sheet: Size, spacing: float, seconds: float
+) -> Iterator[list[Part]]:
+    """Yields the parts of each sheet in their places: packed by boxes and, if there are seconds for it, by
+    outlines, where that saves sheets or room on the last.
+    """
+    best = _in_boxes(parts, room, gap)
+    if seconds and len(parts) > 1 and (by_outlines := _by_outlines(parts, sheet, spacing, seconds)):
+        best = min(best, by_outlines, key=lambda places: _used(parts, places, sheet))
+    for places in best:
+        yield [parts[p.number].moved(Motion(90.0 * p.quarters, p.x, p.y)) for p in places]
 
 
-def _used(sheets: Sequence[Sequence[_Place]], sheet: Size) -> tuple[int, float]:
+def _used(parts: Sequence[Part], sheets: Sequence[Sequence[Nested]], sheet: Size) -> tuple[int, float]:
     """Returns the number of sheets, and the area of the last one that is lost if the rest is cut off it."""
-    boxes = [(turned_box(place.part.box, place.quarters), place) for place in sheets[-1]]
+    boxes = [(turned_box(parts[place.number].box, place.quarters), place) for place in sheets[-1]]
     right, top = max(box[2] + at.x for box, at in boxes), max(box[3] + at.y for box, at in boxes)
     return len(sheets), min(sheet[1] * right, sheet[0] * top)
 
 
-def _by_outlines(parts: Sequence[Part], nesting: _Nesting) -> list[list[_Place]]:
+def _by_outlines(parts: Sequence[Part], sheet: Size, spacing: float, seconds: float) -> list[list[Nested]]:
     # Each outline has half the spacing around it. Chords are inside of what bulges, by less than COARSE.
-    outlines = [widened(_outline(part), nesting.spacing / 2 + COARSE, ROUGH) for part in parts]
-    room = nesting.sheet[0] - nesting.spacing, nesting.sheet[1] - nesting.spacing
-    aside = nesting.spacing / 2
-    sheets = nested(outlines, room, nesting.seconds)
-    return [
-        [_Place(parts[n.number], n.quarters, n.x + aside, n.y + aside) for n in places] for places in sheets
-    ]
+    aside = spacing / 2
+    outlines = [widened(_outline(part), aside + COARSE, ROUGH) for part in parts]
+    sheets = nested(outlines, (sheet[0] - spacing, sheet[1] - spacing), seconds)
+    return [[replace(place, x=place.x + aside, y=place.y + aside) for place in places] for places in sheets]
 
 
 def _outline(part: Part) -> Polygon:
@@ -305,7 +275,7 @@ def _outline(part: Part) -> Polygon:
     return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
 
 
-def _in_boxes(parts: Sequence[Part], room: Cell, gap: int) -> list[list[_Place]]:
+def _in_boxes(parts: Sequence[Part], room: Cell, gap: int) -> list[list[Nested]]:
     """Returns the places on each sheet. Parts are turned only if that saves sheets."""
     cells = [_cell(part, gap) for part in parts]
     upright = all(_fits(cell, room) for cell in cells)
@@ -313,7 +283,7 @@ def _in_boxes(parts: Sequence[Part], room: Cell, gap: int) -> list[list[_Place]]
     if len(bins) != 1:
         turned = _bins(cells, room, turning=True)
         bins = turned if not upright or len(turned) < len(bins) else bins
-    return [[_place(parts[r.rid], r, gap) for r in sorted(found, key=lambda r: r.rid)] for found in bins]
+    return [[_place(parts, r, gap) for r in sorted(found, key=lambda r: r.rid)] for found in bins]
 
 
 def _bins(cells: Sequence[Cell], room: Cell, *, turning: bool) -> list[Any]:
@@ -335,8 +305,9 @@ def _bins(cells: Sequence[Cell], room: Cell, *, turning: bool) -> list[Any]:
     return list(packer)
 
 
-def _place(part: Part, cell: Any, gap: int) -> _Place:
+def _place(parts: Sequence[Part], cell: Any, gap: int) -> Nested:
     """Returns the place with the lower left corner of the part's box in a cell's."""
+    part = parts[cell.rid]
     quarters = int((cell.width, cell.height) != _cell(part, gap))
     box = turned_box(part.box, quarters)
-    return _Place(part, quarters, (cell.x + gap) / GRID - box[0], (cell.y + gap) / GRID - box[1])
+    return Nested(cell.rid, quarters, (cell.x + gap) / GRID - box[0], (cell.y + gap) / GRID - box[1])

@@ -28,7 +28,7 @@ from aidl_lang.geometry.curves import (
     round_range,
 )
 from aidl_lang.geometry.drawing import Body, Drawing, region_alone
-from aidl_lang.geometry.region import Loop, Region, measure, moments_about_start
+from aidl_lang.geometry.region import Region, measure, moments_about_start
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.walls import widths
 
@@ -85,19 +85,12 @@ def inertia(region: Region, centroid: Vec) -> Inertia:
         sign = -1 if loop.reversed else 1
         start, (a, mx, my) = moments_about_start(loop)
         dx, dy = start[0] - centroid[0], start[1] - centroid[1]
-        sx, sy, sxy = _squares(loop, start)
+        sx, sy, sxy = map(math.fsum, zip(*(_piece_squares(p, start) for p in loop.pieces), strict=True))
         # The parallel axis theorem, from the start of the loop to the centroid.
         xx += sign * sx + 2 * dx * mx + dx * dx * a
         yy += sign * sy + 2 * dy * my + dy * dy * a
         xy += sign * sxy + dx * my + dy * mx + dx * dy * a
     return Inertia(yy, xx, xy)
-
-
-def _squares(loop: Loop, origin: Vec) -> Squares:
-    """Returns the second moments of a loop about a point, as if it were not `reversed`."""
-    columns = zip(*(_piece_squares(piece, origin) for piece in loop.pieces), strict=True)
-    x, y, xy = map(math.fsum, columns)
-    return x, y, xy
 
 
 def _piece_squares(piece: Piece, origin: Vec) -> Squares:

@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import compress
 
 import numpy as np
 
@@ -244,9 +245,7 @@ def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[li
         checkpoint()
         crossing[begin + sides.near(spots[begin : begin + _AT_ONCE], radius + 2 * CHORD * size)[0]] = True
     inner = inside(polygons, spots) & ~crossing
-    return [w for w, k in zip(ways, inner, strict=True) if k], [
-        w for w, k in zip(ways, crossing, strict=True) if k
-    ]
+    return list(compress(ways, inner)), list(compress(ways, crossing))
 
 
 def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:

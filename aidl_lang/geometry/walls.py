@@ -178,7 +178,7 @@ def _is_convex(outline: Skeleton) -> bool:
 
 def _settled(o: Skeleton, found: Chords, k: int) -> Chord | None:
     """Returns the chord, or the one at right angles nearby where curves are neither straight nor round."""
-    a, b = _vec(found.a[k]), _vec(found.b[k])
+    a, b = ((float(x), float(y)) for x, y in (found.a[k], found.b[k]))
     if not (o.free[found.i[k]] or o.free[found.j[k]]):
         return Chord(float(found.length[k]), a, b)
     one = _End(o, int(found.i[k]), float(found.s[k]), a)
@@ -221,14 +221,11 @@ def _polish(one: _End, other: _End) -> bool:
     for _ in range(30):
         x, y = one.at[0] - other.at[0], one.at[1] - other.at[1]
         (p, pp), (q, qq) = one.slopes(), other.slopes()
-        first, second = x * p[0] + y * p[1], -(x * q[0] + y * q[1])
-        matrix = np.array(
-            (
-                (p[0] ** 2 + p[1] ** 2 + x * pp[0] + y * pp[1], -(p[0] * q[0] + p[1] * q[1])),
-                (-(p[0] * q[0] + p[1] * q[1]), q[0] ** 2 + q[1] ** 2 - x * qq[0] - y * qq[1]),
-            )
-        )
-        value = np.array((first, second))
+        first = p[0] ** 2 + p[1] ** 2 + x * pp[0] + y * pp[1]
+        second = q[0] ** 2 + q[1] ** 2 - x * qq[0] - y * qq[1]
+        mixed = -(p[0] * q[0] + p[1] * q[1])
+        matrix = np.array(((first, mixed), (mixed, second)))
+        value = np.array((x * p[0] + y * p[1], -(x * q[0] + y * q[1])))
         if one.is_fixed:
             matrix[0], matrix[:, 0], value[0] = 0.0, 0.0, 0.0
         if other.is_fixed:
@@ -275,17 +272,14 @@ def _is_clear(o: Skeleton, chord: Chord, kind: int) -> bool:
     It is looked at a little to its left and right, so that a corner it passes by does not count, and one
     through which it enters something does. A chord that runs along an edge is none.
     """
-    (ax, ay), (bx, by) = chord.a, chord.b
-    way = np.array((bx - ax, by - ay))
+    way = np.subtract(chord.b, chord.a)
     beside = _ASIDE * np.array((-way[1], way[0]))
-    wanted = kind == WALL
-    copies = [(np.array(chord.a) + sign * beside, way) for sign in (1, -1)]
+    starts = [chord.a + sign * beside for sign in (1, -1)]
     margin = min(0.25, _NEAR_END + 4 * o.error / chord.length)
-    if any(_covers(o, start + way / 2) != wanted for start, way in copies) and _runs_along(o, chord):
+    within_kind = [start for start in starts if _covers(o, start + way / 2) == (kind == WALL)]
+    if len(within_kind) < len(starts) and _runs_along(o, chord):
         return False
-    return any(
-        _covers(o, start + way / 2) == wanted and not _crosses(o, start, way, margin) for start, way in copies
-    )
+    return any(not _crosses(o, start, way, margin) for start in within_kind)
 
 
 def _runs_along(o: Skeleton, chord: Chord) -> bool:
@@ -347,10 +341,6 @@ def _seen(a: Floats, b: Floats) -> Floats:
     """Returns the signed angles under which segments are seen from the origin."""
     angles: Floats = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
     return angles
-
-
-def _vec(row: Floats) -> Vec:
-    return float(row[0]), float(row[1])
 
 
 # --- Finds walls that are thinner than their material allows.

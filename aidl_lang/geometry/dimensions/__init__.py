@@ -34,6 +34,7 @@ from aidl_lang.geometry.dimensions.constraints import Scene, by_hand, stated_len
 from aidl_lang.geometry.dimensions.features import (
     X_AXIS,
     Y_AXIS,
+    dot,
     field_sizes,
     left_of,
     length_along,
@@ -49,6 +50,7 @@ from aidl_lang.geometry.dimensions.sketch import (
     Sketch,
     Span,
     flipped,
+    is_on,
     less,
     told,
 )
@@ -109,7 +111,7 @@ def completed(
         group
         for group in stated
         if not (group[0].origin == "pattern" and isinstance(group[0], Roundness))
-        or _is_told_by(group[0].curve, _centers_on(group[0].curve, pieces, slack))
+        or _is_told_by(group[0].curve, pieces, slack)
     ]
     holes = _scattered(drawing, stated, slack)
     said = Places[tuple[str, str]](slack)
@@ -137,20 +139,13 @@ def completed(
     return Completed(tuple(groups), tuple(free), holes, datum)
 
 
-def _centers_on(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> list[Vec]:
-    """Returns the centres of whole circles that lie on a circle."""
-    centers = [p.center for p in pieces if isinstance(p, Circle)]
-    return [c for c in centers if abs(math.dist(c, ring.center) - ring.radius) <= slack]
-
-
-def _is_told_by(ring: Circle | Arc, centers: Sequence[Vec]) -> bool:
+def _is_told_by(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> bool:
     """Tells whether a circle through centres tells where they are: they stand at equal steps on it, and one
     of them, or a middle between two, straight beside the centre or above it.
     """
-    (x0, y0), turns = ring.center, []
-    for x, y in centers:
-        turns.append(math.degrees(math.atan2(y - y0, x - x0)) % 360)
-    turns.sort()
+    (x0, y0), centers = ring.center, (p.center for p in pieces if isinstance(p, Circle))
+    on_it = (c for c in centers if is_on(ring, c, slack))
+    turns = sorted(math.degrees(math.atan2(y - y0, x - x0)) % 360 for x, y in on_it)
     steps = [b - a for a, b in pairwise([*turns, turns[0] + 360])] if turns else []
     if not steps or max(steps) - min(steps) > _EVEN:
         return False
@@ -170,7 +165,7 @@ def _scattered(drawing: Drawing, stated: Sequence[Group], slack: float) -> tuple
 
     def is_ordered(c: Circle) -> bool:
         in_row = any(math.dist(c.center, p) <= slack for p in ordered)
-        return in_row or any(abs(math.dist(c.center, r.center) - r.radius) <= slack for r in rings)
+        return in_row or any(is_on(ring, c.center, slack) for ring in rings)
 
     holes = [
         piece
@@ -473,13 +468,10 @@ def _middle(piece: Piece) -> Vec:
 def _is_mirror(a: Piece, b: Piece, axis: int, middle: float, slack: float) -> bool:
     if isinstance(a, Circle) or isinstance(b, Circle):
         return isinstance(a, Circle) and isinstance(b, Circle) and abs(a.radius - b.radius) <= slack
-    ways = ((0.0, 0.25, 1.0), (0.0, 0.25, 1.0)), ((0.0, 0.25, 1.0), (1.0, 0.75, 0.0))
+    spots = [flipped(point(a, t), axis, middle) for t in (0.0, 0.25, 1.0)]
     return type(a) is type(b) and any(
-        all(
-            math.dist(flipped(point(a, t), axis, middle), point(b, u)) <= slack
-            for t, u in zip(*way, strict=True)
-        )
-        for way in ways
+        all(math.dist(p, point(b, t)) <= slack for p, t in zip(spots, ways, strict=True))
+        for ways in ((0.0, 0.25, 1.0), (1.0, 0.75, 0.0))
     )
 
 
@@ -545,10 +537,9 @@ def _grouped(found: Iterable[Dimension], tolerance: float) -> list[tuple[Dimensi
 
 def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
     assert isinstance(whole, Length)
-    middle = circle.center[0] * whole.along[0] + circle.center[1] * whole.along[1]
-    start = whole.start[0][0] * whole.along[0] + whole.start[0][1] * whole.along[1]
+    low = dot(circle.center, whole.along) - circle.radius
     same = abs(2 * circle.radius - whole.value) <= tolerance
-    return same and abs(middle - circle.radius - start) <= tolerance
+    return same and abs(low - dot(whole.start[0], whole.along)) <= tolerance
 
 
 def overall(drawing: Drawing) -> Iterator[Length]:

@@ -73,15 +73,14 @@ class _Inside:
     def shows(self, dimension: Dimension) -> bool:
         return all(self._has_one(spots) for spots in _ends(dimension))
 
-    def _has_one(self, spots: Iterable[Vec]) -> bool:
-        every = list(spots)
-        if inside(self._polygons, np.array(every)).any():
+    def _has_one(self, spots: Sequence[Vec]) -> bool:
+        if inside(self._polygons, np.array(spots)).any():
             return True
         borders = self._region.pieces
-        return any(math.dist(point(c, nearest(c, p)), p) <= self._near for p in every for c in borders)
+        return any(math.dist(point(c, nearest(c, p)), p) <= self._near for p in spots for c in borders)
 
 
-def _ends(dimension: Dimension) -> Iterator[Iterable[Vec]]:
+def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:
     """Yields, for each end of a dimension, the places where it may be seen."""
     match dimension:
         case Length(start=start, end=end):
@@ -101,10 +100,8 @@ _FLAT = 1e-9
 
 
 def direction(degrees: float) -> Vec:
-    quarter = degrees / 90
-    if abs(quarter - round(quarter)) < _FLAT:
-        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarter) % 4]
-    return math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    level = 90 * round(degrees / 90)
+    return ex.exact_turn(level if abs(degrees - level) < 90 * _FLAT else degrees)
 
 
 def readable(u: Vec) -> Vec:
@@ -245,14 +242,7 @@ def _steps(centers: Sequence[Vec], levels: Sequence[float], axis: int, tolerance
     for a, b in pairwise(levels):
         start, end = (tuple(c for c in centers if abs(c[axis] - level) <= tolerance) for level in (a, b))
         found = length_between(start, end, (X_AXIS, Y_AXIS)[axis])
-        yield Length(
-            found.value,
-            "pattern",
-            group=("steps", axis, *centers[0]),
-            start=found.start,
-            end=found.end,
-            along=found.along,
-        )
+        yield replace(found, origin="pattern", group=("steps", axis, *centers[0]))
 
 
 def _ring(centers: Sequence[Vec], tolerance: float) -> Circle | None:
@@ -267,11 +257,8 @@ def _ring(centers: Sequence[Vec], tolerance: float) -> Circle | None:
     b, c = bx * bx + by * by, cx * cx + cy * cy
     x, y = ax + (cy * b - by * c) / twice, ay + (bx * c - cx * b) / twice
     radius = math.dist((x, y), (ax, ay))
-    return (
-        Circle((x, y), radius)
-        if all(abs(math.dist((x, y), p) - radius) <= tolerance for p in centers)
-        else None
-    )
+    is_round = all(abs(math.dist((x, y), p) - radius) <= tolerance for p in centers)
+    return Circle((x, y), radius) if is_round else None
 
 
 # --- Sizes of geometry: those that are exact through a `param` or `fixed`, and those written as numbers.
@@ -331,9 +318,8 @@ class SizedGeometry:
 
     def dimensions(self) -> Iterator[Dimension]:
         found = False
-        for name, value in self._numbers():
-            origin = origin_of(value, self.built)
-            if origin is not None:
+        for name, value in self._values().items():
+            if isinstance(value, Num) and (origin := origin_of(value, self.built)) is not None:
                 for dimension in self.field(name, self.evaluate(value.expression), value):
                     found = True
                     yield self._said(dimension, name, value, origin)
@@ -342,22 +328,16 @@ class SizedGeometry:
                 reach = length_along(self._curves(), direction(self.turned + 90 * k))
                 yield replace(reach, origin="size", of=self.solved.path, group=(self.built.span, k))
 
-    def _numbers(self) -> Iterator[tuple[str, Num]]:
-        if self.built.is_compound:
-            assert isinstance(self.built.scope, Scope)
-            values = {name: self.built.scope.values[name] for name in self.built.arguments}
-        else:
-            values = dict(self.built.fields)
-        for name, value in values.items():
-            if isinstance(value, Num):
-                yield name, value
+    def _values(self) -> Mapping[str, object]:
+        if not self.built.is_compound:
+            return self.built.fields
+        assert isinstance(self.built.scope, Scope)
+        return {name: self.built.scope.values[name] for name in self.built.arguments}
 
     def _is_listed(self) -> bool:
         """Tells whether the outline is given by its points."""
-        if not self.built.is_compound or not self._curves():
-            return False
-        assert isinstance(self.built.scope, Scope)
-        return any(isinstance(self.built.scope.values[name], ListVal) for name in self.built.arguments)
+        is_outline = self.built.is_compound and bool(self._curves())
+        return is_outline and any(isinstance(value, ListVal) for value in self._values().values())
 
     def _curves(self) -> list[Piece]:
         return list(self.solved.curves())

@@ -164,15 +164,10 @@ class Sketch:
 
     def _find_rounds(self, curves: Iterable[Circle | Arc]) -> None:
         same: Places[list[Circle | Arc]] = Places(self.slack)
-        every = []
         for curve in curves:
             key = (*curve.center, curve.radius)
-            known = same.find(key)
-            if known is None:
-                known = same.add(key, [])
-                every.append(known)
-            known.append(curve)
-        for known in every:
+            (same.find(key) or same.add(key, [])).append(curve)
+        for known in same.things():
             first = known[0]
             is_seen = any(is_half_round(c) for c in known)
             x, y = (self._level(k, first.center, EDGE if is_seen else HIDDEN) for k in (0, 1))
@@ -207,15 +202,15 @@ class Sketch:
         """Notes what is seen where a piece from `a` to `b` meets one from `b` to `c`."""
         arcs = [self._round(p) for p in (before, after) if isinstance(p, Arc)]
         for arc in arcs:
-            self._equate(partial(_off, b, arc.center, arc.radius), b, arc.center, arc.radius)
+            self._equate(_off, b, arc.center, arc.radius)
         if not is_smooth(before, after):
             return
         if len(arcs) == 2:
             m, n = (arc.center for arc in arcs)
-            self._equate(partial(_turned, cross, b, m, b, n), b, m, n)
+            self._turn(b, m, b, n)
         elif not any(self.is_across(p, axis) for p in (before, after) for axis in (0, 1)):
             m, far = arcs[0].center, a if isinstance(before, Line) else c
-            self._equate(partial(_turned, dot, b, m, b, far), b, m, far)
+            self._turn(b, m, b, far, is_right=True)
 
     def _between(self, a: Spot, b: Spot, c: Spot, d: Spot, before: Piece, after: Piece) -> None:
         """Notes what is seen of a rounded corner or a round end: what its edges are to each other."""
@@ -236,8 +231,8 @@ class Sketch:
         self._corners.append(self._spots.add(at, Spot(at, x, y)))
 
     def _turn(self, a: Spot, b: Spot, c: Spot, d: Spot, is_right: bool = False) -> None:
-        """Notes that two slanted edges are seen to be parallel, or at a right angle."""
-        self._equate(partial(_turned, dot if is_right else cross, a, b, c, d), a, b, c, d)
+        """Notes that two slanted ways are seen to be parallel, or at a right angle."""
+        self._equate(partial(_turned, dot if is_right else cross), a, b, c, d)
 
     def _vertex(self, before: Piece, after: Piece) -> Spot:
         """Returns where a piece begins; where an axial edge touches an arc, straight beside the centre."""
@@ -263,10 +258,10 @@ class Sketch:
         assert found is not None
         return found
 
-    def _equate(self, of: Callable[[Unknowns], complex], *things: Spot | Reading | int) -> None:
-        """Notes a number of some things that is seen to be nought."""
+    def _equate(self, of: Callable[..., complex], *things: Spot | Reading | int) -> None:
+        """Notes a number of some things, and of the unknowns, that is seen to be nought."""
         needs = [(t,) if isinstance(t, int) else t.needs for t in things]
-        self.equations.append(Reading(tuple(chain(*needs)), of))
+        self.equations.append(Reading(tuple(chain(*needs)), partial(of, *things)))
 
     def mirror(self, axis: int, middle: float) -> Reading:
         """Notes that both sides of a drawn axis are alike; returns its level."""
@@ -277,16 +272,12 @@ class Sketch:
             other = self._spots.find(flipped(spot.at, axis, middle))
             if other is None:
                 continue
-            a, b = spot.along(axis), other.along(axis)
-            self._equate(partial(_off_middle, a, b, plain(axle)), a, b, axle)
-            a, b = spot.along(1 - axis), other.along(1 - axis)
-            self._equate(partial(_differing, a, b), a, b)
+            self._equate(_off_middle, spot.along(axis), other.along(axis), plain(axle))
+            self._equate(_differing, spot.along(1 - axis), other.along(1 - axis))
         for own in self.rounds:
             twin = self._rounds.find((*flipped(own.curve.center, axis, middle), own.curve.radius))
             if twin is not None:
-                self._equate(
-                    partial(_differing, plain(own.radius), plain(twin.radius)), own.radius, twin.radius
-                )
+                self._equate(_differing, plain(own.radius), plain(twin.radius))
         return plain(axle)
 
     def levels(self) -> list[Level]:
@@ -539,14 +530,9 @@ def _from_edge(end: End, a: Spot, b: Spot, z: Unknowns) -> complex:
     return sense * found + (z[end[1]] if end[2] else 0.0)
 
 
-def centers_on(sketch: Sketch, ring: Circle | Arc) -> list[Spot]:
-    """Returns the centres of whole circles that lie on a circle."""
-    circles = (own for own in sketch.rounds if isinstance(own.curve, Circle))
-    return [
-        own.center
-        for own in circles
-        if abs(math.dist(own.curve.center, ring.center) - ring.radius) <= sketch.slack
-    ]
+def is_on(ring: Circle | Arc, p: Vec, slack: float) -> bool:
+    """Tells whether a point lies on a circle."""
+    return abs(math.dist(p, ring.center) - ring.radius) <= slack
 
 
 def _on_ring(sketch: Sketch, ring: Circle) -> list[Reading] | None:
@@ -555,23 +541,19 @@ def _on_ring(sketch: Sketch, ring: Circle) -> list[Reading] | None:
     middle = next((spot for spot in seen if math.dist(spot.at, ring.center) <= sketch.slack), None)
     if middle is None:
         return None
-    return [less(spot.along(k), middle.along(k)) for spot in centers_on(sketch, ring) for k in (0, 1)]
+    circles = (own.center for own in sketch.rounds if isinstance(own.curve, Circle))
+    spots = (spot for spot in circles if is_on(ring, spot.at, sketch.slack))
+    return [less(spot.along(k), middle.along(k)) for spot in spots for k in (0, 1)]
 
 
 def _opening(sketch: Sketch, of: Opening) -> list[Reading] | None:
     """Returns the angle of two edges through its corner; the first may be level and not drawn."""
-    arms = [_arm(sketch, of.corner, degrees) for degrees in (of.first, of.first + of.value)]
-    first, second = arms
-    if first is None and abs(math.remainder(of.first, 90)) > 1e-6:
+    first, second = (_arm(sketch, of.corner, degrees) for degrees in (of.first, of.first + of.value))
+    if second is None or (first is None and abs(math.remainder(of.first, 90)) > 1e-6):
         return None
-    if second is None:
-        return None
-    turn = math.radians(of.value)
-    if first is None:
-        way = math.cos(math.radians(of.first)), math.sin(math.radians(of.first))
-        return [Reading(second[0].needs + second[1].needs, partial(_lean, None, second, way, turn))]
-    needs = first[0].needs + first[1].needs + second[0].needs + second[1].needs
-    return [Reading(needs, partial(_lean, first, second, (1.0, 0.0), turn))]
+    level = math.cos(math.radians(of.first)), math.sin(math.radians(of.first))
+    needs = tuple(chain(*(spot.needs for spot in (*(first or ()), *second))))
+    return [Reading(needs, partial(_lean, first, second, level, math.radians(of.value)))]
 
 
 def _arm(sketch: Sketch, corner: Vec, degrees: float) -> tuple[Spot, Spot] | None:

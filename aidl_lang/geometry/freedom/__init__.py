@@ -94,8 +94,7 @@ class Reach:
     # --- What is possible --------------------------------------------------------------------------
 
     def _missing(self, velocity: Floats) -> Floats:
-        missing: Floats = velocity - self.reach @ (self.reach.T @ velocity)
-        return missing
+        return velocity - self.reach @ (self.reach.T @ velocity)
 
     def is_possible(self, velocity: Floats) -> bool:
         return float(np.linalg.norm(self._missing(velocity))) <= POSSIBLE * float(np.linalg.norm(velocity))
@@ -131,8 +130,7 @@ class Reach:
 
     def _rates(self, velocity: Floats) -> Floats:
         """Returns the rates (k,) of the unknowns of the part in a possible motion."""
-        found: Floats = self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
-        return found
+        return self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
 
     def rates(self, velocity: Floats) -> dict[str, float]:
         """Returns the rates of the parameters that take part in a possible motion, by path."""
@@ -145,8 +143,7 @@ class Reach:
         }
 
     def _moving(self, velocity: Floats) -> Mask:
-        found: Mask = np.abs(velocity) > POSSIBLE * float(np.abs(velocity).max())
-        return found
+        return np.abs(velocity) > POSSIBLE * float(np.abs(velocity).max())
 
     # --- What may move as a whole ------------------------------------------------------------------
 
@@ -450,12 +447,11 @@ class _Telling(Reach):
     def _growth(self, thing: Thing | None, xs: Floats, ys: Floats) -> Iterator[_Told]:
         missing = np.stack((self._missing(xs), self._missing(ys)), axis=1)
         for mask, words in ((xs, "grow wider"), (ys, "grow taller")):
-            if self.is_done or not mask.any() or not self._whole_things(thing, mask):
+            if self.is_done or not mask.any() or not (things := self._whole_things(thing, mask)):
                 continue
             velocity = mask * (self.places - float(self.places @ mask) / float(mask.sum()))
             shift, *_ = np.linalg.lstsq(missing, -self._missing(velocity), rcond=1e-9)
             if np.linalg.norm(velocity) > POSSIBLE:
-                things = self._whole_things(thing, mask)
                 yield from self._told(velocity + shift[0] * xs + shift[1] * ys, "grow", things, words)
 
     def _growth_from_a_place(self, thing: Thing) -> Iterator[_Told]:
@@ -544,8 +540,7 @@ def _reduced(basis: Floats) -> Floats:
         own.append(int(np.argmax(np.round((rest * rest).sum(axis=1), 6))))
         direction = rest[own[-1]] / np.linalg.norm(rest[own[-1]])
         rest = rest - np.outer(rest @ direction, direction)
-    found: Floats = basis @ np.linalg.inv(basis[own])
-    return found
+    return basis @ np.linalg.inv(basis[own])
 
 
 __all__ = ["motions", "report"]

@@ -178,8 +178,7 @@ class Scene:
 
     def own(self, thing: Thing) -> Ints:
         """Returns the observables of a thing, without those of what rides along in it."""
-        found: Ints = np.flatnonzero(self.anchor[thing.start : thing.stop] == thing.anchor) + thing.start
-        return found
+        return np.flatnonzero(self.anchor[thing.start : thing.stop] == thing.anchor) + thing.start
 
     def _add(self, path: str, start: int, stop: int, rank: int) -> None:
         if start < stop:
