@@ -180,6 +180,17 @@ def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
     assert note.message.startswith("`@edges` counts for nothing in this file: ")
 
 
+def test_a_solid_with_a_look_in_a_solid_is_an_area_and_has_no_seams() -> None:
+    def svg(looks: str) -> str:
+        inner = f"{looks} solid knob {{ rim = circle(center: fixed((0, 0)), radius: 6) }}"
+        plate = "body = rectangle(center: fixed((0, 0)), width: 40, height: 20)"
+        return written(".svg", f"solid a {{ {plate}\n {inner} }}").data.decode()
+
+    assert 'class="seam"' in svg("")
+    assert 'class="seam"' not in svg('@color("gold")')
+    assert svg('@color("gold") @stroke(none)').count('stroke="none"') == 1
+
+
 # --- What has no place -----------------------------------------------------------------------------
 
 
