@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Dialog, Locator, Page, sync_playwright
 
 from tests.preview.messages import picture, words
 from tests.preview.scripted import ScriptedHost
@@ -91,14 +91,25 @@ class Pane:
 
 def opened(context: BrowserContext, host: ScriptedHost, has_clock: bool = False) -> Pane:
     """The pane on a page of its own."""
-    context.set_default_timeout(10_000)
-    pane = Pane(context.new_page(), host)
-    pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
-    pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(line.text))
+    pane = listened(context, host)
     if has_clock:
         pane.page.clock.install(time=0)
     pane.page.goto(host.url)
     return pane
+
+
+def listened(context: BrowserContext, host: ScriptedHost) -> Pane:
+    """A page for the pane, with nothing in it."""
+    context.set_default_timeout(10_000)
+    pane = Pane(context.new_page(), host)
+    pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
+    pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(line.text))
+    return pane
+
+
+def left(dialog: Dialog) -> None:
+    """Leaves a page, unsaved text and all."""
+    dialog.accept()
 
 
 @pytest.fixture
@@ -124,25 +135,30 @@ def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pa
 
 
 @pytest.fixture(scope="module")
-def shared(browser: Browser) -> Iterator[tuple[BrowserContext, ScriptedHost]]:
-    """One host for many tests, and a browser that keeps the pane's files."""
+def shared(browser: Browser) -> Iterator[Pane]:
+    """One host and one page for many tests: a page of its own for each takes three times as long to load."""
     with ScriptedHost() as host:
         context = browser.new_context(viewport=VIEWPORT)
-        yield context, host
+        yield listened(context, host)
         context.close()
 
 
 @pytest.fixture
-def pane(shared: tuple[BrowserContext, ScriptedHost]) -> Iterator[Pane]:
-    """The pane with a plate in it; nothing that a test does may make the browser complain."""
-    context, host = shared
+def pane(shared: Pane) -> Iterator[Pane]:
+    """The pane, loaded anew, with a plate in it; nothing that a test does may make the browser complain."""
+    host, page = shared.host, shared.page
     host.forget()
-    pane = opened(context, host)
+    shared.complaints.clear()
+    page.mouse.up()
+    page.mouse.move(0, 0)
+    page.goto(host.url)
     host.hears("aidl/preview")
-    pane.writes()
-    pane.shows()
-    yield pane
-    pane.page.evaluate("() => localStorage.clear()")
-    pane.page.close()
+    shared.writes()
+    shared.shows()
+    yield shared
+    page.evaluate("() => localStorage.clear()")
+    page.once("dialog", left)
+    page.goto("about:blank")
+    page.remove_listener("dialog", left)
     host.drop()
-    assert pane.complaints == []
+    assert shared.complaints == []
