@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Dialog, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Dialog, Locator, Page, ViewportSize, sync_playwright
 
 from tests.preview.messages import picture, words
 from tests.preview.scripted import ScriptedHost
@@ -20,7 +20,7 @@ ARGUMENTS = [
     "--disable-sync",
     "--no-first-run",
 ]
-VIEWPORT = {"width": 1200, "height": 800}
+VIEWPORT: ViewportSize = {"width": 1200, "height": 800}
 
 
 @pytest.fixture(scope="module")  # it runs an event loop, in which the tests of other modules could start none
@@ -149,6 +149,8 @@ def pane(shared: Pane) -> Iterator[Pane]:
     host, page = shared.host, shared.page
     host.forget()
     shared.complaints.clear()
+    page.set_viewport_size(VIEWPORT)
+    page.emulate_media(color_scheme="light")
     page.mouse.up()
     page.mouse.move(0, 0)
     page.goto(host.url)
