@@ -73,7 +73,7 @@ async def typed(path: Path) -> tuple[int, int]:
 def test_models_of_old_texts_and_closed_documents_are_released(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As on a machine where every collection takes long. Once all names are known, no edit adds to them: neither
+    """As on a machine where collections take long. Once all names are known, no edit adds to them, neither
     its text nor anything else.
     """
     monkeypatch.setattr(running, "_LONG", 0.0)
