@@ -10,7 +10,7 @@ from tests.lsp.editor import CONFIG, EXAMPLES, Editor, greet
 
 @pytest_lsp.fixture(config=CONFIG, scope="module")
 async def editor(client: Editor, request: pytest.FixtureRequest) -> AsyncIterator[None]:
-    """One server for the tests of a file, as they cost a second to start; it reads all programs of its `ROOM`."""
+    """One server for the tests of a file, which cost a second to start, with the programs of its `ROOM`."""
     await greet(client, getattr(request.module, "ROOM", EXAMPLES))
     yield
     await client.shutdown_session()

@@ -6,7 +6,7 @@ import pickle
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
@@ -15,6 +15,7 @@ from aidl_lang.common.running import Cancelled, OutOfTime, cancelled_when, limit
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
 from aidl_lang.export.job import SHOW, Options
+from tests.amount import tries
 from tests.property.programs import Sketch, sketches
 
 EVERY = Options(frozenset(SHOW), dimension=True)
@@ -81,7 +82,7 @@ def assert_same(text: str, orders: Sequence[Sequence[str]], *, strict: bool = Fa
 
 
 @given(sketches(), st.sampled_from(TOLD), st.booleans(), ORDERS)
-@settings(max_examples=15)
+@tries(30)
 def test_the_order_of_reading_does_not_matter(
     sketch: Sketch, told: str, strict: bool, order: list[str]
 ) -> None:
