@@ -105,7 +105,7 @@ def _braced(statement: str) -> str:
     return f"{{ {statement} }}"
 
 
-@pytest.mark.parametrize(("statement", "is_true"), _statements())
+@pytest.mark.parametrize(("statement", "is_true"), list(_statements()))
 def test_what_is_true_holds_and_nothing_else(statement: str, is_true: bool) -> None:
     assert (_complaints(_braced(statement)) == []) == is_true
 
