@@ -16,7 +16,7 @@ def test_own_definitions_hide_imported_ones() -> None:
     resolution = resolved(text, {"bolts.aidl": "param clearance = 0.2\nfn wide(n) = n + clearance\n"})
     uses = [s for n, s in resolution.uses.items() if n.span.text == "clearance"]
     declared = [s.declarations[0].span.source.name for s in uses if s.name == "clearance"]
-    assert declared == ["bolts.aidl", "bolts.aidl", "main.aidl"]
+    assert declared == ["bolts.aidl", "bolts.aidl", "main.aidl", "main.aidl"]
 
 
 def test_errors_are_shown_in_the_file_they_are_in() -> None:
