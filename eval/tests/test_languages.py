@@ -24,7 +24,7 @@ from eval.tests import scripted
 from eval.tests.asked import NAMES, prompts
 from eval.tests.conftest import Evaluation
 
-QUICK = ("coffee_mug", "robot_face", "sailing_boat")
+QUICK = ("coffee_mug", "robot_face")
 TOUCHING = {"steam_locomotive": ("openings", "fields", "teeth")}
 """What hangs on whether parts that just touch, touch to the last digit; `contact` does where parts are."""
 PYTHONS = {name: value for name, value in os.environ.items() if name.endswith("_PYTHON")}

@@ -1,4 +1,4 @@
-"""What each stage makes of each example, against the files in `expected/`.
+"""What comes of each example, against the files in `expected/`.
 
 `make accept` (AIDL_ACCEPT=1) takes the present results as the new ones. Numbers are rounded, so that the last
 digits of a machine's arithmetic make no difference.
@@ -51,7 +51,7 @@ def rounded_document(value: Any) -> Any:
             return value
 
 
-# --- Stages ----------------------------------------------------------------------------------------
+# --- What comes ------------------------------------------------------------------------------------
 
 
 def canonical(text: str) -> str:
