@@ -27,13 +27,6 @@ _ERROR = "window/showMessage"
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
-    path = tmp_path / "part.aidl"
-    path.write_text(TEXT, "utf-8")
-    return path
-
-
-@pytest.fixture
 def client(file: Path) -> Iterator[TestClient]:
     with serving(file) as client:
         yield client
