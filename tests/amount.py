@@ -9,7 +9,7 @@ from typing import Any
 
 from hypothesis import HealthCheck, settings
 
-_SHARE = 0.25
+_SHARE = 0.15
 _LEAST = 2
 """Examples of any property: the first that Hypothesis tries is the smallest there is, and shows little."""
 

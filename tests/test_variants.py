@@ -5,10 +5,10 @@ guide speaks of nothing else.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TypeAlias
 
 import pytest
 from hypothesis import given
@@ -27,27 +27,15 @@ from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.pages import guide
 from tests.amount import tries
-from tests.documents import ROOT
+from tests.documents import ROOT, Block, blocks
 from tests.property.programs import Part, Sketch, part, sketches
-
-Told: TypeAlias = tuple[str, str, str, tuple[str, ...]]
-"""Of a diagnostic: its code, the text of its place, its message and its hints."""
 
 FLAT, WRITTEN = Variant.NO_HIERARCHY, Variant.NO_CONSTRAINTS
 SUBSETS = (FLAT, WRITTEN)
 CODES = {variant: {rule.code for rule in FORBIDDEN[variant].values()} for variant in Variant}
 
-ONE = "`no-hierarchy` has one structure"
-AS_WRITTEN = "`no-constraints` draws everything as it is written"
-OTHER = "write its geometry and constraints straight into the first structure, under names of their own"
-CUT = "cut it out: `body = cut(plate, bore)`"
-LOOP = "repeat geometry in a loop, `for i in 0..3 { bore[i] = circle(…) }`; if it is a hole, " + CUT
-WHERE = (
-    "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
-    "`center: plate.top_left + (5, -5)`"
-)
 CAME_LATER = "draw with `line`, `arc`, `circle`, `rectangle` or `polygon`, cut with `hole`, and constrain"
-STATED = f"{AS_WRITTEN} and has no constraints"
+STATED = "`no-constraints` draws everything as it is written and has no constraints"
 
 
 def compiled(text: str, variant: Variant, files: dict[str, str] | None = None) -> Compiled:
@@ -60,170 +48,26 @@ def checked(text: str, variant: Variant, files: dict[str, str] | None = None) ->
     return pipeline.check(SourceFile("part.aidl", text), MemoryWorld(files or {}), chosen)
 
 
-def told(d: Diagnostic) -> Told:
-    return d.code, d.span.text if d.span else "", d.message, d.hints
-
-
 # --- What is forbidden ----------------------------------------------------------------------------
 
-FOUND: dict[str, tuple[Variant, str, list[Told]]] = {
-    "a shape that came after the paper": (
-        Variant.PAPER,
-        "solid a { s = star(outer_radius: 9, inner_radius: 4, points: 5) }",
-        [
-            (
-                "E0986",
-                "star",
-                "`paper` has what the paper on AIDL describes, and `star` came later",
-                (CAME_LATER,),
-            )
-        ],
-    ),
-    "hole": (
-        FLAT,
-        "solid plate {\n body = circle(radius: 9)\n hole bore { rim = circle(radius: 3) }\n}",
-        [
-            (
-                "E0403",
-                "bore",
-                f"{ONE}, and `bore` is a hole of its own",
-                (f"draw its outline in the one structure, and {CUT}",),
-            )
-        ],
-    ),
-    "child in an if": (
-        FLAT,
-        "assembly a {\n if true { solid plate { body = circle(radius: 9) } }\n}",
-        [("E0403", "plate", f"{ONE}, and `plate` is another", (OTHER,))],
-    ),
-    "second root": (
-        FLAT,
-        "solid a { body = circle(radius: 9) }\nsolid b { body = circle(center: (30, 0), radius: 9) }",
-        [("E0403", "b", f"{ONE}, and `b` is another", (OTHER,))],
-    ),
-    "beside the root": (
-        FLAT,
-        "let r = 9\nsolid a { body = circle(radius: r) }\n"
-        "rim = circle(center: (30, 0), radius: 9)\nassert true",
-        [
-            (
-                "E0403",
-                "rim = circle(center: (30, 0), radius: 9)",
-                f"{ONE}, and this stands outside `a`",
-                ("write it inside `a`",),
-            )
-        ],
-    ),
-    "template": (
-        FLAT,
-        "solid a {\n solid peg(r = 4) { body = circle(radius: r) }\n"
-        " p = peg(r: 5)\n q = linear_array(peg(), n: 2, pitch: 20)\n}",
-        [("E0404", "peg", f"{ONE}, and the template `peg` makes more", (LOOP,))] * 3,
-    ),
-    "template of the library": (
-        FLAT,
-        'solid a {\n disc = circle(radius: 30)\n bolts = bolt_circle(count: 6, diameter: 44, size: "m4")\n}',
-        [("E0404", "bolt_circle", f"{ONE}, and the template `bolt_circle` makes more", (LOOP,))],
-    ),
-    "shape": (
-        FLAT,
-        "solid a {\n shape eye(r: length) { rim = circle(radius: r) }\n e = eye(r: 4)\n}",
-        [
-            (
-                "E0405",
-                "eye",
-                "in `no-hierarchy` all geometry is on one level, and the shape `eye` has parts of its own",
-                (
-                    "write its parts where it is used, or make it one `path` or `polygon`; "
-                    "`fn` can work out points",
-                ),
-            )
-        ],
-    ),
-    "constrain": (
-        WRITTEN,
-        "solid a {\n c = circle(radius: 9)\n constrain { c.radius == 8\n misspelt(c) }\n"
-        " if true { constrain c.radius == 7 }\n}",
-        [
-            ("E0406", "constrain { c.radius == 8\n misspelt(c) }", STATED, (WHERE,)),
-            ("E0406", "constrain c.radius == 7", STATED, (WHERE,)),
-        ],
-    ),
-    "prefer and bare constraints": (
-        WRITTEN,
-        "solid a {\n c = circle(radius: 9)\n prefer c.radius == 8 weight 2\n c.radius <= 9\n fixed(c)\n"
-        " horizontal(c, 5)\n c.centered_in(c)\n move(c, by: (2, 0))\n}",
-        [
-            ("E0406", text, STATED, (WHERE,))
-            for text in (
-                "prefer c.radius == 8 weight 2",
-                "c.radius <= 9",
-                "fixed(c)",
-                "horizontal(c, 5)",
-                "c.centered_in(c)",
-            )
-        ],
-    ),
-    "var": (
-        WRITTEN,
-        "solid a {\n var gap = 5\n c = circle(center: (gap, 0), radius: 9)\n}",
-        [
-            (
-                "E0407",
-                "gap",
-                f"{AS_WRITTEN}, and `gap` is an unknown",
-                ("name its value by `let`, or make it a `param`",),
-            )
-        ],
-    ),
-    "constraint": (
-        WRITTEN,
-        "solid a {\n constraint near(a: box, b: box) { a.left == b.right }\n c = circle(radius: 9)\n}",
-        [
-            (
-                "E0408",
-                "constraint near(a: box, b: box) { a.left == b.right }",
-                f"{AS_WRITTEN}, and `near` defines a constraint",
-                ("let a function work out what it ties, as in `fn top_of(a) = a.center + (0, 10)`",),
-            )
-        ],
-    ),
-    "relation": (
-        WRITTEN,
-        "solid a {\n c = circle(radius: 9)\n d = circle(radius: 3)\n"
-        " assert d.inside(c)\n assert distance(c.center, d.center) <= 1\n}",
-        [
-            (
-                "E0409",
-                "inside",
-                "`no-constraints` has no relations, and `inside` is one",
-                ("compare coordinates or measures, as in `assert lid.bottom >= box.top`",),
-            )
-        ],
-    ),
-    "smooth": (
-        WRITTEN,
-        "solid a {\n p = path(from: (0, 0), line_to((20, 0)), arc_to((20, 10), radius: 6, smooth: true), "
-        "line_to((0, 10), smooth: false), close())\n}",
-        [
-            (
-                "E0409",
-                "smooth: true",
-                f"{AS_WRITTEN}, and `smooth: true` would move a step of the path",
-                (
-                    "give the points of a smooth outline, or use `tangent_arc_to` and `arc_by`, "
-                    "which go on smoothly",
-                ),
-            )
-        ],
-    ),
-}
+
+def pairs() -> list[tuple[Block, list[str]]]:
+    """The programs of `variants.md`, each with the lines that are told of it."""
+    found = list(blocks(Path(__file__).with_name("variants.md")))
+    return [(shown, said.text.splitlines()) for shown, said in zip(found[::2], found[1::2], strict=True)]
 
 
-@pytest.mark.parametrize(("variant", "text", "expected"), FOUND.values(), ids=FOUND)
-def test_what_a_variant_lacks_is_reported(variant: Variant, text: str, expected: list[Told]) -> None:
+def told(d: Diagnostic) -> Iterator[str]:
+    yield f"error[{d.code}]: {d.message}"
+    yield "at: " + (d.span.text.replace("\n", "\\n") if d.span else "")
+    yield from (f"hint: {hint}" for hint in d.hints)
+
+
+@pytest.mark.parametrize(("block", "expected"), pairs(), ids=lambda each: getattr(each, "heading", ""))
+def test_what_a_variant_lacks_is_reported(block: Block, expected: list[str]) -> None:
+    text, variant = block.text.removesuffix("\n"), Variant(block.variant)
     found = [d for d in checked(text, variant) if d.is_error]
-    assert [told(d) for d in found] == expected
+    assert [line for d in found for line in told(d)] == expected
     assert not CODES[variant] & {d.code for d in checked(text, Variant.FULL)}
     other = FLAT if variant is WRITTEN else WRITTEN
     assert not CODES[variant] & {d.code for d in checked(text, other)}

@@ -73,7 +73,7 @@ def test_runs_are_measured(evaluation: Evaluation) -> None:
 
 
 def test_a_second_call_asks_only_for_what_is_missing(evaluation: Evaluation) -> None:
-    evaluation.say("telephone", "full", 1, fenced(TELEPHONE))
+    evaluation.say("telephone", "full", 1, fenced(FLAT))
     chosen = ("--prompts", "telephone", "--variants", "full", "--runs")
     broken = evaluation(*chosen, "2")
     assert broken.code == 1
@@ -98,7 +98,7 @@ def test_a_second_call_asks_only_for_what_is_missing(evaluation: Evaluation) -> 
 
 
 def test_other_settings_are_refused(evaluation: Evaluation) -> None:
-    evaluation.say("telephone", "full", 1, fenced(TELEPHONE))
+    evaluation.say("telephone", "full", 1, fenced(FLAT))
     chosen = ("--prompts", "telephone", "--variants", "full", "--runs", "1")
     assert evaluation(*chosen).code == 0
     before = evaluation.contents()
@@ -162,7 +162,7 @@ def test_a_model_that_cannot_be_reached_is_not_asked_for_ever(evaluation: Evalua
 
 
 def test_an_interrupt_leaves_what_is_done(evaluation: Evaluation) -> None:
-    evaluation.say("telephone", "full", 1, fenced(TELEPHONE))
+    evaluation.say("telephone", "full", 1, fenced(FLAT))
     slow = evaluation.folder / "slow.sh"
     replay = evaluation.command()[-1].removeprefix("exec:")
     slow.write_text(

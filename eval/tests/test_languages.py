@@ -24,7 +24,7 @@ from eval.tests import scripted
 from eval.tests.asked import NAMES, prompts
 from eval.tests.conftest import Evaluation
 
-QUICK = ("coffee_mug", "robot_face", "sailing_boat")
+QUICK = ("coffee_mug", "robot_face")
 TOUCHING = {"steam_locomotive": ("openings", "fields", "teeth")}
 """What hangs on whether parts that just touch, touch to the last digit; `contact` does where parts are."""
 PYTHONS = {name: value for name, value in os.environ.items() if name.endswith("_PYTHON")}
@@ -135,7 +135,7 @@ def test_a_recording_goes_through_the_whole_harness(
     evaluation: Evaluation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("eval.tests.test_languages.PYTHONS", {})  # they take seconds to load
-    replay(evaluation, ("chess_rook", "birdhouse", "table_lamp"), monkeypatch)
+    replay(evaluation, ("chess_rook", "birdhouse"), monkeypatch)  # one with each mistake of a language
 
 
 @pytest.mark.slow

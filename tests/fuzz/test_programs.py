@@ -27,7 +27,7 @@ def _doubled_constraint(times: int) -> str:
     return "\n".join(["constraint q0(a: box) { a.left == 0 }", *made, use])
 
 
-DEEP = 1200
+DEEP = 1050
 """Deeper than Python calls."""
 
 LARGE = {
@@ -50,7 +50,7 @@ LARGE = {
         + [f"constrain structure_nmber_{k}.left == 0" for k in range(large(500))]
     ),
     "nested brackets": f"drawing d {{ for i in enumerate({'[' * 190}{']' * 190}) {{}} }}",
-    "a long text": f'drawing s {{ t = text("{"Ag" * large(4000)}", height: 5) }}',
+    "a long text": f'drawing s {{ t = text("{"Ag" * large(2000)}", height: 5) }}',
     "many labels": f"assembly a {{ for i in 0..<{large(1200)} "
     "{ solid s[i] at (9 * i, 0) { c = circle(radius: 3) } } }",
     "all boxes meet": f"solid s {{ for i in 0..{large(1600)} "

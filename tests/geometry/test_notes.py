@@ -7,7 +7,6 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.geometry.models import circle, model, primitive, rectangle, structure
@@ -39,22 +38,6 @@ def test_the_fix_makes_the_inner_loop_a_hole():
     assert "    hole bore_hole { bore = circle(center: (5, 5), radius: 2) }\n" in text
 
 
-def test_an_open_outline_names_its_ends_and_the_gap():
-    lines = [Line((0, 0), (10, 0)), Line((10, 0), (10, 8)), Line((10, 8), (0, 0.5))]
-    root = structure("solid", "s", *(primitive(f"l{i}", line) for i, line in enumerate(lines)))
-    note = only(root)
-    assert note.code == "W0702"
-    assert "the end at (0, 0) is 0.5 mm away from (0, 0.5)" in note.message
-    assert "`constrain l0.start == l2.end`" in note.hints[0]
-    assert [s.role for s in draw(model(root))[0].strokes] == ["open"] * 3
-
-
-def test_a_hole_at_the_root_cuts_nothing_and_is_outlined():
-    drawing, found = draw(model(structure("hole", "h", circle("c", 0, 0, 2))))
-    assert [n.code for n in found.everything()] == ["W0703"]
-    assert [s.role for s in drawing.strokes] == ["hole"]
-
-
 PIN = "solid pin(r: length) { c = circle(radius: r) }\n"
 
 
@@ -81,12 +64,3 @@ def test_the_fix_of_a_detached_part_needs_no_trial(lonely):
     mended, _ = apply_fixes(source, [d for d in found if d.code == "W0705"])
     after = pipeline.compile(SourceFile("x.aidl", mended)).diagnostics
     assert [d.code for d in after] == ["W0705" for d in found if d.fix is None]
-
-
-@pytest.mark.parametrize(
-    "shape", [circle("c", 0, 0, 0.0), circle("c", float("nan"), 0, 1), primitive("c", Line((1, 1), (1, 1)))]
-)
-def test_what_has_no_extent_is_not_drawn(shape):
-    drawing, found = draw(model(structure("solid", "s", shape)))
-    assert [n.code for n in found.everything()] == ["W0706"]
-    assert not drawing.bodies

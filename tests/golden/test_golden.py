@@ -1,4 +1,4 @@
-"""What each stage makes of each example, against the files in `expected/`.
+"""What comes of each example, against the files in `expected/`.
 
 `make accept` (AIDL_ACCEPT=1) takes the present results as the new ones. Numbers are rounded, so that the last
 digits of a machine's arithmetic make no difference.
@@ -11,20 +11,13 @@ import json
 import math
 import os
 import re
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import aidl_lang
-from aidl_lang import pipeline
-from aidl_lang.building.lower import lower
-from aidl_lang.building.model import Structure
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.source import SourceFile
-from aidl_lang.interp import interpret
 from tests.compiled import EXAMPLES, json_of, model
 from tests.documents import ROOT
 
@@ -58,47 +51,11 @@ def rounded_document(value: Any) -> Any:
             return value
 
 
-# --- Stages ----------------------------------------------------------------------------------------
+# --- What comes ------------------------------------------------------------------------------------
 
 
 def canonical(text: str) -> str:
     return aidl_lang.format(text)
-
-
-def checked(text: str) -> str:
-    return "".join(f"{_line(d)}\n" for d in aidl_lang.check(text)) or "nothing to say\n"
-
-
-def _line(d: Diagnostic) -> str:
-    place = "" if d.span is None else f"{d.span.line}:{d.span.column} "
-    return rounded_text(f"{place}{d.severity} {d.code}: {d.message}" + (f" ({d.label})" if d.label else ""))
-
-
-def problem(text: str) -> str:
-    """The structure tree with its geometry, and what the solver is asked."""
-    program, _ = pipeline.front(SourceFile("<text>", text))
-    built = interpret(program).model
-    asked = lower(built).problem
-    free = Counter(asked.group[~asked.kept].tolist())
-    kept = Counter(asked.group[asked.kept].tolist())
-    rows = Counter(c.group for c in asked.constraints for _ in c.rows if c.weight is None)
-    lines = [
-        f"{indent}{s.kind} {s.name}: {free[i]} free, {kept[i]} kept, {rows[i]} rows; {_geometry(s)}"
-        for i, (s, indent) in enumerate(_tree(built.root, ""))
-    ]
-    total = f"{len(asked.parent)} groups, {len(asked.initial)} unknowns, {rows.total()} rows"
-    return "\n".join([*lines, total]) + "\n"
-
-
-def _tree(s: Structure, indent: str) -> Iterator[tuple[Structure, str]]:
-    yield s, indent
-    for child in s.children:
-        yield from _tree(child, indent + "    ")
-
-
-def _geometry(s: Structure) -> str:
-    counts = Counter(g.type for g in s.own())
-    return ", ".join(f"{n} {kind}" for kind, n in counts.items()) or "nothing drawn"
 
 
 def solved(text: str) -> str:
@@ -127,8 +84,6 @@ def drawn(text: str) -> str:
 
 STAGES: dict[str, Callable[[str], str]] = {
     "canonical.aidl": canonical,
-    "check.txt": checked,
-    "problem.txt": problem,
     "solved.json": solved,
     "drawing.svg": drawn,
 }

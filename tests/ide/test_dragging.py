@@ -9,6 +9,7 @@ from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.dragging import Dragged, Handle, drag, handles
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, applied, look, run
+from tests.amount import TRIES_ALL
 from tests.compiled import EXAMPLES
 from tests.ide.conftest import seen, solved_at
 
@@ -123,7 +124,7 @@ def test_a_drawing_that_may_slide_is_moved_as_a_whole_by_its_middle() -> None:
     assert dropped(view, dragged(view, "r.center", (7, 3))).source.text == text.replace("(0, 0)", "(7, 3)")
 
 
-@pytest.mark.parametrize("name", ["key", "gear_pair"])
+@pytest.mark.parametrize("name", ["key", "bottle_opener", "hanger"])
 def test_a_point_that_nothing_holds_elsewhere_is_not_offered(name: str) -> None:
     path = next(path for path in EXAMPLES if path.stem == name)
     view = solved_at(path)
@@ -221,12 +222,12 @@ def test_unknown_handles_and_steps_are_refused() -> None:
         drag(view, "d.far.center", (1, 2), step=0)
 
 
-@pytest.mark.parametrize("name", ["telephone", "toy_sword", "key"])
+@pytest.mark.parametrize("name", ["telephone", "toy_sword", "key"] if TRIES_ALL else ["telephone", "key"])
 def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None:
     path = next(p for p in EXAMPLES if p.stem == name)
     view = solved_at(path)
     put = 0
-    for each in handles(view)[:8]:
+    for each in handles(view)[: 8 if TRIES_ALL else 5]:
         try:
             found = drag(view, each.id, (each.at[0] + 3, each.at[1] + 2))
             assert found.edits
@@ -239,4 +240,4 @@ def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None
         assert besides_numbers(again.source.text) == besides_numbers(view.source.text)
         assert again.outcome.model is not None
         assert all(report.satisfied for report in again.outcome.model.constraints if not report.soft)
-    assert put >= 5
+    assert put >= (5 if TRIES_ALL else 3)

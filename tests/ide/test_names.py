@@ -22,6 +22,7 @@ from aidl_lang.tools.ide.references import (
 )
 from aidl_lang.tools.ide.workspace import Project, View, Workspace
 from tests.compiled import FEW
+from tests.documents import ROOT
 
 from .conftest import opened
 
@@ -247,9 +248,15 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
             assert own[0].span in spans
 
 
+@pytest.fixture(scope="module")
+def examples() -> Project:
+    """All examples: whoever renames something looks for it in each."""
+    return Project(Workspace([ROOT / "examples"]))
+
+
 @pytest.mark.parametrize("path", FEW)
-def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
-    project = Project(Workspace([path.parent]))
+def test_each_param_of_an_example_can_be_renamed(examples: Project, path: Path) -> None:
+    project = examples
     view = project.view(path)
     assert view is not None
     params = [node for node in ast.walk(view.module) if isinstance(node, ast.Param)]

@@ -121,15 +121,15 @@ def test_folds_stay_where_brackets_are_missing() -> None:
     assert {(2, 3, "comment"), (7, 19, "region"), (8, 11, "region"), (17, 18, "comment")} <= found
 
 
-def check_everything(view: View, at: int) -> None:
+def check_everything(view: View, *places: int) -> None:
     text = view.source.text
     assert_in_order(semantic_tokens(view))
     lines = text.count("\n") + 1
     for fold in folds(view):
         assert 1 <= fold.start < fold.end <= lines
-    grown = selections(view, at)
-    for inner, outer in pairwise(grown):
-        assert outer.start <= inner.start <= inner.end <= outer.end
+    for at in places:
+        for inner, outer in pairwise(selections(view, at)):
+            assert outer.start <= inner.start <= inner.end <= outer.end
     for entry in outline(view):
         assert entry.span.start <= entry.name_span.start <= entry.name_span.end <= entry.span.end
     edits = format_document(view)
@@ -138,8 +138,7 @@ def check_everything(view: View, at: int) -> None:
 
 
 def test_examples(example: View) -> None:
-    for at in range(0, len(example.source.text), 97):
-        check_everything(example, at)
+    check_everything(example, *range(0, len(example.source.text), 97))
 
 
 @tries(60)

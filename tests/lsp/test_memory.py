@@ -27,7 +27,7 @@ class Nobody:
 
 
 async def typed(path: Path) -> tuple[int, int]:
-    """Returns how many models are alive after many edits, and after the document was closed."""
+    """How many models are alive after many edits, and after the document was closed."""
     server = make()
     server.start()
     server.protocol.set_writer(Nobody(), include_headers=False)
@@ -73,20 +73,17 @@ async def typed(path: Path) -> tuple[int, int]:
 def test_models_of_old_texts_and_closed_documents_are_released(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As on a machine where every collection takes long."""
+    """As on a machine where collections take long. Once all names are known, no edit adds to them, neither
+    its text nor anything else.
+    """
     monkeypatch.setattr(running, "_LONG", 0.0)
+    names.fold.cache_clear()
     try:
         typing, closed = asyncio.run(typed(tmp_path / "a.aidl"))
     finally:
         gc.unfreeze()
     assert typing < EDITS / 2
     assert closed == 0
-
-
-def test_texts_are_not_remembered_as_names_are(tmp_path: Path) -> None:
-    """Once all names are known, no edit adds to them: neither its text nor anything else."""
-    names.fold.cache_clear()
-    asyncio.run(typed(tmp_path / "a.aidl"))
     known = [text for text in gc.get_referents(names.fold) if isinstance(text, str)]
     assert known
     assert not [text for text in known if "\n" in text]

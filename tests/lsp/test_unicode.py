@@ -9,6 +9,7 @@ from lsprotocol import types
 from tests.lsp.editor import CAPABILITIES, COMMAND, ENVIRONMENT, EXAMPLES, Editor, make, offset, place
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
+ROOM = EXAMPLES / "workshop"
 
 ASTRAL = """\
 /// 𝔸 part: 👩‍🔧 and 🇦🇶

@@ -3,13 +3,15 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Dialog, Locator, Page, ViewportSize, sync_playwright
 
 from tests.preview.messages import picture, words
 from tests.preview.scripted import ScriptedHost
+from tests.preview.talking import TEXT
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 ARGUMENTS = [
@@ -20,7 +22,7 @@ ARGUMENTS = [
     "--disable-sync",
     "--no-first-run",
 ]
-VIEWPORT = {"width": 1200, "height": 800}
+VIEWPORT: ViewportSize = {"width": 1200, "height": 800}
 
 
 @pytest.fixture(scope="module")  # it runs an event loop, in which the tests of other modules could start none
@@ -31,6 +33,14 @@ def browser() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """The program that hosts without a browser serve."""
+    path = tmp_path / "part.aidl"
+    path.write_text(TEXT, "utf-8")
+    return path
 
 
 @dataclass
@@ -91,14 +101,25 @@ class Pane:
 
 def opened(context: BrowserContext, host: ScriptedHost, has_clock: bool = False) -> Pane:
     """The pane on a page of its own."""
-    context.set_default_timeout(10_000)
-    pane = Pane(context.new_page(), host)
-    pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
-    pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(line.text))
+    pane = listened(context, host)
     if has_clock:
         pane.page.clock.install(time=0)
     pane.page.goto(host.url)
     return pane
+
+
+def listened(context: BrowserContext, host: ScriptedHost) -> Pane:
+    """A page for the pane, with nothing in it."""
+    context.set_default_timeout(10_000)
+    pane = Pane(context.new_page(), host)
+    pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
+    pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(line.text))
+    return pane
+
+
+def left(dialog: Dialog) -> None:
+    """Leaves a page, unsaved text and all."""
+    dialog.accept()
 
 
 @pytest.fixture
@@ -124,25 +145,32 @@ def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pa
 
 
 @pytest.fixture(scope="module")
-def shared(browser: Browser) -> Iterator[tuple[BrowserContext, ScriptedHost]]:
-    """One host for many tests, and a browser that keeps the pane's files."""
+def shared(browser: Browser) -> Iterator[Pane]:
+    """One host and one page for many tests: a page of its own for each takes three times as long to load."""
     with ScriptedHost() as host:
         context = browser.new_context(viewport=VIEWPORT)
-        yield context, host
+        yield listened(context, host)
         context.close()
 
 
 @pytest.fixture
-def pane(shared: tuple[BrowserContext, ScriptedHost]) -> Iterator[Pane]:
-    """The pane with a plate in it; nothing that a test does may make the browser complain."""
-    context, host = shared
+def pane(shared: Pane) -> Iterator[Pane]:
+    """The pane, loaded anew, with a plate in it; nothing that a test does may make the browser complain."""
+    host, page = shared.host, shared.page
     host.forget()
-    pane = opened(context, host)
+    shared.complaints.clear()
+    page.set_viewport_size(VIEWPORT)
+    page.emulate_media(color_scheme="light")
+    page.mouse.up()
+    page.mouse.move(0, 0)
+    page.goto(host.url)
     host.hears("aidl/preview")
-    pane.writes()
-    pane.shows()
-    yield pane
-    pane.page.evaluate("() => localStorage.clear()")
-    pane.page.close()
+    shared.writes()
+    shared.shows()
+    yield shared
+    page.evaluate("() => localStorage.clear()")
+    page.once("dialog", left)
+    page.goto("about:blank")
+    page.remove_listener("dialog", left)
     host.drop()
-    assert pane.complaints == []
+    assert shared.complaints == []

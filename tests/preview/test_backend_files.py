@@ -27,13 +27,6 @@ from aidl_lang.tools.preview.host import Host
 from tests.preview.talking import CHANGED, TEXT, serving, talking
 
 
-@pytest.fixture
-def file(tmp_path: Path) -> Path:
-    path = tmp_path / "part.aidl"
-    path.write_text(TEXT, "utf-8")
-    return path
-
-
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_an_imported_file_is_edited(file: Path, mark: bytes, end: str) -> None:

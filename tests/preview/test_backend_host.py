@@ -66,25 +66,6 @@ def test_a_page_cannot_speak_for_another(desk: Desk) -> None:
     assert [m["params"]["viewer"] for m in desk.received] == [a.name]
 
 
-def test_who_goes_on_ordering_holds_up_nobody(desk: Desk) -> None:
-    flood, page = desk.join(), desk.join()
-    for number in range(MOST_ORDERS):
-        desk.ask(flood, "aidl/export", f"flood{number}")
-    desk.ask(page, "aidl/export", "other")
-    assert desk.asked == ["flood0", "other"]
-
-
-def test_only_so_many_orders_wait_for_a_page(desk: Desk) -> None:
-    page = desk.join()
-    numbers = [desk.ask(page, "aidl/export", str(number)) for number in range(MOST_ORDERS + 3)]
-    refused = {m["id"]: m["error"]["message"] for m in said(page)}
-    assert list(refused) == numbers[-2:]
-    assert all("more than can be done at once" in message for message in refused.values())
-    for number in range(MOST_ORDERS + 1):
-        desk.answer(str(number))
-    assert desk.asked == list(map(str, range(MOST_ORDERS + 1)))
-
-
 def test_a_page_that_takes_nothing_is_not_heard(desk: Desk) -> None:
     page = desk.join()
     for number in range(MOST_UNTAKEN - 1):

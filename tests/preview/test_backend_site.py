@@ -6,6 +6,7 @@ import asyncio
 import re
 import threading
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
@@ -26,13 +27,6 @@ _ERROR = "window/showMessage"
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
-    path = tmp_path / "part.aidl"
-    path.write_text(TEXT, "utf-8")
-    return path
-
-
-@pytest.fixture
 def client(file: Path) -> Iterator[TestClient]:
     with serving(file) as client:
         yield client
@@ -46,6 +40,25 @@ def talking(file: Path) -> Any:
 
 def _talking(file: Path, client: TestClient, **headers: str) -> Any:
     return pages.talking(client, file, **headers)
+
+
+@dataclass(frozen=True)
+class Still:
+    """A program that no test changes, served for many."""
+
+    client: TestClient
+    file: Path
+
+    def talking(self, **headers: str) -> Any:
+        return pages.talking(self.client, self.file, **headers)
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Still]:
+    file = tmp_path_factory.mktemp("still") / "part.aidl"
+    file.write_text(TEXT, "utf-8")
+    with serving(file) as client:
+        yield Still(client, file)
 
 
 class Links(HTMLParser):
@@ -107,17 +120,17 @@ def test_the_page_and_all_that_it_asks_for(client: TestClient) -> None:
         f"/{TOKEN}/pane/main.js%00.css",
     ],
 )
-def test_there_is_nothing_else(client: TestClient, path: str) -> None:
-    assert client.get(path, follow_redirects=False).status_code in (307, 404)
-    assert client.get(path).status_code in (404, 200 if path == f"/{TOKEN}" else 404)
+def test_there_is_nothing_else(still: Still, path: str) -> None:
+    assert still.client.get(path, follow_redirects=False).status_code in (307, 404)
+    assert still.client.get(path).status_code in (404, 200 if path == f"/{TOKEN}" else 404)
 
 
 @pytest.mark.parametrize(
     "name", ["evil.example", "evil.example:8123", "127.0.0.1", f"{ADDRESS}.evil.example", ""]
 )
-def test_another_name_is_refused(client: TestClient, talking: Any, name: str) -> None:
-    assert client.get(f"/{TOKEN}/", headers={"host": name}).status_code == 421
-    with pytest.raises(WebSocketDisconnect), talking(client, host=name):
+def test_another_name_is_refused(still: Still, name: str) -> None:
+    assert still.client.get(f"/{TOKEN}/", headers={"host": name}).status_code == 421
+    with pytest.raises(WebSocketDisconnect), still.talking(host=name):
         pass
 
 
@@ -131,16 +144,18 @@ def test_another_name_is_refused(client: TestClient, talking: Any, name: str) ->
         f"http://{ADDRESS}.evil.example",
     ],
 )
-def test_pages_from_elsewhere_are_refused(client: TestClient, talking: Any, origin: str) -> None:
-    with pytest.raises(WebSocketDisconnect), talking(client, origin=origin):
+def test_pages_from_elsewhere_are_refused(still: Still, origin: str) -> None:
+    with pytest.raises(WebSocketDisconnect), still.talking(origin=origin):
         pass
-    assert client.get(f"/{TOKEN}/", headers={"origin": origin}).status_code == 403
+    assert still.client.get(f"/{TOKEN}/", headers={"origin": origin}).status_code == 403
 
 
-def test_the_socket_needs_the_token(client: TestClient) -> None:
+def test_the_socket_needs_the_token(still: Still) -> None:
     with (
         pytest.raises(WebSocketDisconnect),
-        client.websocket_connect("/wrong/socket", headers={"host": ADDRESS, "origin": f"http://{ADDRESS}"}),
+        still.client.websocket_connect(
+            "/wrong/socket", headers={"host": ADDRESS, "origin": f"http://{ADDRESS}"}
+        ),
     ):
         pass
 
@@ -205,18 +220,16 @@ def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: 
 
 @pytest.mark.parametrize("to", [(1e300, 0.0), (float("nan"), 0.0), (float("inf"), 1.0)])
 @pytest.mark.parametrize("handle", ["", "a.body", "no such", "a.body.top_right"])
-def test_dragging_nowhere_is_refused(
-    client: TestClient, talking: Any, file: Path, handle: str, to: tuple[float, float]
-) -> None:
-    with talking(client) as page:
+def test_dragging_nowhere_is_refused(still: Still, handle: str, to: tuple[float, float]) -> None:
+    with still.talking() as page:
         page.preview()
         assert page.answer("aidl/try", drag={"id": handle, "to": to})["error"]["message"]
         done = page.answer("aidl/drag", id=handle, to=to)
         assert "error" in done or done["reason"]
-    assert file.read_text("utf-8") == TEXT
+    assert still.file.read_text("utf-8") == TEXT
 
 
-def test_noise_is_passed_over(client: TestClient, talking: Any) -> None:
+def test_noise_is_passed_over(still: Still) -> None:
     noise = (
         "",
         "null",
@@ -228,7 +241,7 @@ def test_noise_is_passed_over(client: TestClient, talking: Any) -> None:
         '{"method":"aidl/try"}',
         '{"id":true,"method":"x"}',
     )
-    with talking(client) as page:
+    with still.talking() as page:
         for text in (*noise, '{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000):
             page.socket.send_text(text)
         assert page.preview()["status"] == "solved"
@@ -260,27 +273,25 @@ def test_noise_is_passed_over(client: TestClient, talking: Any) -> None:
         ("shutdown", {}),
     ],
 )
-def test_hostile_questions_are_refused(
-    client: TestClient, talking: Any, file: Path, method: str, params: dict[str, Any]
-) -> None:
-    with talking(client) as page:
+def test_hostile_questions_are_refused(still: Still, method: str, params: dict[str, Any]) -> None:
+    with still.talking() as page:
         assert page.answer(method, **params)["error"]["message"]
         assert page.preview()["status"] == "solved"
-    assert file.read_text("utf-8") == TEXT
+    assert still.file.read_text("utf-8") == TEXT
 
 
-def test_bytes_and_much_end_a_connection(client: TestClient, talking: Any) -> None:
-    with talking(client) as page:
+def test_bytes_and_much_end_a_connection(still: Still) -> None:
+    with still.talking() as page:
         page.socket.send_bytes(b"\xff")
         with pytest.raises(WebSocketDisconnect) as refused:
             page.told("never")
     assert refused.value.reason == "This page sent what is no text."
-    with talking(client) as page:
+    with still.talking() as page:
         page.socket.send_text("x" * (LONGEST + 1))
         with pytest.raises(WebSocketDisconnect) as refused:
             page.told("never")
     assert refused.value.reason == "This page sent a message that is too long."
-    with talking(client) as page:
+    with still.talking() as page:
         assert page.preview()
 
 

@@ -17,13 +17,6 @@ SET = {"applied": True}
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
-    path = tmp_path / "part.aidl"
-    path.write_text(TEXT, "utf-8")
-    return path
-
-
-@pytest.fixture
 def text(file: Path) -> Manuscript:
     made = Manuscript(file, write_bytes)
     made.read()

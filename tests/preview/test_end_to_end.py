@@ -88,23 +88,31 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str
             process.kill()
 
 
-@pytest.fixture
-def preview(browser: Browser, served: tuple[Path, str]) -> Iterator[Preview]:
-    file, url = served
-    file.write_text(TELEPHONE, "utf-8")
+@pytest.fixture(scope="module")
+def shared(browser: Browser, served: tuple[Path, str]) -> Iterator[Preview]:
     page = browser.new_page(viewport={"width": 1400, "height": 900})
     page.set_default_timeout(PATIENCE * 1000)
     expect.set_options(timeout=PATIENCE * 1000)
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
-    page.goto(url)
-    shown = Preview(page, file, complaints)
-    expect(shown.find("#source-lines")).to_contain_text("param width = 160mm")
-    shown.until_width(160)
-    yield shown
+    page.on("dialog", lambda dialog: dialog.accept())  # what is typed is left unsaved
+    yield Preview(page, served[0], complaints)
     page.close()
-    assert complaints == []
+
+
+@pytest.fixture
+def preview(shared: Preview, served: tuple[Path, str]) -> Iterator[Preview]:
+    """The page of the telephone, loaded anew."""
+    shared.file.write_text(TELEPHONE, "utf-8")
+    shared.page.mouse.up()
+    shared.page.mouse.move(0, 0)
+    shared.page.goto(served[1])
+    expect(shared.find("#source-lines")).to_contain_text("param width = 160mm")
+    shared.until_width(160)
+    yield shared
+    shared.page.goto("about:blank")
+    assert shared.complaints == []
 
 
 def test_a_slider_solves_again_and_is_written_on_release(preview: Preview) -> None:

@@ -35,10 +35,7 @@ window.WebSocket = class extends EventTarget {
 # Connections
 
 
-def test_a_lost_connection_is_told_and_made_again(open_pane) -> None:
-    pane = open_pane()
-    pane.host.hears("aidl/preview")
-    pane.shows()
+def test_a_lost_connection_is_told_and_made_again(pane: Pane) -> None:
     pane.host.is_away = True
     pane.host.drop()
     banner = pane.find("#disconnected")
@@ -152,14 +149,14 @@ def test_in_vs_code_its_colors_win(open_pane) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_themes(open_pane, scheme: str) -> None:
+def test_themes(pane: Pane, scheme: str) -> None:
     def lightness() -> float:
         color = pane.page.evaluate(
             "() => getComputedStyle(document.querySelector('.toolbar')).backgroundColor"
         )
         return sum(map(int, color[4:-1].split(", "))) / 765
 
-    pane = open_pane(color_scheme=scheme)
+    pane.page.emulate_media(color_scheme=scheme)
     assert (lightness() > 0.5) == (scheme == "light")
     button = pane.page.get_by_role("button", name="Theme")
     button.click()
@@ -173,9 +170,8 @@ def test_themes(open_pane, scheme: str) -> None:
 
 
 @pytest.mark.parametrize("width", [320, 480, 720, 1400])
-def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
-    pane = open_pane(viewport={"width": width, "height": 800})
-    pane.host.hears("aidl/preview")
+def test_everything_fits_into_narrow_windows(pane: Pane, width: int) -> None:
+    pane.page.set_viewport_size({"width": width, "height": 800})
     pane.shows(problems=[problem(message="a `long` " * 30)])
     size = pane.page.evaluate(
         "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
@@ -193,22 +189,23 @@ def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
     assert stage["height"] > 150
 
 
-@pytest.mark.parametrize("height", [480, 640, 800])
-def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane, height: int) -> None:
-    pane = open_pane(viewport={"width": 420, "height": height})
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane) -> None:
+    pane = open_pane(viewport={"width": 420, "height": 480})
     pane.host.hears("aidl/preview")
     pane.host.tell("aidl/text", words())
     pane.shows(problems=[problem(message="a `long` " * 30)])
     pane.find("#source-toggle").click()
     expect(pane.find(".cm-line").first).to_be_visible()
-    for part in ("#source", "#knobs"):
-        pane.find(part).scroll_into_view_if_needed()
-        drawing, bar = (pane.find(one).bounding_box() for one in (".drawing", ".statusbar"))
-        assert drawing is not None
-        assert bar is not None
-        assert drawing["width"] > 150
-        assert drawing["y"] >= 0
-        assert drawing["y"] + drawing["height"] <= bar["y"]
+    for height in (480, 640, 800):
+        pane.page.set_viewport_size({"width": 420, "height": height})
+        for part in ("#source", "#knobs"):
+            pane.find(part).scroll_into_view_if_needed()
+            drawing, bar = (pane.find(one).bounding_box() for one in (".drawing", ".statusbar"))
+            assert drawing is not None
+            assert bar is not None
+            assert drawing["width"] > 150
+            assert drawing["y"] >= 0
+            assert drawing["y"] + drawing["height"] <= bar["y"]
 
 
 # Without a mouse

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import random
 import re
+from pathlib import Path
 
 import pytest
 
@@ -42,80 +43,7 @@ def thing(name: str, chance: random.Random) -> str:
     return THINGS[name[0]].format(n=name, **numbers, **places, **turns)
 
 
-CASES = (
-    "coincident(p1, p2)",
-    "coincident(p1, l2)",
-    "coincident(p1, c2)",
-    "coincident(p1, a2)",
-    "coincident(p1, e2)",
-    "on_segment(p1, l2)",
-    "concentric(c1, r2, a3)",
-    "midpoint(p1, l2)",
-    "midpoint(c1, p2, p3)",
-    "horizontal(l1)",
-    "vertical(l1)",
-    "horizontal(p1, c2)",
-    "vertical(p1, c2)",
-    "parallel(l1, l2)",
-    "perpendicular(l1, l2)",
-    "perpendicular(l1, c2)",
-    "collinear(l1, l2)",
-    "collinear(p1, p2, p3)",
-    "tangent(l1, c2)",
-    "tangent(l1, a2)",
-    "tangent(l1, e2)",
-    "tangent(c1, c2)",
-    "tangent(c1, a2)",
-    "tangent(c1, c2, inside: true)",
-    "equal(l1, l2)",
-    "equal(c1, c2)",
-    "equal(r1, r2)",
-    "equal_length(l1, a2)",
-    "equal_radius(c1, a2)",
-    "symmetric(p1, p2, about: y_axis)",
-    "symmetric(l1, l2, about: y_axis)",
-    "symmetric(a1, a2, about: y_axis)",
-    "symmetric(c1, c2, about: p3)",
-    "distance(p1, c2) == 30",
-    "distance(c1, l2, 15)",
-    "distance(p1, p2, at_least: 20, at_most: 25)",
-    "horizontal_distance(c1, c2) == 12",
-    "vertical_distance(c1, c2, 12)",
-    "angle(l1, l2) == 40deg",
-    "angle(l1, l2, 40deg, ccw: true)",
-    "angle(p1, p2, p3) == 70deg",
-    "length(a1) == 20",
-    "diameter(c1, 13)",
-    "clearance(c1, R2) == 5",
-    "clearance(R1, R2) >= 5",
-    "clearance(s1, R2) >= 3",
-    "clearance(s1, l2) == 4",
-    "above(r1, c2, gap: 3)",
-    "below(r1, c2, align: center)",
-    "left_of(r1, c2, at_least: 2)",
-    "right_of(r1, c2, gap: 2, align: top)",
-    "beside(r1, c2, gap: 2)",
-    "stacked_on(r1, r2)",
-    "inside(c1, r2, margin: 1)",
-    "centered_in(c1, r2)",
-    "centered_between(r1, r2, r3)",
-    "align_left(r1, r2, r3, inset: 2)",
-    "flush(r1, r2, side: bottom)",
-    "same_size(r1, c2)",
-    "wider(r1, r2, by: 4)",
-    "shorter(r1, r2)",
-    "row(r1, r2, r3, gap: 2)",
-    "row(r1, r2, r3)",
-    "column(r1, r2, r3, pitch: 30)",
-    "evenly_spaced(r1, r2, r3, axis: x)",
-    "evenly_spaced(r1, r2, r3, axis: x, spacing: 6)",
-    "touching(r1, c2)",
-    "no_overlap(r1, r2, r3)",
-    "overlapping(r1, c2)",
-    "on_circle([c1, c2, c3], center: origin, radius: 30)",
-    "spread([r1, r2, r3], inside: c4, axis: y, margin: 1)",
-    "at_corners([c1, c2, c3, c4], r5, inset: 2)",
-)
+CASES = Path(__file__).with_name("constraints.txt").read_text("utf-8").splitlines()
 
 
 # --- The trials ------------------------------------------------------------------------------------

@@ -80,22 +80,6 @@ def test_only_trees_become_data() -> None:
         ast.encoded((SourceFile("", ""),))
 
 
-def test_a_changed_library_is_parsed_anew(checkout: Path) -> None:
-    fresh()
-    (old,) = kept(checkout)
-    (checkout / "stdlib" / "more.aidl").write_text("fn more(n) = n + 1")
-    assert "more" in fresh().callables
-    (new,) = kept(checkout)
-    assert old != new
-
-
-def test_a_second_start_parses_nothing(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    known = set(fresh().callables)
-    monkeypatch.setattr(library, "_parse", None)
-    assert known
-    assert set(fresh().callables) == known
-
-
 def test_what_is_wrong_in_the_library_is_told_and_not_kept(checkout: Path) -> None:
     (checkout / "stdlib" / "small.aidl").write_text(SMALL + "shape half_done(")
     for _ in range(2):

@@ -1,4 +1,4 @@
-/// An excavator: tracks, house and cab; boom, stick and bucket; a ram, and a hose that follows.
+/// An excavator with a ram, and a hose that follows.
 @stroke(0.4mm)
 assembly excavator {
     param track = 190 in 160..240

@@ -1,5 +1,5 @@
 /// A city tram in its street: doors and windows along the body, two bogies, a pantograph.
-@stroke(0.4mm)
+@stroke(0.4mm) @clip(scene.sky)
 assembly tram {
     param length = 360 in 300..440
     param windows = 3 in 1..4
@@ -8,7 +8,7 @@ assembly tram {
     let glass = "#d7e6ea"
     let pane_width = (length - 132) / (windows + 2) - 8
 
-    @color("#a9c3cf") @shade(cream) @stroke(none) @clip(sky) @rigid solid scene at fixed((0, 0)) {
+    @color("#a9c3cf") @shade(cream) @stroke(none) @rigid solid scene at fixed((0, 0)) {
         sky = rectangle((0, 85), length + 120, 250)
         @color("#8d8478") @shade("#5f574e")
         street = rectangle((0, -18), length + 120, 44)
