@@ -64,8 +64,20 @@ def _settle(it: Interpreter, s: Structure, stated: StatedClip) -> None:
     match values:
         case [Structure(kind="solid") as solid] if s.kind == "drawing":
             s.ground = solid
+        case [Structure(kind="solid") as solid] if made := tuple(_outlines(solid, s)):
+            s.clip = made
         case _:
             s.clip = tuple(_outline(it, s, stated, values))
+
+
+def _outlines(solid: Structure, clipped: Structure) -> Iterator[Geometry]:
+    """Yields what a solid is made of, without what is clipped to it and without veils."""
+    for part in solid.walk():
+        for g in part.own() if part.kind == "solid" and not part.is_within(clipped) else ():
+            shade = g.attributes.get("shade", ())
+            fades = any(isinstance(v, TextVal) and v.value == "fade" for v in shade)
+            if not (g.construction or fades or "opacity" in g.attributes):
+                yield g
 
 
 def _outline(it: Interpreter, s: Structure, clip: StatedClip, values: Sequence[Value]) -> Iterator[Geometry]:

@@ -264,11 +264,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            is_seen = isinstance(f, InnerLoop | CoveredHoles) and (
-                styles[f.structure.path].has_seams
-                or any(is_filled(g, f.structure.kind) for g in f.face.geometries)
-            )
-            if not is_seen:
+            if not (isinstance(f, InnerLoop | CoveredHoles) and _is_seen(f, styles[f.structure.path])):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += piece_notes(root, walk, masses, solids, touching.near())
@@ -462,6 +458,15 @@ def _inked(
             continue
         for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
             yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
+
+
+def _is_seen(found: InnerLoop | CoveredHoles, style: Style) -> bool:
+    """Tells whether a face that adds nothing shows: by seams, as an area, or on an area written before it."""
+    own = [g.path for g in found.face.geometries]
+    around = found.around if isinstance(found, InnerLoop) else ()
+    drawn = [g for g in found.structure.drawn if g.path in own or g in around]
+    last = max((k for k, g in enumerate(drawn) if g.path in own), default=0)
+    return style.has_seams or any(is_filled(g, found.structure.kind) for g in drawn[: last + 1])
 
 
 def _unseen(

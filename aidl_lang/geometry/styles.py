@@ -271,7 +271,8 @@ def idle_looks(
         words = [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
         drawn = [below for below in s.walk() if below.geometry]
         if s.kind == "solid" and any(below.kind == "solid" for below in drawn):
-            return [w for w in words if not (is_inlay(s) and w in OF_AREAS)]
+            has_areas = is_inlay(s) or any(is_filled(g, "solid") for below in drawn for g in below.drawn)
+            return [w for w in words if not (has_areas and w in OF_AREAS)]
         if "color" in words and any(below.kind == "drawing" for below in drawn):
             words.remove("color")  # the drawing takes it
         return words
