@@ -232,14 +232,14 @@ fn spots(of: box, points: list) = [spot(of, p.x / 1mm, p.y / 1mm) for p in point
 ///     shell = path(
 ///         (-60, 20), line_to(60, 20), smooth_to((40, -12), leaving: -100deg), line_to(-45, -12), close()
 ///     )
-///     @color("white") port = circle(center: shell.point_on(x: 20, side: bottom).up(10), radius: 4)
-///     @color("firebrick") lamp = circle(center: shell.point_on(y: 5), radius: 3)
-///     @color("gold") buoy = circle(center: shell.point_on(along: 30), radius: 3)
+///     @color("white") port = circle(center: shell.edge_point(x: 20, side: bottom).up(10), radius: 4)
+///     @color("firebrick") lamp = circle(center: shell.edge_point(y: 5), radius: 3)
+///     @color("gold") buoy = circle(center: shell.edge_point(along: 30), radius: 3)
 /// }
 /// ```
-fn point_on(of, x: length, side: text = "top") = point_at(of, x, "x", choice(side, ["bottom", "top"]) == "top")
-fn point_on(of, y: length, side: text = "right") = point_at(of, y, "y", choice(side, ["left", "right"]) == "right")
-fn point_on(of, along: length) = point_at(of, along)
+fn edge_point(of, x: length, side: text = "top") = point_at(of, x, "x", choice(side, ["bottom", "top"]) == "top")
+fn edge_point(of, y: length, side: text = "right") = point_at(of, y, "y", choice(side, ["left", "right"]) == "right")
+fn edge_point(of, along: length) = point_at(of, along)
 
 /// The endless upright line through a point, to be symmetric about or to lie on.
 ///

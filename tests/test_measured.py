@@ -80,10 +80,10 @@ def test_a_point_of_an_outline_is_found_by_its_way_and_by_its_x(shape: str) -> N
     written = re.sub(r"guess\((\d+)\)", r"\1", SHAPES[shape])
     text = f"""drawing d {{
         g = {written}
-        a = point(g.point_on(along: 1))
-        b = point(g.point_on(along: 12))
-        same = point(g.point_on(x: b.x, side: bottom))
-        other = point(g.point_on(x: b.x))
+        a = point(g.edge_point(along: 1))
+        b = point(g.edge_point(along: 12))
+        same = point(g.edge_point(x: b.x, side: bottom))
+        other = point(g.edge_point(x: b.x))
         assert abs(distance(a, b, along: g) - 11) < 1e-6
         assert min(distance(b, same), distance(b, other)) < 1e-6
     }}"""

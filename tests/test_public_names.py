@@ -12,7 +12,7 @@ import pytest
 from aidl_dev.highlighting import site as colours
 from aidl_dev.reference import coverage, gallery, site
 from aidl_dev.reference.pages import image
-from aidl_lang.checking import builtins
+from aidl_lang.checking import builtins, library
 from aidl_lang.export import FORMATS
 from aidl_lang.tools.reference.collect import reference
 from tests.checker import test_corpus as corpus
@@ -34,6 +34,8 @@ FOR_THE_LIBRARY = {
     "refuse",
     "channels",
     "outline_clearance",
+    "point_at",
+    "way_between",
 }
 """Builtins that only the library's own definitions use: they have no section in `stdlib/docs`."""
 
@@ -93,3 +95,9 @@ def _unlisted() -> Iterator[str]:
 
 def _read(path: str) -> str:
     return (ROOT / path).read_text("utf-8") if (ROOT / path).is_file() else ""
+
+
+def test_no_name_takes_the_place_of_a_spelling_of_another() -> None:
+    """`mesh` is a pattern and, of gears, `meshes`; `sine` of two lines is for the library, else a wave."""
+    known = library.load()
+    assert known.aliases.keys() & (known.callables.keys() | builtins.SIGNATURES.keys()) == {"mesh", "sine"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import re
 from collections.abc import Callable
@@ -247,7 +248,10 @@ def offset(p: complex, line: Any) -> float:
     return cross(b - a, p - a) / abs(b - a)
 
 
-def distance(a: Any, b: Any) -> float:
+def distance(a: Any, b: Any, along: Any = None) -> float:
+    if along is not None:  # on a circle
+        turn = abs(cmath.phase((middle(a) - middle(along)) / (middle(b) - middle(along))))
+        return turn * float(field(along, "radius"))
     if is_line(a) and is_line(b):
         return abs(offset(field(b, "midpoint"), a))
     if is_line(a) or is_line(b):
@@ -430,6 +434,19 @@ def _spot(of: Any, x: float, y: float) -> complex:
     return complex(b.left * (1 - x) + b.right * x, b.bottom * (1 - y) + b.top * y)
 
 
+def _edge_point(
+    of: Any, x: float | None = None, side: str = "", y: float | None = None, along: float = 0.0
+) -> complex:
+    """A point of a circle."""
+    c, r = middle(of), float(field(of, "radius"))
+    if x is None and y is None:
+        return c + turned(math.degrees(along / r), r)
+    if x is not None:
+        return complex(x, c.imag + (-1 if side == "bottom" else 1) * math.sqrt(r * r - (x - c.real) ** 2))
+    assert y is not None
+    return complex(c.real + (-1 if side == "left" else 1) * math.sqrt(r * r - (y - c.imag) ** 2), y)
+
+
 def _choice(word: str, words: list[str]) -> str:
     """The word of a list that is meant."""
     return next(w for w in words if _plain(w) == _plain(word))
@@ -495,6 +512,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "between": lambda a, b, share=0.5: middle(a) + share * (middle(b) - middle(a)),
     "anchor": lambda of, place="center": box(of).spot(place),
     "spot": _spot,
+    "edgepoint": _edge_point,
     "spots": lambda of, points: [_spot(of, point(p).real, point(p).imag) for p in points],
     "circumcenter": _circumcenter,
     "mirror": lambda x, about: mirrored(point(x), about),

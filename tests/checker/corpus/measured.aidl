@@ -13,6 +13,8 @@ drawing measured {
     tube = slot(center: (0, 140), length: 30, width: 8)
     bow  = arc(center: (60, 140), radius: 20, start_angle: 0deg, end_angle: guess(60deg))
     disc = circle(center: (100, 140), radius: guess(10))
+    pin  = point(92, 145)
+    knob = point(110, 146)
     constrain {
         distance(a, wall) == 20
         distance(wall, b, 20)
@@ -34,5 +36,9 @@ drawing measured {
         diameter(disc, 24)
         radius(disc) <= 12
         gap(a, c) >= 10
+        pin == disc.edge_point(y: 145, side: left)
+        flag.end.y <= edge_point(disc, x: 98).y
+        distance(pin, knob, along: disc) == 20
+        knob == disc.edge_point(along: 6)
     }
 }

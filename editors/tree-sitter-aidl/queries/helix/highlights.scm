@@ -116,17 +116,17 @@
     "enumerate" "zip" "reversed" "str" "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up"
     "down" "forward" "horizontal_to" "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to"
     "smooth_to" "wave_to" "zigzag_to" "scallops_to" "bezier_to" "quadratic_to" "close" "mirrored"
-    "move_to" "hose" "wire" "strap_around" "rivets" "screws" "between" "anchor" "spot" "spots" "point_on"
-    "vertical_through" "horizontal_through" "distance" "horizontal_distance" "vertical_distance" "gap"
-    "angle" "length" "radius" "diameter" "clearance" "hatching" "crosshatch" "mesh" "knurling" "threads"
-    "ribs" "slats" "bricks" "tiles" "planks" "checkers" "dots" "honeycomb" "scales" "shingles"
-    "wood_grain" "rays" "screw" "clearance_diameter" "nema" "bearing" "mesh_angle" "mix" "lighter"
-    "darker" "hsl" "polar" "norm" "dot" "cross" "unit" "lerp" "turned" "vector" "direction" "radians"
-    "circumcenter" "anchor_point" "anchored" "angle_between" "arccos" "arcsin" "arctan" "arctan2"
-    "at_share" "close_mirrored" "dist" "distance_x" "distance_y" "fix" "ground" "grounded"
-    "horizontal_axis" "lock" "orientation" "outline_distance" "place_in" "places_in" "point_between"
-    "point_in" "rotation" "set_angle" "set_rotation" "stroke" "tilt" "tilted" "translate" "vec" "vec2"
-    "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
+    "move_to" "hose" "wire" "strap_around" "rivets" "screws" "between" "anchor" "spot" "spots"
+    "edge_point" "vertical_through" "horizontal_through" "distance" "horizontal_distance"
+    "vertical_distance" "gap" "angle" "length" "radius" "diameter" "clearance" "hatching" "crosshatch"
+    "mesh" "knurling" "threads" "ribs" "slats" "bricks" "tiles" "planks" "checkers" "dots" "honeycomb"
+    "scales" "shingles" "wood_grain" "rays" "screw" "clearance_diameter" "nema" "bearing" "mesh_angle"
+    "mix" "lighter" "darker" "hsl" "polar" "norm" "dot" "cross" "unit" "lerp" "turned" "vector"
+    "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between" "arccos" "arcsin"
+    "arctan" "arctan2" "at_share" "close_mirrored" "dist" "distance_x" "distance_y" "fix" "ground"
+    "grounded" "horizontal_axis" "lock" "orientation" "outline_distance" "place_in" "places_in"
+    "point_between" "point_in" "rotation" "set_angle" "set_rotation" "stroke" "tilt" "tilted" "translate"
+    "vec" "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
@@ -162,20 +162,20 @@
     "narrower_than" "next_to" "no_bigger_than" "no_intersection" "no_larger_than" "no_overlaps"
     "no_smaller_than" "non_overlapping" "normal" "normal_to" "not_overlapping" "on" "on_bolt_circle"
     "on_left_of" "on_right_of" "on_span" "on_the_left_of" "on_the_right_of" "on_top" "orthogonal"
-    "orthogonal_to" "over" "overlap" "parallel_to" "parallel_with" "perpendicular_to" "point_on_circle"
-    "point_on_curve" "point_on_line" "rests_on" "right_align" "right_aligned" "right_angle" "right_from"
-    "same" "same_bottom" "same_bottom_edge" "same_bottoms" "same_center" "same_center_as" "same_center_x"
-    "same_center_y" "same_centers" "same_centre" "same_centre_x" "same_centre_y" "same_diameter"
-    "same_diameters" "same_height_as" "same_heights" "same_left" "same_left_edge" "same_left_side"
-    "same_lefts" "same_length" "same_lengths" "same_line" "same_point" "same_radii" "same_radius"
-    "same_right" "same_right_edge" "same_right_side" "same_rights" "same_size_as" "same_sizes" "same_top"
-    "same_top_edge" "same_tops" "same_width_as" "same_widths" "same_x" "same_y" "separate"
-    "separate_from" "separated" "shorter_than" "side_by_side" "sits_on" "smaller_than" "smooth"
-    "spread_inside" "spread_out" "square_to" "stack" "stack_on" "stacked" "stands_on" "surrounds"
-    "symmetric_about" "symmetrical" "symmetry" "taller_than" "tangent_to" "tangent_with" "tangential"
-    "to_corners" "to_left_of" "to_right_of" "to_the_left_of" "to_the_right_of" "top_align" "top_aligned"
-    "top_to_bottom" "touch" "under" "underneath" "upright" "vertically_centered" "wider_than" "within"
-    "within_ends"))
+    "orthogonal_to" "over" "overlap" "parallel_to" "parallel_with" "perpendicular_to" "point_on"
+    "point_on_circle" "point_on_curve" "point_on_line" "rests_on" "right_align" "right_aligned"
+    "right_angle" "right_from" "same" "same_bottom" "same_bottom_edge" "same_bottoms" "same_center"
+    "same_center_as" "same_center_x" "same_center_y" "same_centers" "same_centre" "same_centre_x"
+    "same_centre_y" "same_diameter" "same_diameters" "same_height_as" "same_heights" "same_left"
+    "same_left_edge" "same_left_side" "same_lefts" "same_length" "same_lengths" "same_line" "same_point"
+    "same_radii" "same_radius" "same_right" "same_right_edge" "same_right_side" "same_rights"
+    "same_size_as" "same_sizes" "same_top" "same_top_edge" "same_tops" "same_width_as" "same_widths"
+    "same_x" "same_y" "separate" "separate_from" "separated" "shorter_than" "side_by_side" "sits_on"
+    "smaller_than" "smooth" "spread_inside" "spread_out" "square_to" "stack" "stack_on" "stacked"
+    "stands_on" "surrounds" "symmetric_about" "symmetrical" "symmetry" "taller_than" "tangent_to"
+    "tangent_with" "tangential" "to_corners" "to_left_of" "to_right_of" "to_the_left_of"
+    "to_the_right_of" "top_align" "top_aligned" "top_to_bottom" "touch" "under" "underneath" "upright"
+    "vertically_centered" "wider_than" "within" "within_ends"))
 
 (structure kind: (identifier) @keyword.storage.type)
 
