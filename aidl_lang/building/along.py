@@ -74,8 +74,7 @@ class Cubic:
 
     @property
     def end(self) -> tuple[float, float]:
-        x, y = self.last
-        return x.value, y.value
+        return _value(self.last)
 
     @property
     def turned_round(self) -> Cubic:
@@ -149,9 +148,12 @@ class Cubic:
             if abs(to - t) <= _NEAR:
                 break
             t = to
-        if not self._speed_guessed(t) > _STALLED * self.length.value:
-            return min(max(t, _STALLED), 1.0 - _STALLED)  # the ends have a direction beside them
-        return t
+        return self._moving(t)
+
+    def _moving(self, t: float) -> float:
+        """Returns a parameter, or if the curve stands still there one beside it, where it has a direction."""
+        is_still = not self._speed_guessed(t) > _STALLED * self.length.value
+        return min(max(t, _STALLED), 1.0 - _STALLED) if is_still else t
 
     def _between(self, t0: float, step: Expression, nodes: int) -> Expression:
         """Returns the length from a parameter on, over a step."""
@@ -177,21 +179,25 @@ class Cubic:
         """Yields the places that have an x (`axis` 0) or a y."""
         import numpy as np
 
+        def off(t: Expression) -> Place:
+            return ex.sub(at, self.at(t)[0][axis]), self._velocity(t)[axis]
+
         a, b, c, d = (p[axis].value for p in self.points)
         for root in np.roots((d - 3 * c + 3 * b - a, 3 * (c - 2 * b + a), 3 * (b - a), a - at.value)):
-            if abs(root.imag) > _MEETS or not -_MEETS <= root.real <= 1 + _MEETS:
-                continue
-            if abs(self._derivative(ex.constant(root.real))[axis].value) > _STALLED * self.length.value:
-                t, rest = self._solved(
-                    root.real, lambda t: (ex.sub(at, self.at(t)[0][axis]), self._velocity(t)[axis])
-                )
+            if abs(root.imag) <= _MEETS and -_MEETS <= root.real <= 1 + _MEETS:
+                t = ex.constant(float(root.real))
+                rest, speed = off(t)
+                if abs(speed.value) > _STALLED * self.length.value:  # else it only touches there
+                    t, rest = self._solved(t.value, off)
                 yield self.at(t)[0], [rest, *_beyond(t, ex.ONE)]
 
     def foot(self, p: Place) -> tuple[Expression, Place, Expression]:
         """Returns the way up to the place nearest to a point, the place, and what is 0 as long as it is."""
+        least = ex.constant(_STALLED**2 * self.length.value)  # where handles lie on an end, it stands still
 
         def off(t: Expression) -> Place:
-            (x, y), (u, v), speed = way(self.at(t)[0], p), self._velocity(t), self._speed(t)
+            (x, y), (u, v) = way(self.at(t)[0], p), self._velocity(t)
+            speed = ex.apply("maximum", self._speed(t), least)
             bend = (way(*pair) for pair in pairwise(self._ways))
             k, j = _weighed(tuple(bend), (ex.mul(_SIX, ex.sub(ex.ONE, t)), ex.mul(_SIX, t)))
             turning = ex.div(ex.add(ex.mul(x, k), ex.mul(y, j)), speed)
@@ -199,8 +205,8 @@ class Cubic:
 
         shares = (k / _STEPS for k in range(_STEPS + 1))
         first = min(shares, key=lambda t: math.dist(_value(self.at(ex.constant(t))[0]), _value(p)))
-        first = min(max(self._solved(first, off)[0].value, 0.0), 1.0)
-        t, rest = self._solved(first, off)
+        first = min(max(self._solved(self._moving(first), off)[0].value, 0.0), 1.0)
+        t, rest = self._solved(self._moving(first), off)
         t = _within(t, ex.ONE)
         span = self._spans[sum(s.t0 <= first for s in self._spans[1:-1])]
         own = ex.add(span.before, self._between(span.t0, ex.sub(t, ex.constant(span.t0)), span.nodes))
@@ -311,12 +317,13 @@ class Stretch:
     def crossings(self, axis: int, at: Expression) -> Iterator[Met]:
         """Yields the places that have an x (`axis` 0) or a y."""
         others: list[Expression] = []
-        run = way(self.start, self.last)
-        if self.center is None:
-            if abs(run[axis].value) > _STALLED * self.length.value:
-                share = ex.div(ex.sub(at, self.start[axis]), run[axis])
-                others = [ex.add(self.start[1 - axis], ex.mul(share, run[1 - axis]))]
-        else:
+        run, off = way(self.start, self.last), ex.sub(at, self.start[axis])
+        is_along = self.center is None and abs(run[axis].value) <= _STALLED * self.length.value
+        if is_along and abs(off.value) <= _MEETS:
+            others = [self.start[1 - axis], self.last[1 - axis]]
+        elif self.center is None and not is_along:
+            others = [ex.add(self.start[1 - axis], ex.mul(ex.div(off, run[axis]), run[1 - axis]))]
+        elif self.center is not None:
             radius, off = ex.apply("hypot", *way(self.center, self.start)), ex.sub(at, self.center[axis])
             square = ex.sub(ex.apply("square", radius), ex.apply("square", off))
             if square.value >= 0:
@@ -324,7 +331,7 @@ class Stretch:
                 others = [join(self.center[1 - axis], reach) for join in (ex.add, ex.sub)]
         for other in others:
             place = (at, other) if axis == 0 else (other, at)
-            unmet = _beyond(self._beside(place), self.length)
+            unmet = _beyond(self._beside(place), self.length) + [off] * is_along
             if self.center is not None:
                 unmet.append(ex.sub(ex.apply("hypot", *way(self.center, place)), radius))
             if all(abs(e.value) <= _MEETS for e in unmet):
@@ -416,8 +423,8 @@ class Way:
         """
         stretch = self.stretches[index]
         whole = stretch.length
-        overs = ((ex.apply("neg", own), at_least), (ex.sub(own, whole), at_most))
-        unmet = [ex.apply("maximum", ex.ZERO, over) for over, is_kept in overs if not is_kept]
+        overs = zip(_beyond(own, whole), (at_least, at_most), strict=True)
+        unmet = [over for over, is_kept in overs if not is_kept]
         own = ex.apply("maximum", own, ex.ZERO) if at_least else own
         own = ex.apply("minimum", own, whole) if at_most else own
         if isinstance(stretch, Stretch):
@@ -572,12 +579,14 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
         walked.append(found[1])
 
 
-def _circle(curve: Geometry, here: Structure) -> Stretch:
+def _circle(curve: Geometry, here: Structure, *, inside: bool | None = None) -> Stretch:
+    """Returns a circle from its right on in its own sense, or as one writes in or outside of it."""
     core = view(curve, here)
-    x, y = xy(core["center"])
-    radius = number(core["radius"])
-    turn = ex.constant(-1.0 if clockwise(curve, here) else 1.0)
+    (x, y), radius = xy(core["center"]), number(core["radius"])
+    turn = ex.constant(1.0 if inside or (inside is None and not clockwise(curve, here)) else -1.0)
     length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    if inside is not None:
+        return Stretch((x, ex.add(y, ex.mul(turn, radius))), ex.constant(180.0), length, (x, y), bend)
     return Stretch((ex.add(x, radius), y), ex.mul(turn, ex.constant(90.0)), length, (x, y), bend)
 
 
@@ -601,7 +610,7 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
     line, or closed.
     """
     if len(curves) == 1 and curves[0].type == "circle":
-        return Way((_written_round(curves[0], here, inside=inside is True),), is_closed=True)
+        return Way((_circle(curves[0], here, inside=inside is True),), is_closed=True)
     way = way_along(curves, here)
     if way is None or way.is_closed:
         return None
@@ -611,13 +620,6 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
         ahead = way.at(ex.mul(way.length, ex.constant(0.5)))[1].value
         backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == (inside is True)
     return Way(tuple(s.turned_round for s in reversed(way.stretches)), is_closed=False) if backwards else way
-
-
-def _written_round(circle: Geometry, here: Structure, *, inside: bool) -> Stretch:
-    core, turn = view(circle, here), ex.constant(1.0 if inside else -1.0)
-    (x, y), radius = xy(core["center"]), number(core["radius"])
-    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
-    return Stretch((x, ex.add(y, ex.mul(turn, radius))), ex.constant(180.0), length, (x, y), bend)
 
 
 def _value(place: Place) -> tuple[float, float]:

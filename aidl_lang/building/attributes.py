@@ -74,8 +74,7 @@ def _outlines(solid: Structure, clipped: Structure) -> Iterator[Geometry]:
     """Yields what a solid is made of, without what is clipped to it and without veils."""
     for part in solid.walk():
         for g in part.own() if part.kind == "solid" and not part.is_within(clipped) else ():
-            shade = g.attributes.get("shade", ())
-            fades = any(isinstance(v, TextVal) and v.value == "fade" for v in shade)
+            fades = any(isinstance(v, TextVal) and v.value == "fade" for v in g.attributes.get("shade", ()))
             if not (g.construction or fades or "opacity" in g.attributes):
                 yield g
 
