@@ -249,9 +249,9 @@ _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
 
 
 FILLING = ("color", "shade")
-OF_AREAS = (*FILLING, "opacity", "stroke")
-"""What an area has for itself: a closed geometry with a filling, or a solid in a solid with one."""
 _MATERIAL_LOOKS = (*FILLING, "opacity")
+OF_AREAS = (*_MATERIAL_LOOKS, "stroke")
+"""What an area has for itself: a closed geometry with a filling, or a solid in a solid with one."""
 _LINE_LOOKS = ("color", "stroke", "dash", "opacity", "shade")
 OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATERIAL_LOOKS}
 """Attributes that a geometry may have for itself, by the kind of its structure."""

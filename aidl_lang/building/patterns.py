@@ -164,15 +164,15 @@ class _Call:
         return made
 
 
-def _pattern(lay_out: Callable[[_Call], Value]) -> Function:
+def _called(answer: Callable[[_Call], Value]) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        thing = a["x"]
-        if not isinstance(thing, Geometry | Structure | Instantiation):
+        thing = a.get("x")
+        if thing is not None and not isinstance(thing, Geometry | Structure | Instantiation):
             message = f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}"
             it.report("E0331", message, node, hints=["put several things into a template, and repeat that"])
             return NOTHING
         settings = Geometry(node.callee.text, env.here, it.place(node))
-        return lay_out(_Call(it, a, node, env, settings))
+        return answer(_Call(it, a, node, env, settings))
 
     return function
 
@@ -387,12 +387,11 @@ def _curves(call: _Call) -> list[Geometry] | None:
     return curves
 
 
-def _point_at(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+def _point_at(call: _Call) -> Value:
     """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
     from aidl_lang.building.along import crossings
 
-    call = _Call(it, a, node, env, Geometry(node.callee.text, env.here, it.place(node)))
-    at, axis = a["at"], a.get("axis")
+    at, axis = call.a["at"], call.a.get("axis")
     assert isinstance(at, Num)
     if axis is None:
         if (way := _way(call)) is None:
@@ -401,21 +400,20 @@ def _point_at(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     else:
         assert isinstance(axis, TextVal)
         curves = _curves(call)
-        found = crossings(curves or (), env.here, int(axis.value == "y"), at.expression)
+        found = crossings(curves or (), call.env.here, int(axis.value == "y"), at.expression)
         if not found:
             what = f"no point of this outline has {axis.value} = {at.value:g}"
             return call.wrong(what, "name an outline that reaches there") if curves is not None else NOTHING
-        place, off = found[-1 if a["last"] is True else 0]
+        place, off = found[-1 if call.a["last"] is True else 0]
     call.check_followed(off)
     return point(*place)
 
 
-def _way_between(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+def _way_between(call: _Call) -> Value:
     """Returns the length of a curve between the places nearest to two points; the shorter of two ways."""
-    call = _Call(it, a, node, env, Geometry(node.callee.text, env.here, it.place(node)))
     if (way := _way(call)) is None:
         return NOTHING
-    (first, off), (last, more) = (way.up_to(xy(a[name])) for name in ("a", "b"))
+    (first, off), (last, more) = (way.up_to(xy(call.a[name])) for name in ("a", "b"))
     call.check_followed([off, more])
     between = ex.apply("abs", ex.sub(last, first))
     return length(ex.apply("minimum", between, ex.sub(way.length, between)) if way.is_closed else between)
@@ -442,12 +440,12 @@ def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expr
 
 
 FUNCTIONS = {
-    "along": _pattern(_along),
-    "linear_array": _pattern(_linear_array),
-    "grid": _pattern(_grid),
-    "polar_array": _pattern(_polar_array),
-    "point_at": _point_at,
-    "way_between": _way_between,
+    "along": _called(_along),
+    "linear_array": _called(_linear_array),
+    "grid": _called(_grid),
+    "polar_array": _called(_polar_array),
+    "point_at": _called(_point_at),
+    "way_between": _called(_way_between),
 }
 
 

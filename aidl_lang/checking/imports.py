@@ -161,7 +161,7 @@ def _exchanged(node: N, new: Mapping[ast.Node, ast.Node]) -> N:
             continue
         if other is not value:
             changed[name] = other
-    return replace(node, **changed) if changed else node  # type: ignore[arg-type]
+    return replace(node, **changed) if changed else node  # type: ignore[arg-type]  # own fields
 
 
 def _used_as_outlines(body: ast.Block) -> frozenset[str]:

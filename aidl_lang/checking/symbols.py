@@ -246,7 +246,7 @@ def library_scope(library: Library) -> SymbolScope:
         return [*SIGNATURES.get(name, ()), *library.callables.get(name, ())]
 
     names = (*SIGNATURES, *library.callables)
-    scope.callables = Lazy(names, overloads)  # type: ignore[assignment]
+    scope.callables = Lazy(names, overloads)  # type: ignore[assignment]  # it is only read
     for name, target in library.aliases.items():
         identifier = ast.Identifier(target, span=_NOWHERE.span)
         alias = ast.Alias(ast.Identifier(name, span=_NOWHERE.span), identifier, None, span=_NOWHERE.span)

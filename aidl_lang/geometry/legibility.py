@@ -304,27 +304,25 @@ def colliding_notes(
     root: SolvedStructure, strokes: Sequence[Stroke], tolerance: float
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each text that runs into another of its structure; a like one is its shadow."""
+    inked: dict[str, list[Piece]] = defaultdict(list)
+    for stroke in strokes:
+        inked[stroke.geometry] += stroke.pieces
     for structure in root.walk():
-        tops = {g.path: top for top in structure.drawn for g in top.walk() if g.type == LETTERING}
-        pieces: dict[str, list[Piece]] = defaultdict(list)
-        for stroke in strokes if tops else ():
-            if stroke.geometry in tops:
-                pieces[tops[stroke.geometry].path] += stroke.pieces
-        texts = {top.path: top for top in tops.values()}
-        boxed = {path: (union_bounds(found := all_bounds(of)), of, found) for path, of in pieces.items()}
-        order = sorted(boxed, key=lambda path: boxed[path][0])
-        for k, one in enumerate(order):
-            for other in order[k + 1 :]:
-                if boxed[other][0][0] > boxed[one][0][2]:
+        texts: list[tuple[SolvedGeometry, _Boxed]] = []
+        for top in structure.drawn:
+            if own := [p for g in top.walk() if g.type == LETTERING for p in inked.get(g.path, ())]:
+                boxes = all_bounds(own)
+                texts.append((top, (union_bounds(boxes), own, boxes)))
+        texts.sort(key=lambda text: text[1][0])
+        for k, (one, boxed) in enumerate(texts):
+            for other, beside in texts[k + 1 :]:
+                if beside[0][0] > boxed[0][2]:
                     break
-                if _run_together(boxed[one], boxed[other], tolerance):
-                    first, second = sorted((texts[one], texts[other]), key=lambda top: top.path)
-                    yield Diagnostic(
-                        "W0764",
-                        f"the letters of `{first.path}` and `{second.path}` run into each other",
-                        second.span,
-                        hints=("move one of them, or write both with less `height`",),
-                    )
+                if _run_together(boxed, beside, tolerance):
+                    first, second = sorted((one, other), key=lambda top: top.path)
+                    message = f"the letters of `{first.path}` and `{second.path}` run into each other"
+                    hint = "move one of them, or write both with less `height`"
+                    yield Diagnostic("W0764", message, second.span, hints=(hint,))
 
 
 def _run_together(one: _Boxed, other: _Boxed, tolerance: float) -> bool:
