@@ -249,11 +249,10 @@ _SIDES = {BEHIND: "behind", IN_FRONT: "in front of"}
 
 
 FILLING = ("color", "shade")
-_MATERIAL_LOOKS = (*FILLING, "opacity")
-OF_AREAS = (*_MATERIAL_LOOKS, "stroke")
+OF_AREAS = (*FILLING, "opacity", "stroke")
 """What an area has for itself: a closed geometry with a filling, or a solid in a solid with one."""
 _LINE_LOOKS = ("color", "stroke", "dash", "opacity", "shade")
-OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": _MATERIAL_LOOKS, "assembly": _MATERIAL_LOOKS}
+OWN_LOOKS = {"drawing": _LINE_LOOKS, "solid": OF_AREAS, "assembly": OF_AREAS}
 """Attributes that a geometry may have for itself, by the kind of its structure."""
 
 
@@ -277,11 +276,8 @@ def read_own_attributes(
     """Reads the attributes of a geometry; reports those for structures only."""
     things = list(each_of(value, Geometry))
     here = container if isinstance(container, Structure) else container.owner
-    said = list(_read(it, node.attributes, Env(scope, here, Reach.OWN)))
-    is_area = any(name in FILLING for name, _, _ in said)
-    for name, values, attribute in said:
-        is_outline = is_area and here.kind in OWN_LOOKS and name == "stroke"
-        is_own = here is container and (is_outline or name in OWN_LOOKS.get(here.kind, ()))
+    for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
+        is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
         if not things or not (name == "note" or is_own):
             _misplaced(it, node, name, attribute, value, container)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):

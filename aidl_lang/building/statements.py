@@ -139,8 +139,9 @@ class Assignment:
 
     def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
         """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
-        if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
-            self._stands(value)
+        match value:
+            case Pattern() | StructureCopy(source=Structure()) if self.node.placement is not None:
+                self._stands(value)
         return self.value(value, indices)
 
     def value(self, value: Value, indices: tuple[int, ...]) -> Value:
@@ -168,9 +169,8 @@ class Assignment:
                     is_placed = any(a.name and a.name.text in ("center", "start") for a in call.arguments)
                     fix = None if is_placed else Fix("lay it out from there", (edit,), is_sure=True)
         else:
-            made = value.source
-            source = made.name if isinstance(made, Structure) else made.signature.name
-            message = f"`{name}` is a copy, and its place follows from `{source}`"
+            assert isinstance(value.source, Structure)
+            message = f"`{name}` is a copy, and its place follows from `{value.source.name}`"
             hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
         self.it.report("E0330", message, self.node.placement, hints=[hint], fix=fix)
 
@@ -214,6 +214,9 @@ class Assignment:
         own: list[Frame] = []
 
         def framed(frame: Frame) -> Frame:
+            if self.node.placement is not None:  # moved in the frame that `at` and `rotated` place
+                own.append(frame)
+                return of_frame(frame).frame(motion.frame(Frame()))
             if copy.is_laid:  # where it is written
                 frame = replace(frame, x=ex.constant(frame.x.value), y=ex.constant(frame.y.value))
             own.append(frame)

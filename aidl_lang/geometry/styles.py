@@ -148,8 +148,10 @@ def styled(style: Style, geometry: SolvedGeometry) -> Style:
 def is_filled(geometry: SolvedGeometry, within: str) -> bool:
     """Tells whether geometry is an area with a look of its own; with a width, in a drawing it is a line."""
     stated = geometry.attributes
-    is_line = within == "drawing" and not {"dash", "stroke"}.isdisjoint(stated) and not is_unlined(stated)
-    return any(look in stated for look in FILLING) and not is_line
+    if within != "drawing":
+        return not stated.keys().isdisjoint((*FILLING, "stroke"))
+    is_line = not {"dash", "stroke"}.isdisjoint(stated) and not is_unlined(stated)
+    return not stated.keys().isdisjoint(FILLING) and not is_line
 
 
 def is_inlay(s: SolvedStructure) -> bool:

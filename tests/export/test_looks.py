@@ -451,15 +451,17 @@ def test_shade_ends_where_it_is_said() -> None:
     assert "url(" not in written(".svg", program, theme="ink").data.decode()
 
 
-def test_an_area_of_a_solid_may_have_an_outline_of_its_own() -> None:
-    text = """
-    @color("skyblue") solid plate {
+@pytest.mark.parametrize("color", ["gold", "skyblue"])
+def test_an_area_of_a_solid_may_have_an_outline_of_its_own(color: str) -> None:
+    said = f'@color("{color}")' if color != "skyblue" else ""
+    text = f"""
+    @color("skyblue") solid plate {{
         body = rectangle(center: fixed((0, 0)), width: 90, height: 60)
-        @color("gold") @stroke(3mm) disc = circle(center: fixed((20, 10)), radius: 9)
-    }
+        {said} @stroke(3mm) disc = circle(center: fixed((20, 10)), radius: 9)
+    }}
     """
     svg = written(".svg", text).data.decode()
-    assert re.search(r'fill="gold"[^>]*stroke-width="3"', svg)
+    assert re.search(rf'fill="{color}"[^>]*stroke-width="3"', svg)
 
 
 @pytest.mark.parametrize(("shade", "is_shaded"), [('"navy"', False), ("slope", True), ("fade", True)])
