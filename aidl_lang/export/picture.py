@@ -25,7 +25,7 @@ from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.styles import DASH, GAP, Style, drawing_below, stacked
+from aidl_lang.geometry.styles import DASH, GAP, Style, layers
 
 if TYPE_CHECKING:
     from aidl_lang.export.svg import Halos
@@ -302,17 +302,15 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    holder = {child.path: s for s in model.root.walk() for child in s.structures}
-    for structure in stacked(model.root):
+    last = ""
+    for structure, laid, is_over in layers(model.root):
         identity = _identity(structure, drawing)
-        yield Group(structure.path, tuple(of[structure.path]), identity)
-        if drawn := of.get(f"{structure.path}{_DRAWN}"):
-            yield Group(f"{structure.path}{_DRAWN}", tuple(drawn), {**identity, "data-kind": "drawing"})
-        if over := of.get(f"{structure.path}{_OVER}"):
-            solid = holder[structure.path]
-            while solid.kind == "drawing":
-                solid = holder[solid.path]
-            yield Group(f"{structure.path}{_OVER}", tuple(over), _identity(solid, drawing))
+        if not is_over:
+            yield Group(last := structure.path, tuple(of[last]), identity)
+            if drawn := of.get(f"{last}{_DRAWN}"):
+                yield Group(f"{last}{_DRAWN}", tuple(drawn), {**identity, "data-kind": "drawing"})
+        elif over := [mark for g in laid for mark in of.get(g.path, ())]:
+            yield Group(last := f"{last}{_OVER}", tuple(over), identity)
 
 
 def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
@@ -341,14 +339,14 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
             for mark in halos.around_stroke(stroke, line):
                 yield stroke.path, mark
     kinds = {structure.path: structure.kind for structure in root.walk()}
-    below = {g.path: drawing_below(s, g) for s in root.walk() if s.structures for g in s.drawn}
+    raised = {g.path for _, laid, is_over in layers(root) if is_over for g in laid}
     for stroke, own in marks:
-        if stroke.is_area and (under := below.get(stroke.geometry)) is not None:
-            yield from ((f"{under.path}{_OVER}", mark) for mark in own)
-            continue
-        is_on_part = stroke.role == "drawing" and kinds[stroke.path] != "drawing" and not stroke.is_area
-        for mark in own:
-            yield f"{stroke.path}{_DRAWN}" if is_on_part else stroke.path, mark
+        path = stroke.path
+        if stroke.is_area:
+            path = stroke.geometry if stroke.geometry in raised else path
+        elif stroke.role == "drawing" and kinds[path] != "drawing":
+            path = f"{path}{_DRAWN}"
+        yield from ((path, mark) for mark in own)
 
 
 def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Area]]:

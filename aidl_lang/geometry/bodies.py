@@ -514,7 +514,10 @@ def open_gaps(
         if not isinstance(finding, LooseCurves) or finding.structure.kind not in ("solid", "hole"):
             continue
         loose = {number for _, number in finding.curves}
-        for a, b in _nearest_first(_open_ends(network, shapes[finding.structure.path]), widest):
+        of = shapes[finding.structure.path]
+        meeting = network.meeting(number for shape in of for number in shape.numbers)
+        free = [end for end in _ends_of_open(network, of) if meeting[network.node(end.at)] == 1]
+        for a, b in _nearest_first(free, widest):
             if not loose & {a.number, b.number}:
                 continue
             for moved, kept in ((b, a), (a, b)):
@@ -574,12 +577,6 @@ def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator
 def _ends_of_open(network: Network, shapes: Iterable[Shape]) -> Iterator[End]:
     leaves = (leaf for shape in shapes for leaf in shape.leaves if not is_closed(network.curves[leaf[1]]))
     return (end for leaf in leaves for end in ends_of(network, *leaf))
-
-
-def _open_ends(network: Network, shapes: Sequence[Shape]) -> list[End]:
-    """Returns the ends at which no other curve of the structure has a node."""
-    meeting = network.meeting(number for shape in shapes for number in shape.numbers)
-    return [end for end in _ends_of_open(network, shapes) if meeting[network.node(end.at)] == 1]
 
 
 def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, End]]:

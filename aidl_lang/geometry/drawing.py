@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from typing import TypeAlias
@@ -69,9 +69,11 @@ from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bo
 from aidl_lang.geometry.sections import (
     Section,
     Traced,
+    boxes_meet,
     difference,
     fill,
     intersection,
+    is_nothing,
     trace,
     trace_all,
     union,
@@ -79,12 +81,12 @@ from aidl_lang.geometry.sections import (
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
-    drawing_below,
     idle_areas,
     idle_looks,
     idle_orders,
     is_filled,
     is_inlay,
+    places_of,
     stacked,
     styled,
     styles_of,
@@ -148,10 +150,12 @@ class Stroke:
 
 @record()
 class _Area:
-    """An area with a look of its own, on the grid and as a region; `loose`: what bounds none of it."""
+    """An area with a look of its own: what is seen of it, the `whole` as it lies below what is in the colour
+    of the body again, and curves that bound none of it.
+    """
 
-    section: Section
-    region: Region
+    seen: Solid
+    whole: Section
     loose: tuple[Piece, ...] = ()
 
 
@@ -218,7 +222,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
-    aside = frozenset().union(*map(veils, root.walk()))
+    aside = frozenset(veils(root))
     made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
     network, walk, masses, traced, gaps = _closed(
         root, network, shapes, partial(_arranged, root, made, clips, blind)
@@ -228,7 +232,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
-    order = {structure.path: place for place, structure in enumerate(stacked(root))}
+    order = places_of(root)
     solids = [
         Solid(b.path, b.region, m.section, b.box, order[b.path], b.style.color, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
@@ -248,9 +252,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    areas = dict(_areas(root, shapes, aside, walk, masses, ink[0]))
-    lying = [*solids, *_lying_areas(stacked(root), styles, areas)]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink)
+    areas = dict(_areas(root, shapes, aside, walk, masses, ink[0], styles, order))
+    lying = [*solids, *(area.seen for area in areas.values())]
+    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
@@ -263,13 +267,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             for s in root.walk()
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
+        is_seen = partial(_is_seen, styles, areas, order)
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop | CoveredHoles) and _is_seen(f, styles[f.structure.path])):
+            if not (isinstance(f, InnerLoop | CoveredHoles) and is_seen(f)):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += piece_notes(root, walk, masses, solids, touching.near())
         notes += _unseen(root, shapes, styles, ground)
-        notes += _covered_letters(root, walk, masses, ground, order)
+        notes += _covered_letters(root, walk, masses, ground)
         notes += overhanging_notes(root, bodies, strokes)
         notes += colliding_notes(root, strokes, network.tolerance)
         if any(body.style.material for body in bodies):
@@ -381,10 +386,10 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
 
 
 def _covered_letters(
-    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground, order: dict[str, int]
+    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground
 ) -> Iterator[Diagnostic]:
     """Warnings about letters of solids and holes that later bodies lie over."""
-    place = {path: order[m.structure.path] for m in masses for path in (*m.inner, m.structure.path)}
+    place = {path: ground.order[m.structure.path] for m in masses for path in (*m.inner, m.structure.path)}
     above = {child.path: s.path for s in root.walk() for child in s.structures}
     for structure in root.walk():
         holder: str | None = structure.path
@@ -410,10 +415,10 @@ def _strokes(
     """Yields the curves of drawings, and those of other structures that bound nothing."""
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
-    for place, structure in enumerate(stacked(root)):
+    for structure in stacked(root):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, place, areas, is_own=path in own)
+            yield from _inked(structure, shapes[path], style, ground, areas, is_own=path in own)
         for shape in engraved.get(path, ()):
             look = styled(replace(style, color=None), shape.geometry)
             for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
@@ -436,12 +441,12 @@ def _inked(
     shapes: list[Shape],
     style: Style,
     ground: Ground,
-    place: float,
     areas: _Areas,
     *,
     is_own: bool,
 ) -> Iterator[Stroke]:
     alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
+    place = ground.order[drawing.path]
     for shape in shapes:
         look = styled(style, shape.geometry)
         is_asked = is_own or "color" in shape.geometry.attributes
@@ -460,13 +465,16 @@ def _inked(
             yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
 
 
-def _is_seen(found: InnerLoop | CoveredHoles, style: Style) -> bool:
-    """Tells whether a face that adds nothing shows: by seams, as an area, or on an area written before it."""
-    own = [g.path for g in found.face.geometries]
-    around = found.around if isinstance(found, InnerLoop) else ()
-    drawn = [g for g in found.structure.drawn if g.path in own or g in around]
-    last = max((k for k, g in enumerate(drawn) if g.path in own), default=0)
-    return style.has_seams or any(is_filled(g, found.structure.kind) for g in drawn[: last + 1])
+def _is_seen(
+    styles: dict[str, Style], areas: _Areas, order: Mapping[str, int], found: InnerLoop | CoveredHoles
+) -> bool:
+    """Tells whether a face that adds nothing is drawn: by seams, as an area, or on one."""
+    own = found.face.geometries
+    if styles[found.structure.path].has_seams or any(is_filled(g, found.structure.kind) for g in own):
+        return True
+    place = max(order[g.path] for g in own)
+    below = (area.whole for path, area in areas.items() if order[path] <= place)
+    return any(boxes_meet(a, b := found.face.section) and not is_nothing(intersection(a, b)) for a in below)
 
 
 def _unseen(
@@ -474,15 +482,13 @@ def _unseen(
 ) -> Iterator[Diagnostic]:
     """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
-    drawings = ((k, s) for k, s in enumerate(stacked(root)) if s.kind == "drawing")
-    for at, drawing in drawings:
+    for drawing in (s for s in stacked(root) if s.kind == "drawing"):
         lost: dict[str, list[str]] = {}
         covered: dict[str, list[str]] = {}
         seen: set[str] = set()
-        places = _places(drawing, at)
         for shape in shapes[drawing.path]:
             look, numbers = styled(styles[drawing.path], shape.geometry), shape.numbers
-            place = places[shape.geometry.path]
+            place = ground.order[shape.geometry.path]
             if (by := ground.covering(numbers, place)) is not None:
                 covered.setdefault(by, []).append(shape.geometry.name)
             else:
@@ -507,15 +513,26 @@ def _areas(
     walk: Bodies,
     masses: Sequence[Mass],
     ink: Sequence[Piece],
+    styles: dict[str, Style],
+    order: Mapping[str, int],
 ) -> Iterator[tuple[str, _Area]]:
     """Yields the paths and areas of geometry with a look of its own: what it encloses of its body, or all
     but the holes in it if it lies `aside`, as a veil.
     """
     network, mass_of = walk.network, {path: m for m in masses for path in (*m.inner, m.structure.path)}
+    plain: dict[str, list[Shape]] = {}  # by body, or drawing: what has its colour
+    for structure in root.walk():
+        for child in structure.structures:  # one without material, too
+            if child.kind == structure.kind == "solid" and structure.path in mass_of:
+                mass_of.setdefault(child.path, mass_of[structure.path])
+        body = mass_of[structure.path].structure if structure.path in mass_of else structure
+        of = (s for s in shapes[structure.path] if not is_filled(s.geometry, structure.kind))
+        plain.setdefault(body.path, []).extend(of)
     for structure in root.walk():
         mass, clip = mass_of.get(structure.path), walk.clips.get(structure.path)
-        for k, shape in enumerate(shapes[structure.path] if structure.kind != "hole" else (), 1):
-            if not is_filled(shape.geometry, structure.kind):
+        for shape in shapes[structure.path] if structure.kind != "hole" else ():
+            g, place = shape.geometry, order[shape.geometry.path]
+            if not is_filled(g, structure.kind):
                 continue
             loose: tuple[Piece, ...] = ()
             if structure.kind == "drawing":
@@ -523,49 +540,30 @@ def _areas(
                 region = Region(next((faces for _, faces in found if faces), ()))
                 loose = next((lines for lines, faces in found if not faces), ())
                 polygons = map(np.array, region_polygons(region, network.tolerance))
-                section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
+                whole = section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
                 whole = union_of(own_faces(network, [shape]).faces)
-                if shape.geometry.path in aside:
-                    section = difference(whole, union([v.section for v in mass.voids] if mass else []))
-                    section = intersection(section, clip) if clip is not None else section
+                if g.path in aside:
+                    whole = difference(whole, union([v.section for v in mass.voids] if mass else []))
                 else:
-                    section = intersection(whole, mass.section if mass else union([]))
-                later = [s for s in shapes[structure.path][k:] if not is_filled(s.geometry, structure.kind)]
+                    whole = intersection(whole, mass.section if mass else union([]))
+                section = whole = intersection(whole, clip) if clip is not None else whole
+                body = mass.structure if mass else structure
+                later = [s for s in plain[body.path] if order[s.geometry.path] > place]
                 if later and (over := own_faces(network, later).faces):  # in the colour of the body again
                     section = difference(section, union_of(over))
                 region = trace(network, section).region
             if region:
-                yield shape.geometry.path, _Area(section, region, loose)
-
-
-def _lying_areas(
-    order: Iterable[SolvedStructure], styles: dict[str, Style], areas: _Areas
-) -> Iterator[Solid]:
-    """Yields the areas as what others lie on."""
-    for at, structure in enumerate(order):
-        places = _places(structure, at)
-        for g in structure.drawn:
-            if (area := areas.get(g.path)) is not None:
-                look, box = styled(styles[structure.path], g), region_bounds(area.region)
-                yield Solid(g.path, area.region, area.section, box, places[g.path], look.color, look.is_clear)
-
-
-def _places(structure: SolvedStructure, at: float) -> dict[str, float]:
-    """Returns the places of a structure's geometry in the order of drawing: between it and the next one."""
-    count, places = len(structure.drawn) + 1, dict[str, float]()
-    after = {s.path: at + k for k, s in enumerate(stacked(structure))} if structure.structures else {}
-    for k, g in enumerate(structure.drawn, 1):
-        below = drawing_below(structure, g) if after else None
-        places[g.path] = (at if below is None else after[below.path]) + k / count
-    return places
+                look, box = styled(styles[structure.path], g), region_bounds(region)
+                seen = Solid(g.path, region, section, box, place, look.color, look.is_clear)
+                yield g.path, _Area(seen, whole, loose)
 
 
 def _colored(
     structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
 ) -> Iterator[Stroke]:
-    look, faces, whole = styled(style, geometry), area.region.faces, tuple(geometry.curves())
-    yield Stroke(structure.path, geometry.path, area.region.pieces, look, faces=faces, whole=whole)
+    look, faces, whole = styled(style, geometry), area.seen.region.faces, tuple(geometry.curves())
+    yield Stroke(structure.path, geometry.path, area.seen.region.pieces, look, faces=faces, whole=whole)
     if area.loose:
         yield Stroke(structure.path, geometry.path, area.loose, look)
 

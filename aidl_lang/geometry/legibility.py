@@ -65,13 +65,14 @@ _WHOLE = 0.995
 @record()
 class Ground:
     """The bodies that strokes lie on, or under, from back to front. `curves` are those of all strokes, which
-    go by their numbers; `boxes` are theirs.
+    go by their numbers; `boxes` are theirs; `order` has the places of structures and geometry.
     """
 
     network: Network
     bodies: Sequence[Solid]
     curves: Sequence[Piece]
     boxes: Sequence[Bounds]
+    order: Mapping[str, int]
 
     def hides(self, color: str | None, curves: Sequence[int], place: float, *, wholly: bool) -> bool:
         """Tells whether the body below some curves has nearly their colour: all along them, or somewhere."""

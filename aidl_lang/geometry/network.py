@@ -445,7 +445,6 @@ class Network:
             raise TooCoarse
 
     def _all_sides(self) -> tuple[Ints, Sides]:
-        """Returns all sides of polylines, and the numbers of their edges."""
         if self._sides is None:
             lines = []
             for number, edge in enumerate(self.edges):

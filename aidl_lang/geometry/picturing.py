@@ -14,7 +14,7 @@ from aidl_lang.building.attributes import FILLING, OF_AREAS
 from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import FLOATS, Lowered, Placing
-from aidl_lang.building.model import Finish, Geometry, Model, Recipe, Structure, own_geometry
+from aidl_lang.building.model import Finish, Geometry, Model, Structure, own_geometry
 from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
@@ -242,7 +242,6 @@ class _Reader:
                     yield name, self._scalar(value)
 
     def _orientation(self, s: Structure) -> str:
-        """Returns the orientation of a structure: its own, else that of the structure around it."""
         match s.attributes.get("orientation"):
             case (TextVal(word),):
                 return word
@@ -297,7 +296,11 @@ class _Reader:
             return self._text(g)
         if g.trace is not None:
             return self._drawing(g)
-        recipe = self._recipe(g.recipe) if g.recipe is not None else None
+        recipe = None
+        if (of := g.recipe) is not None:
+            operands = tuple(tuple(map(self.geometry, group)) for group in of.operands)
+            numbers = {name: self._number(value) for name, value in of.numbers.items()}
+            recipe = SolvedRecipe(of.kind, operands, numbers, of.words)
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
         if is_plain and curve is None:
@@ -320,14 +323,6 @@ class _Reader:
         looks = self._looks(g) | self._attributes(g)
         known = g.type, values, curve, parts, g.construction, g.span, recipe, source, looks
         return SolvedGeometry(g.name or g.type, g.path, *known)
-
-    def _recipe(self, recipe: Recipe) -> SolvedRecipe:
-        return SolvedRecipe(
-            recipe.kind,
-            tuple(tuple(self.geometry(g) for g in group) for group in recipe.operands),
-            {name: self._number(value) for name, value in recipe.numbers.items()},
-            recipe.words,
-        )
 
     def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
         at = self._at(finish.at, s) if finish.at is not None else None
@@ -476,7 +471,6 @@ def _is_sound(structure: SolvedStructure) -> bool:
 
 
 def _has_place(geometry: SolvedGeometry) -> bool:
-    """Tells whether all of a geometry, with its parts, can be drawn."""
     return (
         (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
         and all(map(_has_place, geometry.parts))
@@ -492,7 +486,6 @@ def _is_possible(outline: SolvedGeometry) -> bool:
 
 
 def _is_within(value: object) -> bool:
-    """Tells whether every number in a value can be drawn."""
     if isinstance(value, float):
         return abs(value) <= LARGEST
     return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))

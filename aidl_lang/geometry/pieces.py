@@ -75,8 +75,8 @@ def piece_notes(
         solid = mass.structure
         if solid is not root and solid.kind == "solid" and solid.path not in free:
             pieces = _pieces(walk, mass)
-            groups = _groups(pieces, known[solid.path], known, pairs) if len(pieces) > 1 else []
-            yield from _notes(solid, groups)
+            if len(pieces) > 1:
+                yield from _notes(solid, _groups(pieces, known[solid.path], known, pairs))
     held, holes = _held_by_others(known, pairs), _holes(root, masses)
     for mass in masses:
         path = mass.structure.path
@@ -147,7 +147,12 @@ def _groups(
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:
     alike = Counter(trait for group in groups for piece in group for trait in _traits(piece))
-    loose = [group for group in groups[1:] if not all(_is_meant(piece, alike) for piece in group)]
+
+    def is_meant(piece: _Piece) -> bool:
+        lettering = all(g.type == LETTERING for f in piece.faces for g in f.geometries)
+        return lettering or any(alike[trait] >= _PATTERN for trait in _traits(piece))
+
+    loose = [group for group in groups[1:] if not all(map(is_meant, group))]
     for group in loose[:_MOST]:
         yield _note(solid, group, [piece for other in groups if other is not group for piece in other])
 
@@ -156,11 +161,6 @@ def _traits(piece: _Piece) -> Iterator[object]:
     """Yields what makes pieces alike: their area, and the statement, in a loop, that makes them."""
     yield _area(piece.section)
     yield from {g.span for f in piece.faces for g in f.geometries if g.span}
-
-
-def _is_meant(piece: _Piece, alike: Counter[object]) -> bool:
-    lettering = all(g.type == LETTERING for f in piece.faces for g in f.geometries)
-    return lettering or any(alike[trait] >= _PATTERN for trait in _traits(piece))
 
 
 def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece]) -> Diagnostic:

@@ -159,14 +159,19 @@ def is_inlay(s: SolvedStructure) -> bool:
     return s.kind == "solid" and not s.attributes.keys().isdisjoint(FILLING)
 
 
-def veils(structure: SolvedStructure) -> frozenset[str]:
-    """Returns the paths of the translucent and fading areas of a solid, which add no material: they lie on
-    what else it has. A solid of nothing else is made of them.
+def veils(root: SolvedStructure, *, is_inner: bool = False) -> Iterator[str]:
+    """Yields the paths of the translucent and fading areas of solids, which add no material: they lie on
+    what else the body has. A body of nothing else is made of them.
     """
-    drawn = [g for g in structure.drawn if not g.construction] if structure.kind == "solid" else []
-    seen = frozenset(g.path for g in drawn if is_filled(g, "solid") and styled(Style(), g).is_clear)
-    is_made = len(seen) < len(drawn) or any(child.kind == "solid" for child in structure.structures)
-    return seen if is_made else frozenset()
+    if root.kind == "solid" and not is_inner:
+        parts = [root]
+        for part in parts:
+            parts += [child for child in part.structures if child.kind == "solid"]
+        drawn = [g for part in parts for g in part.drawn if not g.construction]
+        seen = [g.path for g in drawn if is_filled(g, "solid") and styled(Style(), g).is_clear]
+        yield from seen if len(seen) < len(drawn) else ()
+    for child in root.structures:
+        yield from veils(child, is_inner=root.kind == child.kind == "solid")
 
 
 def is_unlined(stated: Attributes) -> bool:
@@ -258,6 +263,7 @@ def idle_areas(root: SolvedStructure, areas: Collection[str], loose: Collection[
         )
         for s in root.walk()
         for g in s.drawn
+        if not g.construction
         if s.kind not in ("drawing", "hole") and is_filled(g, s.kind) and g.path not in areas
         if not any(part.path in loose for part in g.walk())
     ]
@@ -294,16 +300,32 @@ def stacked(root: SolvedStructure) -> Iterator[SolvedStructure]:
         yield from stacked(child)
 
 
-def drawing_below(structure: SolvedStructure, geometry: SolvedGeometry) -> SolvedStructure | None:
-    """Returns the last drawing in a structure that is written before a geometry of it, and so lies below: of
-    one with drawings in it the last of these.
+def layers(root: SolvedStructure) -> Iterator[tuple[SolvedStructure, Sequence[SolvedGeometry], bool]]:
+    """Yields a structure and all below it from back to front, each with its geometry; and once more, marked
+    by True, with what is written behind a drawing in it, or a solid in a solid, and so lies over that.
     """
-    at = geometry.span
-    if at is None or structure.kind == "drawing":
-        return None
-    drawings = [s for s in structure.structures if s.kind == "drawing" and s.span is not None]
-    before = [s for s in drawings if s.span and s.span.source is at.source and s.span.start < at.start]
-    return list(stacked(before[-1]))[-1] if before else None
+    kinds = {"solid": ("drawing", "solid"), "drawing": ()}.get(root.kind, ("drawing",))
+    inner = [s for s in reversed(root.structures) if s.kind in kinds]
+    laid: dict[str, list[SolvedGeometry]] = {root.path: []}
+    for g in root.drawn:
+        below = next((s for s in inner if _is_before(s, g)), root)
+        laid.setdefault(below.path, []).append(g)
+    yield root, laid[root.path], False
+    for child in _ordered(root.structures):
+        yield from layers(child)
+        if child.path in laid:
+            yield root, laid[child.path], True
+
+
+def _is_before(s: SolvedStructure, g: SolvedGeometry) -> bool:
+    a, b = s.span, g.span
+    return a is not None and b is not None and a.source is b.source and a.start < b.start
+
+
+def places_of(root: SolvedStructure) -> dict[str, int]:
+    """Returns the places of structures and geometry in the order of drawing, by their paths."""
+    paths = dict.fromkeys(path for s, laid, _ in layers(root) for path in (s.path, *(g.path for g in laid)))
+    return {path: place for place, path in enumerate(paths)}
 
 
 def idle_orders(root: SolvedStructure, bodies: Collection[str]) -> list[Diagnostic]:

@@ -270,7 +270,6 @@ def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
 
 
 def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
-    """Returns the areas no part of which lies outside of a region."""
     outlines = iter(clipped_each([p for r in areas for p in r.pieces], region))
     found = [[next(outlines) for _ in r.pieces] for r in areas]
     kept = [r for r, pieces in zip(areas, found, strict=True) if all(one.is_whole for one in pieces)]

@@ -247,7 +247,11 @@ solid a {
     @color("red") over = circle(center: fixed((0, 20)), radius: 10)
     @color("lime") under = circle(center: fixed((0, -20)), radius: 10)
     bare = rectangle(center: fixed((0, -20)), width: 8, height: 8)
-    @color("blue") solid inner { dot = circle(center: fixed((30, -20)), radius: 5) }
+    @color("blue") solid inner { dot = circle(center: fixed((30, -20)), radius: 8) }
+    @color("gold") pin = circle(center: fixed((34, -20)), radius: 2)
+    plug = circle(center: fixed((26, -20)), radius: 2)
+    spot = circle(center: fixed((-30, 0)), radius: 8)
+    @clip(spot) solid paint { @color("blue") band = rectangle(center: fixed((0, 0)), width: 100, height: 4) }
 }
 """
 
@@ -260,6 +264,10 @@ def test_what_is_written_later_lies_on_top() -> None:
         assert near(image.getpixel((530 + 80, 730)), (0, 255, 0))
         assert near(image.getpixel((530, 730)), image.getpixel((530 - 300, 730)))
         assert near(image.getpixel((830, 730)), (0, 0, 255))
+        assert near(image.getpixel((870, 730)), (255, 215, 0))
+        assert near(image.getpixel((790, 730)), image.getpixel((530 - 300, 730)))
+        assert near(image.getpixel((230, 530)), (0, 0, 255))
+        assert near(image.getpixel((430, 530)), image.getpixel((530 - 300, 730)))  # the band ends at the spot
 
 
 LETTERS = """

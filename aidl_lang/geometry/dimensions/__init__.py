@@ -424,7 +424,6 @@ class _Part:
                 yield (_derived(found, ("level", self.body.path, level.axis, *level.points[0])),)
 
     def _ends_at(self, axis: int, value: float) -> list[Vec]:
-        """Returns the points of the outline at a level."""
         found = []
         for piece in self.body.region.pieces:
             box = bounds(piece)
@@ -476,7 +475,6 @@ def _is_mirror(a: Piece, b: Piece, axis: int, middle: float, slack: float) -> bo
 
 
 def _is_same(a: Piece, b: Circle | Arc, slack: float) -> bool:
-    """Tells whether two curves are of one circle."""
     if not isinstance(a, Circle | Arc):
         return False
     return abs(a.radius - b.radius) <= slack and math.dist(a.center, b.center) <= slack

@@ -428,7 +428,6 @@ def _agrees(found: Dimension, value: float) -> bool:
 
 
 def _total(offsets: Sequence[tuple[int, Num | PointVal]]) -> Num | PointVal | None:
-    """Returns the sum of signed constants."""
     numbers = [(sign, v) for sign, v in offsets if isinstance(v, Num)]
     if len(numbers) == len(offsets) and numbers:
         total = sum(sign * v.value for sign, v in numbers)

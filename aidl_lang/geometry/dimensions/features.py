@@ -246,7 +246,6 @@ def _steps(centers: Sequence[Vec], levels: Sequence[float], axis: int, tolerance
 
 
 def _ring(centers: Sequence[Vec], tolerance: float) -> Circle | None:
-    """Returns the circle through all of at least three points."""
     if len(centers) < 3:
         return None
     (ax, ay), (bx, by), (cx, cy) = centers[0], centers[len(centers) // 3], centers[2 * len(centers) // 3]
@@ -323,7 +322,8 @@ class SizedGeometry:
                 for dimension in self.field(name, self.evaluate(value.expression), value):
                     found = True
                     yield self._said(dimension, name, value, origin)
-        if not found and self._is_listed():
+        is_by_points = any(isinstance(value, ListVal) for value in self._values().values())
+        if not found and self.built.is_compound and is_by_points and self._curves():
             for k in (0, 1):
                 reach = length_along(self._curves(), direction(self.turned + 90 * k))
                 yield replace(reach, origin="size", of=self.solved.path, group=(self.built.span, k))
@@ -333,11 +333,6 @@ class SizedGeometry:
             return self.built.fields
         assert isinstance(self.built.scope, Scope)
         return {name: self.built.scope.values[name] for name in self.built.arguments}
-
-    def _is_listed(self) -> bool:
-        """Tells whether the outline is given by its points."""
-        is_outline = self.built.is_compound and bool(self._curves())
-        return is_outline and any(isinstance(value, ListVal) for value in self._values().values())
 
     def _curves(self) -> list[Piece]:
         return list(self.solved.curves())

@@ -357,7 +357,6 @@ def is_smooth(before: Piece, after: Piece) -> bool:
 
 
 def _is_right(a: Piece, b: Piece) -> bool:
-    """Tells whether a line begins at a right angle to another."""
     if not (isinstance(a, Line) and isinstance(b, Line)):
         return False
     u, v = derivative(a, 1.0), derivative(b, 0.0)
