@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -321,10 +321,9 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 
 
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
-    halos = _halos(root, drawing)
-    for index, body in enumerate(drawing.bodies):
-        color = body.style.color or themes.body_fill(index)
-        areas = list(_filled(body.region, body.style, color, size))
+    halos, fills = _halos(root, drawing), _fills(root, drawing)
+    for body in drawing.bodies:
+        areas = list(_filled(body.region, body.style, fills[body.path], size))
         line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
         for area in (*halos.around_body(body, line), *areas) if halos else areas:
             yield body.path, area
@@ -332,7 +331,7 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
     for seam in drawing.seams:
         if seam.is_asked or not styles[seam.body].is_unlined:
             yield seam.path, _seam(seam, styles[seam.body], size)
-    marks = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
+    marks = [(stroke, list(_strokes(stroke, size, fills))) for stroke in drawing.strokes]
     if halos:  # before all lines: those of a drawing, which may join, clear none of its own
         for stroke, own in marks:
             line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
@@ -347,6 +346,15 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
         elif stroke.role == "drawing" and kinds[path] != "drawing":
             path = f"{path}{_DRAWN}"
         yield from ((path, mark) for mark in own)
+
+
+def _fills(root: SolvedStructure, drawing: Drawing) -> dict[str, str]:
+    """Returns the colours of bodies, and of the solids that are united with them, by their paths."""
+    fills = {body.path: body.style.color or themes.body_fill(k) for k, body in enumerate(drawing.bodies)}
+    for s in root.walk():
+        inner = (c.path for c in s.structures if c.kind == s.kind == "solid" and s.path in fills)
+        fills |= dict.fromkeys(inner, fills.get(s.path, ""))
+    return fills
 
 
 def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Area]]:
@@ -388,7 +396,7 @@ def _seam(seam: Seam, style: Style, size: float) -> Curves:
     return Curves(seam.pieces, ink, "seam")
 
 
-def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
+def _strokes(stroke: Stroke, size: float, fills: Mapping[str, str]) -> Iterator[Area | Curves]:
     style = stroke.style
     if stroke.role != "drawing":
         ink = Ink(themes.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
@@ -398,6 +406,7 @@ def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     if stroke.over is not None:
         color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
     if stroke.is_area:
+        color = style.color or fills.get(stroke.path, color)
         yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
         return
     if stroke.faces:

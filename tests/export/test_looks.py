@@ -459,11 +459,12 @@ def test_shade_ends_where_it_is_said() -> None:
     assert "url(" not in written(".svg", program, theme="ink").data.decode()
 
 
-@pytest.mark.parametrize("color", ["gold", "skyblue"])
+@pytest.mark.parametrize("color", ["gold", "skyblue", "#a7bcd6"])
 def test_an_area_of_a_solid_may_have_an_outline_of_its_own(color: str) -> None:
-    said = f'@color("{color}")' if color != "skyblue" else ""
+    said = f'@color("{color}")' if color == "gold" else ""
+    body = '@color("skyblue")' if color != "#a7bcd6" else ""
     text = f"""
-    @color("skyblue") solid plate {{
+    {body} solid plate {{
         body = rectangle(center: fixed((0, 0)), width: 90, height: 60)
         {said} @stroke(3mm) disc = circle(center: fixed((20, 10)), radius: 9)
     }}
