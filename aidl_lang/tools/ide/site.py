@@ -14,7 +14,7 @@ from aidl_lang.parser import Parsed, parse, standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import END, UNKNOWN, Token, Tokens
-from aidl_lang.tools.ide.workspace import View, look_at
+from aidl_lang.tools.ide.workspace import View, look
 
 # --- Finds the nodes and the token at an offset.
 
@@ -236,7 +236,7 @@ def site_at(view: View, spot: Spot) -> EditSite:
     best = _filled(site)
     if best is None:
         return site
-    filled = look_at(view.path, best, view.world)
+    filled = look(view.path, best, view.world)
     path = around(filled.module, spot.start + 1)
     return EditSite(view, spot, automaton, filled, tuple(path))
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.imports import SUFFIX, ImportedDrawing, digest
+from aidl_lang.checking.imports import SUFFIX, digest
 from aidl_lang.checking.symbols import Resolution, audible
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
@@ -111,9 +111,7 @@ def applied(text: str, edits: Iterable[Edit]) -> str:
 def between(source: SourceFile, text: str) -> list[Edit]:
     """Returns the edits, by whole lines, from one text to another."""
     old, new = source.text.splitlines(keepends=True), text.splitlines(keepends=True)
-    starts = [0]
-    for line in old:
-        starts.append(starts[-1] + len(line))
+    starts = list(accumulate(map(len, old), initial=0))
     changes = SequenceMatcher(a=old, b=new, autojunk=False).get_opcodes()
     return [
         Edit(Span(source, starts[i], starts[j]), "".join(new[k:m]))
@@ -181,7 +179,6 @@ class View:
     """
 
     path: Path
-    source: SourceFile
     world: World
     program: Program
     found: list[Diagnostic]
@@ -192,6 +189,10 @@ class View:
     @property
     def module(self) -> ast.Module:
         return self.program.main
+
+    @property
+    def source(self) -> SourceFile:
+        return self.program.main.source
 
     @property
     def resolution(self) -> Resolution:
@@ -209,26 +210,17 @@ class View:
         """True if the picture is that of another text."""
         return self.drawn is not self.outcome
 
-    @cached_property
-    def _library(self) -> frozenset[SourceFile]:
-        return frozenset(self.program.library.sources)
-
     def is_library(self, source: SourceFile) -> bool:
-        return source in self._library or source in self.resolution.drawings
+        return source in self.resolution.standard_sources
 
     def file(self, source: SourceFile) -> Path | None:
         """Returns the file of a source; None for a built-in one."""
         if source is self.source:
             return self.path
-        if source in self.resolution.drawings:
-            return self.path.parent / source.name
-        if self.is_library(source):
+        if source in self.program.library.sources:
             return resources.resource(source.name)
-        return self.path.parent / source.name if source in self._files else None
-
-    @cached_property
-    def _files(self) -> frozenset[SourceFile]:
-        return frozenset(module.source for module in self.program.resolution.modules)
+        is_imported = any(module.source is source for module in self.resolution.modules)
+        return self.path.parent / source.name if is_imported or self.is_library(source) else None
 
     @cached_property
     def params_written(self) -> Mapping[Span, ast.Param]:
@@ -250,15 +242,10 @@ def hasty(settings: Settings = SETTINGS) -> Settings:
     return replace(settings, solving=replace(settings.solving, explain=False))
 
 
-def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
-    """Checks a program. Never raises for its contents."""
-    source = SourceFile(path.name, text)
-    return View(path, source, world, *pipeline.front(source, world, settings))
-
-
-def look_at(path: Path, parsed: Parsed, world: World) -> View:
-    """Checks a program that is parsed."""
-    return View(path, parsed.module.span.source, world, *pipeline.front(parsed, world, SETTINGS))
+def look(path: Path, text: str | Parsed, world: World, settings: Settings = SETTINGS) -> View:
+    """Checks a program, parsed or not. Never raises for its contents."""
+    read = SourceFile(path.name, text) if isinstance(text, str) else text
+    return View(path, world, *pipeline.front(read, world, settings))
 
 
 def run(
@@ -320,22 +307,16 @@ class Project:
         """True if all that a program imports could be read, and is unchanged."""
         resolution = view.resolution
         imports = (s for m in resolution.modules for s in m.statements if isinstance(s, ast.Import))
-        return (
-            all(statement in resolution.imports for statement in imports)
-            and all(self._says(view, module) for module in resolution.modules if module is not view.module)
-            and all(self._holds(view, drawing) for drawing in resolution.drawings.values())
-        )
-
-    def _holds(self, view: View, drawing: ImportedDrawing) -> bool:
+        others = (module.source for module in resolution.modules if module is not view.module)
+        files = ((source, view.file(source)) for source in others)
         try:
-            return digest(view.world.read_bytes(drawing.module.source.name)) == drawing.digest
-        except FileError:
-            return False
-
-    def _says(self, view: View, module: ast.Module) -> bool:
-        file = view.file(module.source)
-        try:
-            return file is not None and self.workspace.text(file) == module.source.text
+            return (
+                all(statement in resolution.imports for statement in imports)
+                and all(file and self.workspace.text(file) == source.text for source, file in files)
+                and all(
+                    digest(view.world.read_bytes(s.name)) == d.digest for s, d in resolution.drawings.items()
+                )
+            )
         except FileError:
             return False
 
