@@ -6,19 +6,18 @@ from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
 
 from aidl_lang.building.model import Knob
-from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import fold
-from aidl_lang.common.prose import counted, first_few, fixed
+from aidl_lang.common.prose import counted, first_few, fixed, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import ConstraintReport, Motion, Scalar, SolvedModel, SolvedStructure
-from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools import ends
 from aidl_lang.tools.ends import Sweep, Turned, valued
-from aidl_lang.tools.ide.guesses import Guess, guesses, number_for
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.guesses import Guess, factor, guesses, number_for
+from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.ranges import Ranges, Walk, ranges, sentence
 
 # --- Inlay hints: the solved values of first guesses, the chosen meaning of an ambiguous call, and values of
@@ -46,10 +45,10 @@ class Inlay:
 
 
 def inlays(view: View, span: Span | None = None) -> list[Inlay]:
-    """Returns the hints in a part of the text, or in all of it; none while another text is drawn."""
-    if view.outcome is None or view.outcome.model is None or view.is_stale:
+    """Returns the hints in a part of the text, or in all of it; none before it is drawn."""
+    if view.solved is None:
         return []
-    found = [*_solved(view), *_readings(view), *_set_from_outside(view)]
+    found = [*_solved(view), *_readings(view, view.solved.model), *_set_from_outside(view, view.solved)]
     wanted = (i for i in found if span is None or span.start <= i.offset <= span.end)
     return sorted(wanted, key=lambda inlay: inlay.offset)
 
@@ -70,10 +69,8 @@ def _told(guess: Guess) -> str:
     return f"`{guess.path}`{many}: {kind}, written as {written} and solved to {solved}{guess.behind}"
 
 
-def _readings(view: View) -> Iterator[Inlay]:
-    assert view.outcome is not None
-    assert view.outcome.model is not None
-    for reading in view.outcome.model.readings:
+def _readings(view: View, model: SolvedModel) -> Iterator[Inlay]:
+    for reading in model.readings:
         if reading.span.source is view.source:
             about = (
                 f"`{reading.span.one_line}` has several meanings. By what is written it is {reading.text}."
@@ -81,20 +78,18 @@ def _readings(view: View) -> Iterator[Inlay]:
             yield Inlay(reading.span.end, reading.text, InlayKind.READING, about)
 
 
-def _set_from_outside(view: View) -> Iterator[Inlay]:
+def _set_from_outside(view: View, solved: Solved) -> Iterator[Inlay]:
     """Yields the `param` values given to a run, if they differ from the text."""
-    assert view.outcome is not None
-    given = {fold(name.strip()) for name in view.params or ()}
-    values = {node.span: node.value for node in ast.walk(view.module) if isinstance(node, ast.Param)}
-    for knob in view.outcome.knobs if given else ():
-        value = values.get(knob.span) if knob.span is not None else None
-        root = view.outcome.model.root.path if view.outcome.model is not None else ""
-        if value is None or given.isdisjoint({fold(knob.path), fold(f"{root}.{knob.path}")}):
+    given, root = view.set_outside, solved.model.root.path
+    for knob in solved.outcome.knobs if given else ():
+        declared = view.declaration(knob) if _is_own(view, knob) else None
+        if declared is None or given.isdisjoint({fold(knob.path), fold(f"{root}.{knob.path}")}):
             continue
-        if _as_written(value) != knob.value:
+        if _as_written(declared.value) != knob.value:
             unit = f" {knob.unit}" if knob.unit else ""
             text = f"{_ARROW} {_shown(knob.value)}{unit}"
-            yield Inlay(value.span.end, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
+            place = declared.value.span.end
+            yield Inlay(place, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
@@ -102,21 +97,15 @@ def _as_written(node: ast.Expression) -> Scalar | None:
         case ast.String(value=value) | ast.Boolean(value=value):
             return value
         case ast.Number(value=value, unit=unit):
-            return value * (UNITS[unit][0] if unit else 1.0)
+            return value * factor(unit)
         case ast.Unary(operator="-", operand=ast.Number(value=value, unit=unit)):
-            return -value * (UNITS[unit][0] if unit else 1.0)
+            return -value * factor(unit)
         case _:
             return None
 
 
 def _shown(value: Scalar) -> str:
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return f'"{value}"'
-        case _:
-            return fixed(value, _DECIMALS)
+    return literal(value) if isinstance(value, bool | str) else fixed(value, _DECIMALS)
 
 
 # --- Lenses above params: the results of the program at the ends of their ranges and between, once tried.
@@ -194,10 +183,11 @@ def _title(turned: Sequence[Turned], walk: Walk | None, name: str) -> str:
     if said:
         return first_few(said, _NAMED, " · …", " · ")
     knob = turned[0].knob
-    if knob.low is None or knob.high is None or isinstance(knob.value, bool):
+    if knob.range is None or isinstance(knob.value, bool):
         return f"works with {' and '.join(valued(knob, each.value) for each in turned)}"
+    low, high = (valued(knob, end) for end in knob.range)
     throughout = ", one kind throughout" if walk is not None and walk.ok else ""
-    return f"works from {valued(knob, knob.low)} to {valued(knob, knob.high)}{throughout}"
+    return f"works from {low} to {high}{throughout}"
 
 
 # --- Lenses above structures: whether each solves, and its remaining motions.
@@ -217,14 +207,11 @@ class Lens:
 
 def lenses(view: View) -> list[Lens]:
     """Returns one lens for each structure of the solved text; none while it is being solved."""
-    outcome = view.outcome
-    if outcome is None or outcome.model is None:
-        return []
-    return list(_lenses(view, outcome, outcome.model))
+    return list(_lenses(view, view.solved)) if view.solved is not None else []
 
 
-def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]:
-    made: dict[Span, list[SolvedStructure]] = {}
+def _lenses(view: View, solved: Solved) -> Iterator[Lens]:
+    model, made = solved.model, dict[Span, list[SolvedStructure]]()
     for structure in model.root.walk():
         if structure.span is not None:
             made.setdefault(structure.span, []).append(structure)
@@ -234,20 +221,15 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
             title = _title_of_structure(found, motions, model.constraints)
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
-                title = f"{_status(outcome, model)} · {title.replace(_HELD, as_whole)}"
+                title = f"{_status(solved)} · {title.replace(_HELD, as_whole)}"
             yield Lens(node.name.span, title)
 
 
-def _status(outcome: Compiled, model: SolvedModel) -> str:
-    match outcome.status:
-        case "solved" if model.degrees is not None:
-            return f"solved, {counted(model.degrees, 'degree')} of freedom"
-        case "solved":
-            return "solved"
-        case "partial":
-            return "some constraints do not hold"
-        case _:
-            return "does not solve"
+def _status(solved: Solved) -> str:
+    degrees = solved.model.degrees
+    if solved.holds:
+        return "solved" if degrees is None else f"solved, {counted(degrees, 'degree')} of freedom"
+    return "some constraints do not hold" if solved.outcome.status == "partial" else "does not solve"
 
 
 def _title_of_structure(

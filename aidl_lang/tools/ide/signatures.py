@@ -202,8 +202,13 @@ class Reading:
         """True if no argument so far contradicts it."""
         return self.cost < _WRONG
 
-    def type_of(self, parameter: str) -> Type | None:
-        return next((kind for name, kind, _ in self.signature.parameters if name == parameter), None)
+    def filled_by(self, argument: int) -> str | None:
+        """Returns the parameter that an argument fills; None for one that is not there, or fills none."""
+        return self.taken[argument] if argument < len(self.taken) else None
+
+
+def type_of(signature: Signature, parameter: str | None) -> Type | None:
+    return next((kind for name, kind, _ in signature.parameters if name == parameter), None)
 
 
 def readings(program: Program, scope: SymbolScope, call: ast.Call) -> list[Reading]:
@@ -233,7 +238,7 @@ def _read(signature: Signature, words: Sequence[str | None], kinds: Sequence[Typ
         taken.append(name)
         if name is None and word is not None and (signature.takes_any or fold(word) in PAIRS):
             continue
-        wanted = next((k for n, k, _ in signature.parameters if n == name), None)
+        wanted = type_of(signature, name)
         gathered = word is None and _gathers(signature, words, kinds)
         distance = _GATHERED if gathered else accepts(wanted, kind) if wanted is not None else None
         cost += _WRONG if distance is None else distance
@@ -278,7 +283,6 @@ def _gathers(signature: Signature, words: Sequence[str | None], kinds: Sequence[
 class ParameterHelp:
     """`place` is its range in the label of its overload, in code points; `about` is Markdown."""
 
-    name: str
     place: tuple[int, int]
     about: str
 
@@ -291,7 +295,6 @@ class OverloadHelp:
     about: str
     parameters: tuple[ParameterHelp, ...]
     active: int | None
-    fits: bool
 
 
 @record()
@@ -365,7 +368,7 @@ def _parameter(reading: Reading, argument: int) -> int | None:
     names = [name for name, _, _ in reading.signature.parameters]
     if argument >= len(reading.taken):
         return next((n for n, name in enumerate(names) if name not in reading.taken), None)
-    taken = reading.taken[argument]
+    taken = reading.filled_by(argument)
     return names.index(taken) if taken in names else None
 
 
@@ -373,8 +376,8 @@ def _told(reading: Reading, argument: int) -> OverloadHelp:
     signature = reading.signature
     label = label_of(signature)
     parameters = tuple(
-        ParameterHelp(name, place, of_parameter(signature, name))
+        ParameterHelp(place, of_parameter(signature, name))
         for (name, _, _), place in zip(signature.parameters, label.parameters, strict=True)
     )
     about = of_doc(doc_of(signature))
-    return OverloadHelp(label.text, about, parameters, _parameter(reading, argument), reading.fits)
+    return OverloadHelp(label.text, about, parameters, _parameter(reading, argument))

@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang import pipeline
+from aidl_lang.building.expression import Evaluator
+from aidl_lang.building.model import Knob, Model
 from aidl_lang.checking.imports import SUFFIX, digest
 from aidl_lang.checking.symbols import Resolution, audible
 from aidl_lang.common import resources
@@ -22,6 +24,8 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, normalize
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import Parsed
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.hierarchy import Memory
@@ -167,6 +171,30 @@ SETTINGS = Settings()
 
 
 @record(eq=False)
+class Solved:
+    """An outcome that has a picture, with all that this was made of."""
+
+    outcome: Compiled
+    model: SolvedModel
+    drawing: Drawing
+    built: Model
+    evaluate: Evaluator
+
+    @property
+    def holds(self) -> bool:
+        return self.outcome.status == "solved"
+
+
+def solved(outcome: Compiled | None) -> Solved | None:
+    """Returns an outcome with what it is made of; None if it was wrong before it was solved."""
+    if outcome is None or outcome.model is None or outcome.drawing is None:
+        return None
+    if outcome.built is None or outcome.evaluate is None:
+        return None
+    return Solved(outcome, outcome.model, outcome.drawing, outcome.built, outcome.evaluate)
+
+
+@record(eq=False)
 class View:
     """A text of a program, checked and perhaps run.
 
@@ -206,6 +234,16 @@ class View:
         return audible(self.found, self.program.resolution.allowances)
 
     @property
+    def solved(self) -> Solved | None:
+        """What the outcome of this very text was made of; None without a picture."""
+        return solved(self.outcome)
+
+    @property
+    def set_outside(self) -> frozenset[str]:
+        """The names, folded, of the params that were set from outside."""
+        return frozenset(fold(name.strip()) for name in self.params or ())
+
+    @property
     def is_stale(self) -> bool:
         """True if the picture is that of another text."""
         return self.drawn is not self.outcome
@@ -223,10 +261,13 @@ class View:
         return self.path.parent / source.name if is_imported or self.is_library(source) else None
 
     @cached_property
-    def params_written(self) -> Mapping[Span, ast.Param]:
-        """The params of the text and of the files that it imports, by their places."""
+    def _params(self) -> Mapping[Span | None, ast.Param]:
         nodes = (node for module in self.resolution.modules for node in ast.walk(module))
         return {node.span: node for node in nodes if isinstance(node, ast.Param)}
+
+    def declaration(self, knob: Knob) -> ast.Param | None:
+        """Returns the declaration of a param in the text or a file that it imports; None in the library."""
+        return self._params.get(knob.span)
 
     @cached_property
     def tokens(self) -> Tokens:

@@ -26,12 +26,6 @@ _HALVES = re.compile("[\ud800-\udfff]")
 
 
 @record(eq=False)
-class _Waiting:
-    is_there: Callable[[], bool]
-    ready: asyncio.Future[None]
-
-
-@record(eq=False)
 class VersionedView:
     """A view with the version and the serial of its text."""
 
@@ -68,7 +62,7 @@ class Document:
     is_open: bool = True
     memory: Memory = field(default_factory=Memory)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
-    _waiting: list[_Waiting] = field(default_factory=list)
+    _waiting: list[tuple[Callable[[], bool], asyncio.Future[None]]] = field(default_factory=list)
 
     async def until_seen(self, serial: int) -> None:
         """Returns when the text at a serial, or a newer one, was looked at, or when it is closed."""
@@ -80,16 +74,17 @@ class Document:
 
     async def _until(self, is_there: Callable[[], bool], seconds: float | None) -> None:
         if self.is_open and not is_there():
-            waiting = _Waiting(is_there, asyncio.get_running_loop().create_future())
-            self._waiting.append(waiting)
-            await asyncio.wait([waiting.ready], timeout=seconds)
+            ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting.append((is_there, ready))
+            await asyncio.wait([ready], timeout=seconds)
 
     def tell(self) -> None:
         """Wakes those who wait for the present state."""
         for waiting in list(self._waiting):
-            if waiting.is_there() or not self.is_open:
+            is_there, ready = waiting
+            if is_there() or not self.is_open:
                 self._waiting.remove(waiting)
-                waiting.ready.set_result(None)
+                ready.set_result(None)
 
     def apply(self, changes: Sequence[types.TextDocumentContentChangeEvent], unit: Unit) -> None:
         """Changes the text. Ranges that do not exist mean the nearest that do."""
@@ -204,13 +199,15 @@ START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 @record(eq=False)
 class Converter:
-    """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
+    """Converts for the view of the document `own`; `versions` are those of the open files at that time, None
+    for a client that knows of none.
+    """
 
     view: View
     own: str
     documents: Documents
     unit: Unit
-    versions: Mapping[Path, int] = field(default_factory=dict)
+    versions: Mapping[Path, int] | None
     _positions: dict[SourceFile, Positions] = field(default_factory=dict)
 
     def _of(self, source: SourceFile) -> Positions:
@@ -253,28 +250,22 @@ class Converter:
     def edits(self, edits: Iterable[Edit]) -> list[types.TextEdit]:
         return [self.edit(edit) for edit in edits]
 
-    def by_file(self, edits: Iterable[Edit]) -> dict[Path, list[Edit]]:
-        """Groups edits by file; drops those without a file."""
+    def change(self, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+        """Returns edits of the program, without those that are in no file."""
         found: dict[Path, list[Edit]] = {}
         for edit in edits:
             if (path := self.view.file(edit.span.source)) is not None:
                 found.setdefault(path, []).append(edit)
-        return found
+        return self.changes(found)
 
-    def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
+    def changes(self, edits: Mapping[Path, Sequence[Edit]]) -> types.WorkspaceEdit:
         """Returns edits by file; where the client knows of versions, with the version they are made for."""
         made = {path: self.edits(each) for path, each in edits.items()}
-        if not with_versions:
+        if self.versions is None:
             return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})
-        return types.WorkspaceEdit(
-            document_changes=[
-                types.TextDocumentEdit(
-                    types.OptionalVersionedTextDocumentIdentifier(self.uri_of(path), self.versions.get(path)),
-                    each,
-                )
-                for path, each in made.items()
-            ]
-        )
+        named = types.OptionalVersionedTextDocumentIdentifier
+        files = ((named(self.uri_of(p), self.versions.get(p)), each) for p, each in made.items())
+        return types.WorkspaceEdit(document_changes=[types.TextDocumentEdit(*each) for each in files])
 
 
 # --- Publishes diagnostics to the client, for each file.
@@ -317,8 +308,7 @@ def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -
 
 def worded(diagnostic: Diagnostic) -> str:
     """Returns the message and the hints, line by line."""
-    said = [diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]
-    return "\n".join(said)
+    return "\n".join([diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)])
 
 
 def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.DiagnosticRelatedInformation]:

@@ -14,8 +14,6 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token, kind_of
 from aidl_lang.tools.ide.guesses import guesses
 from aidl_lang.tools.ide.hover.solved_values import (
-    Solved,
-    compared,
     constraint_lines,
     lines,
     number_text,
@@ -31,9 +29,10 @@ from aidl_lang.tools.ide.signatures import (
     of_comment,
     of_parameter,
     of_public,
+    type_of,
 )
 from aidl_lang.tools.ide.site import Where, around, spot_at, token_at
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
 
@@ -85,7 +84,7 @@ def _compared(view: View, token: Token) -> str:
     if solved is None:
         return not_solved(view)
     sides = [(side.span.one_line, solved.values(side, path)) for side in node.operands]
-    return joined([stated_at(view, node, path), listed(compared(solved, sides))])
+    return joined([stated_at(view, node, path), listed(lines(solved, *sides))])
 
 
 def of_attribute(view: View, offset: int) -> Hover | None:
@@ -143,10 +142,11 @@ def not_solved(view: View) -> str:
 
 
 def failed(solved: Solved) -> str:
-    model = solved.outcome.model
-    if model is None or model.status == "solved":
-        return ""
-    return "*The constraints do not hold together: this is where the solver came nearest.*"
+    return (
+        ""
+        if solved.holds
+        else "*The constraints do not hold together: this is where the solver came nearest.*"
+    )
 
 
 def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
@@ -171,8 +171,7 @@ _VALUES = frozenset(SymbolKind) - {
 
 
 def hover(view: View, offset: int) -> Hover | None:
-    spot = spot_at(view, offset)
-    if spot.where in (Where.COMMENT, Where.STRING):
+    if spot_at(view, offset).where in (Where.COMMENT, Where.STRING):
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
@@ -236,14 +235,12 @@ def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
     found = solved.values(node, _body_path(mention, path))
     if mention.symbol.kind is SymbolKind.LOOP:
         found = [replace(each, label="") for each in found]  # it would repeat the value
-    told = lines(solved, _shown_name(node), found)
+    is_whole = isinstance(node, ast.Member | ast.Index)
+    name = node.span.one_line if is_whole else getattr(node, "text", "value")
+    told = lines(solved, (name, found))
     if mention.symbol.kind is SymbolKind.PARAM and isinstance(mention.symbol.node, ast.Param):
         told = [line.replace(", exact (param)", ", param") for line in told]
     return joined([listed(told), _range(mention.symbol), failed(solved)])
-
-
-def _shown_name(node: ast.Expression) -> str:
-    return node.span.one_line if isinstance(node, ast.Member | ast.Index) else getattr(node, "text", "value")
 
 
 def _expression(mention: Mention) -> ast.Expression | None:
@@ -295,8 +292,8 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
     signature = chosen(view, call) if call is not None else None
     if signature is None:
         return ""
-    kind = next((k for name, k, _ in signature.parameters if name == symbol.name), None)
     node = parameter_node(signature, symbol.name)
+    kind = type_of(signature, symbol.name)
     shown = node.span.one_line if node is not None else f"{symbol.name}: {kind}"
     head_line = fenced(f"{signature.name}(… {shown} …)")
     return joined([head_line, of_parameter(signature, symbol.name), _given(view, argument, path)])
@@ -312,8 +309,5 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     name = ast.Name(made.name.text, span=made.name.span)
     field = ast.Member(name, argument.name, span=argument.name.span)
     found = solved.values(field, path[: path.index(made)])
-    told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
+    told = lines(solved, (f"{made.name.text}.{argument.name.text}", found))
     return joined([listed(told), failed(solved)])
-
-
-__all__ = ["Hover", "hover"]

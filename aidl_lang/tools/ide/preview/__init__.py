@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.expression import Evaluator, Expression, Unknown, add, sub
@@ -23,7 +23,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.hierarchy import Memory
-from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
+from aidl_lang.tools.ide.dragging import Handle, handles
+from aidl_lang.tools.ide.dragging.mobility import grips, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,
     LAYERS,
@@ -33,15 +34,13 @@ from aidl_lang.tools.ide.preview.elements import (
     Preview,
     Turn,
     Way,
-    Writer,
     box_of,
     curves_of,
     elements,
-    elements_at,
     point_of,
 )
-from aidl_lang.tools.ide.preview.sliders import conflicts, problems, set_knob, sliders, worked_out
-from aidl_lang.tools.ide.workspace import SETTINGS, View, hasty, run
+from aidl_lang.tools.ide.preview.sliders import conflicts, problems, sliders
+from aidl_lang.tools.ide.workspace import SETTINGS, Solved, View, hasty, run, solved
 
 # --- The remaining motions as arrows and arcs on the drawing.
 #
@@ -64,15 +63,12 @@ _SLOW = 1e-3
 """Part of the greatest speed below which a point counts as still."""
 
 
-def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
+def ways(solved: Solved, elements: Elements) -> Iterator[Way]:
     """Yields the remaining motions of a solved model."""
-    model = outcome.model
-    if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
-        return
-    motions = model.motions[:MOST]
+    motions = solved.model.motions[:MOST]
     if not motions:
         return
-    flow = _Flow(outcome.built, outcome.evaluate, outcome.drawing.size)
+    flow = _Flow(solved.built, solved.evaluate, solved.drawing.size)
     for motion in motions:
         things = list(_things(flow, motion, elements))
         fastest = max((math.hypot(*v) for thing in things for v in thing.velocities), default=0.0)
@@ -280,9 +276,8 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
 
 def _numbered(group: Group, elements: Elements) -> Group:
     number = elements.number.get(group.attributes.get("data-path", ""))
-    if number is None:
-        return group
-    return replace(group, attributes={**group.attributes, "data-element": str(number)})
+    more = {} if number is None else {"data-element": str(number)}
+    return replace(group, attributes={**group.attributes, **more})
 
 
 @record()
@@ -309,9 +304,11 @@ def hits(drawing: Drawing, elements: Elements) -> Iterator[PointedShape]:
         checkpoint()
         of_body[_body_of(drawn, bodies)].append((number, drawn))
     for members in of_body:
-        yield from _large_first(members, lambda k, drawn: _area(k, drawn, drawing))
-        yield from _large_first(members, lambda k, drawn: _lines(k, drawn, elements))
-        yield from _large_first(members, lambda k, drawn: _drawn_dot(k, drawn, POINT * drawing.size))
+        areas = [_area(number, drawn, drawing) for number, drawn in members]
+        lines = [_lines(number, drawn, elements) for number, drawn in members]
+        dots = [_dot(number, drawn, POINT * drawing.size) for number, drawn in members]
+        for found in (areas, lines, dots):
+            yield from sorted(filter(None, found), key=lambda hit: -hit.extent)
 
 
 def _body_of(drawn: DrawnElement, bodies: Mapping[str, int]) -> int:
@@ -322,13 +319,6 @@ def _body_of(drawn: DrawnElement, bodies: Mapping[str, int]) -> int:
             return bodies[path]
         path = path.rpartition(".")[0]
     return len(bodies)
-
-
-def _large_first(
-    members: Iterable[tuple[int, DrawnElement]], shape: Callable[[int, DrawnElement], PointedShape | None]
-) -> list[PointedShape]:
-    found = (hit for number, drawn in members if (hit := shape(number, drawn)) is not None)
-    return sorted(found, key=lambda hit: -hit.extent)
 
 
 def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | None:
@@ -352,7 +342,7 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
     return PointedShape(number, open_path(pieces), extent(pieces)) if pieces else None
 
 
-def _drawn_dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
+def _dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
 
@@ -373,9 +363,9 @@ def preview(
     """
     assert view.outcome is not None, "the view was not run"
     found = elements(view)
-    drawn = view.drawn
+    drawn = solved(view.drawn)
     has_picture = drawn is not None and _is_anything_drawn(drawn)
-    svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
+    svg, unpainted = _painted(drawn.outcome, found, show) if drawn is not None and has_picture else (None, ())
     # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
     is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
     return Preview(
@@ -384,14 +374,14 @@ def preview(
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
         svg=svg,
-        box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
+        box=drawn.drawing.box if drawn is not None else _NOWHERE,
         elements=found.values,
         knobs=tuple(sliders(view)),
         handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found, unpainted, tried=tried)),
         conflicts=tuple(conflicts(view, found)),
-        motions=tuple(ways(view.outcome, found)) if FREEDOM in show and not view.is_stale else (),
-        degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
+        motions=tuple(ways(view.solved, found)) if FREEDOM in show and view.solved is not None else (),
+        degrees=view.solved.model.degrees if view.solved is not None else None,
     )
 
 
@@ -411,18 +401,16 @@ def with_handles(made: Preview, view: View) -> Preview:
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
-    outcome, wanted = view.outcome, {handle.id: handle for handle in known}
-    if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
+    solved, wanted = view.solved, {handle.id: handle for handle in known}
+    if solved is None or not wanted:
         return
-    for grip in grips(outcome.built):
-        if grip.id in wanted and is_somewhere(at := grip.at(outcome.evaluate)):
+    for grip in grips(solved.built):
+        if grip.id in wanted and is_somewhere(at := grip.at(solved.evaluate)):
             yield replace(wanted[grip.id], at=at)
 
 
-def _is_anything_drawn(outcome: Compiled) -> bool:
-    if outcome.model is None or outcome.drawing is None:
-        return False
-    return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
+def _is_anything_drawn(drawn: Solved) -> bool:
+    return bool(drawn.drawing.bodies or drawn.drawing.strokes or drawn.model.root.box)
 
 
 def tried(
@@ -436,18 +424,3 @@ def tried(
     """Returns the view with other params; failures are explained if what changes them `rests`."""
     how = settings if rests else hasty(settings)
     return run(view, view, memory, {**(view.params or {}), **knobs}, how)
-
-
-# --- The preview beside the text: the drawing with its places in the text, sliders, problems.
-
-__all__ = [
-    "LAYERS",
-    "Preview",
-    "Writer",
-    "elements_at",
-    "preview",
-    "set_knob",
-    "tried",
-    "with_handles",
-    "worked_out",
-]

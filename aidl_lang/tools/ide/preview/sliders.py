@@ -32,8 +32,7 @@ def sliders(view: View) -> Iterator[Slider]:
     if not known and view.is_stale and view.drawn is not None:
         known = view.drawn.knobs
     for knob in known:
-        declared = _declaration(view, knob)
-        span = declared.value.span if declared is not None else None
+        declared = view.declaration(knob)
         yield Slider(
             knob.path,
             knob.path.rpartition(".")[2],
@@ -45,7 +44,7 @@ def sliders(view: View) -> Iterator[Slider]:
             knob.step if declared is None or knob.step is not None else _step(knob, declared.value),
             knob.choices,
             knob.doc or "",
-            span if span is not None else places.now(knob.span),
+            declared.value.span if declared is not None else places.now(knob.span),
             declared is not None and _is_literal(declared.value),
         )
 
@@ -53,8 +52,8 @@ def sliders(view: View) -> Iterator[Slider]:
 def set_knob(view: View, path: str, value: Value) -> list[Edit]:
     """Returns the edits that make a value, or a text's worth, a param's default. Raises RefusalError."""
     knob = _knob(view, path)
-    declared = _declaration(view, knob)
-    if declared is None or knob.span is None:
+    declared = view.declaration(knob)
+    if declared is None:
         raise refusal("E0945", f"`{knob.path}` is declared in the library, and cannot be changed there")
     if not _is_literal(declared.value):
         written = declared.value.span.one_line
@@ -68,9 +67,8 @@ def set_knob(view: View, path: str, value: Value) -> list[Edit]:
 
 def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
     """Returns values of params with texts for numbers worked out. Raises RefusalError for an invalid one."""
-    found: dict[str, Value] = {}
+    found = dict(values)
     for path, value in values.items():
-        found[path] = value
         if isinstance(value, str) and _is_typed(knob := _knob(view, path), value):
             found[path] = _worked_out(knob, value)
             _require_allowed(knob, found[path])
@@ -93,26 +91,19 @@ def _require_allowed(knob: Knob, value: Value) -> None:
     if _is_allowed(knob, value):
         return
     said = f"{value:.6g}" if isinstance(value, float) else str(value)
-    if knob.low is None or knob.high is None:
-        raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is none of its choices")
-    allowed = f"{knob.low:.6g}..{knob.high:.6g}"
-    unit = f" {knob.unit}" if knob.unit else ""
-    raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is outside its range {allowed}{unit}")
+    why = "none of its choices"
+    if knob.range is not None:
+        low, high = knob.range
+        why = f"outside its range {low:.6g}..{high:.6g}" + (f" {knob.unit}" if knob.unit else "")
+    raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is {why}")
 
 
 def _require_sense(view: View, edits: list[Edit]) -> None:
     """Raises RefusalError if the text could no longer be built, as with a length where a number was."""
-    again = edited(view, edits, hasty()).outcome
-    before = view.outcome
-    if again is None or before is None or again.model is not None or before.model is None:
-        return
+    again = edited(view, edits, hasty())
     wrong = next((found for found in again.diagnostics if found.is_error), None)
-    if wrong is not None:
+    if wrong is not None and view.solved is not None and again.solved is None:
         raise refusal("E0945", f"the program cannot be built with this: {wrong.message}")
-
-
-def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    return None if knob.span is None else view.params_written.get(knob.span)
 
 
 def _is_literal(node: ast.Expression) -> bool:
@@ -135,10 +126,11 @@ def _kind(knob: Knob) -> str:
 def _is_allowed(knob: Knob, value: Value) -> bool:
     if knob.choices:
         return value in knob.choices
-    if not isinstance(value, float | int) or knob.low is None or knob.high is None:
+    if not isinstance(value, float | int) or knob.range is None:
         return True  # what does not fit at all is told by what writes it
-    slack = _SLACK * max(1.0, abs(knob.low), abs(knob.high))
-    return math.isfinite(value) and knob.low - slack <= value <= knob.high + slack
+    low, high = knob.range
+    slack = _SLACK * max(1.0, abs(low), abs(high))
+    return math.isfinite(value) and low - slack <= value <= high + slack
 
 
 # --- Problems on the drawing, each with its elements and points.
@@ -170,16 +162,12 @@ def conflicts(view: View, elements: Elements) -> Iterator[Conflict]:
         return
     finder = _Finder(view, elements)
     for conflict in view.outcome.conflicts():
-        parties = tuple(
-            Party(
-                party.text,
-                party.span,
-                tuple(finder.related(party.span, party.path)),
-                party.off if math.isfinite(party.off) else None,
-            )
-            for party in conflict.parties
-        )
-        yield Conflict(conflict.headline, parties)
+        parties = []
+        for party in conflict.parties:
+            found = tuple(finder.related(party.span, party.path))
+            off = party.off if math.isfinite(party.off) else None
+            parties.append(Party(party.text, party.span, found, off))
+        yield Conflict(conflict.headline, tuple(parties))
 
 
 class _Finder:

@@ -23,14 +23,7 @@ from aidl_lang.tools.ide.outline import (
     spellings,
 )
 from aidl_lang.tools.ide.preview.elements import alike
-from aidl_lang.tools.ide.references import (
-    definitions,
-    highlights,
-    links,
-    references,
-    rename,
-    renameable,
-)
+from aidl_lang.tools.ide.references import definitions, highlights, links, references, rename, renameable
 from aidl_lang.tools.ide.workspace import format_document, format_range
 from aidl_lang.tools.lsp.documents import Converter, Document
 from aidl_lang.tools.lsp.server import Asked, Server
@@ -40,9 +33,6 @@ from aidl_lang.tools.lsp.server import Asked, Server
 _KIND = {
     SymbolKind.PARAM: types.SymbolKind.Constant,
     SymbolKind.LET: types.SymbolKind.Constant,
-    SymbolKind.VAR: types.SymbolKind.Variable,
-    SymbolKind.LOOP: types.SymbolKind.Variable,
-    SymbolKind.ARGUMENT: types.SymbolKind.Variable,
     SymbolKind.GEOMETRY: types.SymbolKind.Field,
     SymbolKind.STRUCTURE: types.SymbolKind.Class,
     SymbolKind.FUNCTION: types.SymbolKind.Function,
@@ -106,7 +96,7 @@ def _rename(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | N
     if view is None:
         return None
     made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
-    return asked.convert.changes(made, asked.can("workspace.workspace_edit.document_changes"))
+    return asked.convert.changes(made)
 
 
 def _outline(
@@ -123,17 +113,21 @@ def _outline(
         types.SymbolInformation(
             types.Location(asked.uri, asked.convert.range(entry.span)),
             entry.name,
-            _KIND.get(entry.kind, types.SymbolKind.Variable),
+            _kind(entry),
             container_name=container or None,
         )
         for entry, container in flat
     ]
 
 
+def _kind(entry: Entry) -> types.SymbolKind:
+    return _KIND.get(entry.kind, types.SymbolKind.Variable)
+
+
 def _symbol(entry: Entry, convert: Converter) -> types.DocumentSymbol:
     return types.DocumentSymbol(
         name=entry.name or " ",
-        kind=_KIND.get(entry.kind, types.SymbolKind.Variable),
+        kind=_kind(entry),
         range=convert.range(entry.span),
         selection_range=convert.range(entry.name_span),
         detail=entry.detail,
@@ -148,12 +142,9 @@ def _search(server: Server, query: str) -> list[types.WorkspaceSymbol]:
         if view is None:
             continue  # gone just now
         convert = server.converter(view)
-        uri = server.documents.uri_of(found.path)
-        place = types.Location(uri, convert.range(found.entry.name_span))
-        kind = _KIND.get(found.entry.kind, types.SymbolKind.Variable)
-        made.append(
-            types.WorkspaceSymbol(place, found.entry.name, kind, container_name=found.container or None)
-        )
+        place = types.Location(server.documents.uri_of(found.path), convert.range(found.entry.name_span))
+        kind, around = _kind(found.entry), found.container or None
+        made.append(types.WorkspaceSymbol(place, found.entry.name, kind, container_name=around))
     return made
 
 
@@ -217,9 +208,7 @@ class _Tokens:
 
 def _tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
     wanted = asked.convert.span(params.range)
-    found = [
-        c for c in semantic_tokens(asked.view) if c.span.start < wanted.end and c.span.end > wanted.start
-    ]
+    found = [c for c in semantic_tokens(asked.view) if c.span.overlaps(wanted)]
     return types.SemanticTokens(_encoded(found, asked.convert))
 
 
@@ -271,13 +260,12 @@ def _format_range(asked: Asked, params: types.DocumentRangeFormattingParams) -> 
 
 
 def _colors(asked: Asked, params: types.DocumentColorParams) -> list[types.ColorInformation]:
-    made = []
-    for color in colors(asked.view):
-        red, green, blue = (part / 255 for part in color.rgb)
-        made.append(
-            types.ColorInformation(asked.convert.range(color.span), types.Color(red, green, blue, alpha=1.0))
+    return [
+        types.ColorInformation(
+            asked.convert.range(color.span), types.Color(*(p / 255 for p in color.rgb), 1.0)
         )
-    return made
+        for color in colors(asked.view)
+    ]
 
 
 def _spellings(asked: Asked, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:

@@ -9,10 +9,8 @@ from typing import Any, TypeVar
 from uuid import uuid4
 
 from lsprotocol import types
-from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
 
-from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.running import Cancelled
 from aidl_lang.tools.ends import described
 from aidl_lang.tools.ide.actions import Action, actions
@@ -81,13 +79,7 @@ class Ends:
 
     async def _workable(self, uri: object) -> tuple[Document, VersionedView]:
         """Returns a document as it was run, if its params can be tried."""
-        document = self._server.documents.get(uri) if isinstance(uri, str) else None
-        if document is None:
-            raise JsonRpcInvalidParams("this document is not open")
-        await document.until_solved(document.serial, _LONGEST)
-        known = document.ran
-        if known is None or known.version != document.version:
-            raise JsonRpcContentModified("the text has changed")
+        document, known = await self._server.solved_text(uri, _LONGEST)
         if not can_be_tried(known.view):
             raise JsonRpcException(_NOTHING, FAILED)
         return document, known
@@ -117,7 +109,7 @@ class Ends:
     async def _progress(self) -> Callable[[int, int], None]:
         """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
         server = self._server
-        if not get_capability(server.client_capabilities, "window.work_done_progress", False):
+        if not server.can("window.work_done_progress"):
             return lambda done, count: None
         token = str(uuid4())
         await server.work_done_progress.create_async(token)
@@ -218,7 +210,6 @@ _KINDS = (
     types.CodeActionKind.RefactorRewrite,
     types.CodeActionKind.SourceFixAll,
 )
-_VERSIONED = "workspace.workspace_edit.document_changes"
 
 
 def register_actions(server: Server) -> None:
@@ -240,8 +231,7 @@ def register_actions(server: Server) -> None:
     @server.command("aidl.applyFixes")
     async def apply_fixes(*arguments: Any) -> bool:
         """Applies the fixes of a document, for clients that have commands and no code actions."""
-        document = server.documents.get(arguments[0]) if arguments and isinstance(arguments[0], str) else None
-        asked = await server.asked(document) if document is not None else None
+        asked = await server.asked(server.document(arguments[0] if arguments else None))
         if asked is None:
             raise JsonRpcInvalidParams("this document is not open")
         changes = await server.answers.ask(lambda: _all_fixes(asked))
@@ -253,7 +243,7 @@ def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
     whole = len(asked.view.source.text)
     for action in actions(asked.view, 0, whole):
         if action.kind == types.CodeActionKind.SourceFixAll.value:
-            return _edit(asked, action.make())
+            return asked.convert.change(action.make())
     raise JsonRpcException("there is nothing to fix", FAILED)
 
 
@@ -272,17 +262,12 @@ def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeActio
         )
         if action.mends is not None or not resolves:
             try:
-                offer.edit = _edit(asked, action.make())
+                offer.edit = asked.convert.change(action.make())
             except CannotError:
                 continue
         else:
-            offer.data = {
-                "uri": asked.uri,
-                "version": asked.known.version,
-                "start": span.start,
-                "end": span.end,
-                "kind": action.kind,
-            }
+            text = {"uri": asked.uri, "version": asked.known.version}
+            offer.data = {**text, "start": span.start, "end": span.end, "kind": action.kind}
         made.append(offer)
     return made
 
@@ -304,12 +289,8 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
 def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.WorkspaceEdit:
     for action in actions(asked.view, given.start, given.end):
         if (action.title, action.kind) == (title, given.kind):
-            return _edit(asked, action.make())
+            return asked.convert.change(action.make())
     raise JsonRpcContentModified("the text has changed")
-
-
-def _edit(asked: Asked, edits: Sequence[Edit]) -> types.WorkspaceEdit:
-    return asked.convert.changes(asked.convert.by_file(edits), asked.can(_VERSIONED))
 
 
 _KIND = {
