@@ -95,7 +95,11 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
     """Returns for each point the params that it follows, with its velocity per unit of each."""
     before, found = _places(view), dict[str, dict[str, Vec]]()
     until = time.monotonic() + _SECONDS
-    for knob in list(_numeric(view))[:MOST_KNOBS] if before else ():
+    outcome, given = view.outcome, view.set_outside
+    known = outcome.knobs if outcome is not None else ()
+    numeric = (k for k in known if isinstance(k.value, float) and not k.choices and fold(k.path) not in given)
+    written = [knob for knob in numeric if _declaration(view, knob) is not None]
+    for knob in written[:MOST_KNOBS] if before else ():
         if time.monotonic() > until:
             break
         nudge = _nudge(knob)
@@ -105,14 +109,6 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
                 if is_somewhere((x, y)) and math.hypot(x, y) > _FOLLOWS:
                     found.setdefault(name, {})[knob.path] = x, y
     return found
-
-
-def _numeric(view: View) -> Iterator[Knob]:
-    assert view.outcome is not None
-    for knob in view.outcome.knobs:
-        is_number = isinstance(knob.value, float) and not knob.choices
-        if is_number and _declaration(view, knob) is not None and fold(knob.path) not in view.set_outside:
-            yield knob
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
@@ -279,6 +275,12 @@ _PROBE = 3.0
 """How far the drawing is moved to see whether it stays there, mm."""
 _NAMED = 2
 """Most params that a hint names."""
+_DOES = {
+    "own": ("guess", "move"),
+    "size": ("size", "change its size"),
+    "whole": ("guess", "move the drawing"),
+}
+"""What changes in the text where a point has a way by numbers, and what dragging it does."""
 
 
 @record()
@@ -345,24 +347,18 @@ class _Hold(Solved):
         return ways(self.built, found, self.evaluate, self.written, self.movable)
 
     def by_numbers(self) -> Iterator[Handle]:
-        known = self.ways
         for grip, at in self.places:
-            name = _name(grip)
-            if grip.id in known.own:
-                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
-            elif grip.id in known.sizes:
-                yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
-            elif grip.id in known.whole:
-                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
+            if (way := self.ways.get(grip.id)) is not None:
+                moves, does = _DOES[way.by]
+                yield Handle(grip.id, grip.path, at, moves, f"{_name(grip)}: drag to {does}")
 
     def is_slide(self, handle: str) -> bool:
         """True for a point that moves only with everything else."""
-        known = self.ways
-        return handle in known.whole and handle not in known.own and handle not in known.sizes
+        return handle in self.ways and self.ways[handle].by == "whole"
 
     def slides(self, handle: str) -> bool:
         """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway."""
-        directions = self.ways.whole[handle].directions
+        directions = self.ways[handle].directions
         if directions not in self._tried:
             self._tried[directions] = self._can_slide(directions)
         return self._tried[directions]
@@ -374,8 +370,7 @@ class _Hold(Solved):
     def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
         """Tries it with one of the points that move along some directions: all of them move alike."""
         for grip, (x, y) in self.places:
-            way = self.ways.whole.get(grip.id)
-            if way is not None and way.directions == directions and self.is_slide(grip.id):
+            if self.is_slide(grip.id) and self.ways[grip.id].directions == directions:
                 dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
                 try:
                     return bool(_pulled(self, grip, (x + dx, y + dy), STEP).edits)
@@ -458,15 +453,14 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
     """Returns the program with the point as near to a place as it can come. Unknowns without a number in the
     text move only if nothing else will do.
     """
-    known, evaluate = hold.ways, hold.evaluate
-    way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
+    way = hold.ways.get(grip.id)
     if way is None:
         raise CannotError("there is nothing to drag")
-    by_sizes = grip.id in known.sizes and grip.id not in known.own
-    sizes = frozenset(u for u in hold.written if by_sizes and u.kept and belongs(u, grip.thing))
+    of_thing = (u for u in hold.written if u.kept and belongs(u, grip.thing))
+    sizes = frozenset(of_thing if way.by == "size" else ())
     more = [pull(hold.built, grip, way.directions, to, _WEIGHT)]
     if (pin := hold.grips.get(way.pin or "")) is not None:  # a point that stays meanwhile
-        more.append(pull(hold.built, pin, AXES, pin.at(evaluate), None))
+        more.append(pull(hold.built, pin, AXES, pin.at(hold.evaluate), None))
     lowered = lower(replace(hold.built, constraints=[*hold.built.constraints, *more]))
 
     def off(found: tuple[Solution, Vec]) -> float:

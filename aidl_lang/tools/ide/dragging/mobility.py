@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import field, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,24 +142,20 @@ _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 @record()
 class Way:
-    """The motion of a point along one or two unit vectors; the point `pin` stays, lest everything move."""
+    """The motion of a point along one or two unit vectors.
 
+    by   `own` where a first guess moves it against others, `size` where a kept size of its own does; `whole`
+         where it moves with the whole drawing, by first guesses too
+    pin  a point that stays, lest everything move
+    """
+
+    by: str
     directions: tuple[Vec, ...]
     pin: str | None = None
 
 
-@record()
-class Ways:
-    """The ways of points, by their ids.
-
-    own    points that a first guess moves against others
-    sizes  points that a kept size of their own moves
-    whole  points that move with the whole drawing, by first guesses too
-    """
-
-    own: dict[str, Way] = field(default_factory=dict)
-    sizes: dict[str, Way] = field(default_factory=dict)
-    whole: dict[str, Way] = field(default_factory=dict)
+Ways: TypeAlias = dict[str, Way]
+"""The ways of points, by their ids."""
 
 
 def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
@@ -181,7 +178,7 @@ def ways(
     """Returns the ways of all points; `written` are the unknowns with a number in the text."""
     wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
     lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
-    found = Ways()
+    found: Ways = {}
     for part in _Scene(lowered, evaluate, wishes, written, movable).parts():
         part.by_positions(found)
         part.by_sizes(found)
@@ -278,9 +275,9 @@ class _Part:
             if not (_moves(moved[number]) and self._is_written(moved[number])):
                 continue
             if _moves(against := moved[number] - world):
-                found.own[grip.id] = Way(_directions(against), pin)
+                found[grip.id] = Way("own", _directions(against), pin)
             else:
-                found.whole[grip.id] = Way(_directions(moved[number]))
+                found[grip.id] = Way("whole", _directions(moved[number]))
 
     def by_sizes(self, found: Ways) -> None:
         """Adds the points that move against most others if a size of their own thing changes."""
@@ -293,8 +290,9 @@ class _Part:
             moved = self.velocity @ motions
             world, pin = self._world(moved)
             for number, grip in enumerate(self.grips):
-                if grip.thing is thing and _moves(against := moved[number] - world):
-                    found.sizes[grip.id] = Way(_directions(against), pin)
+                is_own = grip.id in found and found[grip.id].by == "own"
+                if grip.thing is thing and not is_own and _moves(against := moved[number] - world):
+                    found[grip.id] = Way("size", _directions(against), pin)
 
     def _world(self, moved: Floats) -> tuple[Floats, str | None]:
         """Returns the velocity (2, d) of the largest set of points, of velocities (g, 2, d), that keep
