@@ -1,4 +1,4 @@
-"""The open texts of the editor, each with its newest views, and what is said of them in the protocol."""
+"""The open texts of the editor, each with its newest views, and what is said and asked of them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from functools import partial
+from operator import eq
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias, TypeVar, get_args
 from urllib.parse import quote, unquote, urlsplit
 
+import attrs
+import cattrs
 from lsprotocol import types
 from pygls import uris
+from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Label, Severity
 from aidl_lang.common.records import record
@@ -353,3 +358,160 @@ class Publisher:
         said = [each for by_uri in self._told.values() for each in by_uri.get(uri, ())]
         unique = {(repr(each.range), each.code, each.message): each for each in said}
         self._send(types.PublishDiagnosticsParams(uri, list(unique.values()), version))
+
+
+# --- Parameters of our own requests. Clients may send anything: values of other types are refused.
+
+Value: TypeAlias = float | str | bool
+Texts: TypeAlias = tuple[str, ...]
+Values: TypeAlias = dict[str, Value]
+Words: TypeAlias = dict[str, str]
+Point: TypeAlias = tuple[float, float]
+T = TypeVar("T")
+
+_LONGEST = 8_000
+"""Most characters of a name or a URI."""
+
+
+@attrs.frozen(kw_only=True)
+class OfDocument:
+    """Parameters about an open document.
+
+    uri     of the document
+    viewer  the asking viewer of the document, as the client calls it
+    """
+
+    uri: str
+    viewer: str = ""
+
+
+@attrs.frozen(kw_only=True)
+class Show(OfDocument):
+    """The picture to show: `show` are the layers over the drawing."""
+
+    show: Texts = ()
+
+
+@attrs.frozen(kw_only=True)
+class OfVersion(OfDocument):
+    """`version` is that of the meant text; None: the text as it is."""
+
+    version: int | None = None
+
+
+@attrs.frozen(kw_only=True)
+class DraggedPoint:
+    id: str
+    to: Point
+
+
+@attrs.frozen(kw_only=True)
+class Try(OfVersion):
+    """`rests` tells that nothing newer is on the way: what is wrong is then explained."""
+
+    knobs: Values = attrs.field(factory=dict)
+    drag: DraggedPoint | None = None
+    rests: bool = False
+
+
+@attrs.frozen(kw_only=True)
+class SetKnob(OfVersion):
+    path: str
+    value: Value
+
+
+@attrs.frozen(kw_only=True)
+class Drag(OfVersion):
+    """The parameters for leaving a point where it was dragged."""
+
+    id: str
+    to: Point
+
+
+@attrs.frozen(kw_only=True)
+class ApplyFix(OfDocument):
+    """A fix of a problem of the picture of a version, both by number."""
+
+    version: int
+    problem: int
+    fix: int
+
+
+@attrs.frozen(kw_only=True)
+class Export(OfDocument):
+    """`options` are those of a dialog, as they were typed (see `exports`)."""
+
+    format: str
+    show: Texts = ()
+    options: Words = attrs.field(factory=dict)
+
+
+@attrs.frozen(kw_only=True)
+class EntryRequest:
+    """The entry of a list of completions that is to be described."""
+
+    uri: str
+    list: int
+    entry: int
+
+
+@attrs.frozen(kw_only=True)
+class ActionRequest:
+    """The code action that is to be carried out."""
+
+    uri: str
+    version: int
+    kind: str
+    start: int
+    end: int
+
+
+def read(params: object, kind: type[T]) -> T:
+    """Returns the parameters in plain data; null values count as absent. Raises JsonRpcInvalidParams."""
+    if not isinstance(params, Mapping):
+        raise JsonRpcInvalidParams("the parameters are no object")
+    try:
+        return _converter.structure({k: v for k, v in params.items() if v is not None}, kind)
+    except cattrs.ClassValidationError as error:
+        raise JsonRpcInvalidParams("; ".join(cattrs.transform_error(error))) from None
+
+
+_IS: dict[type, Callable[[Any], bool]] = {
+    str: lambda value: isinstance(value, str) and len(value) <= _LONGEST,
+    bool: lambda value: isinstance(value, bool),
+    int: lambda value: type(value) is int,
+    float: lambda value: type(value) in (int, float) and abs(value) <= 1e300,
+}
+"""Checks that plain data has a type without conversion: the library itself takes `"3"` for a number."""
+
+
+def _plain(value: Any, kind: Any) -> Any:
+    if not _IS[kind](value):
+        raise ValueError
+    return kind(value)
+
+
+def _any(value: Any, _: object) -> Any:
+    return _plain(value, type(value) if isinstance(value, str | bool) else float)
+
+
+def _mapping(value: Any, kind: Any) -> Any:
+    if not isinstance(value, Mapping):
+        raise ValueError
+    one = _any if kind == Values else _plain
+    return {_plain(name, str): one(each, str) for name, each in value.items()}
+
+
+def _tuple(value: Any, kind: Any) -> Any:
+    first, *_ = kinds = get_args(kind)
+    if not isinstance(value, list) or (... not in kinds and len(value) != len(kinds)):
+        raise ValueError
+    return tuple(_plain(each, first) for each in value)
+
+
+_converter = cattrs.Converter()
+for _kind in _IS:
+    _converter.register_structure_hook(_kind, _plain)
+_converter.register_structure_hook_func(partial(eq, Value), _any)
+_converter.register_structure_hook_func((Values, Words).__contains__, _mapping)
+_converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)

@@ -20,8 +20,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, Positions
-from aidl_lang.tools.lsp.documents import Document
-from aidl_lang.tools.lsp.params import read
+from aidl_lang.tools.lsp.documents import Document, read
 from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.files import Manuscript

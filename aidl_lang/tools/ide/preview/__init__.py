@@ -23,7 +23,7 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.hierarchy import Memory
-from aidl_lang.tools.ide.dragging import Handle, handles
+from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.dragging.mobility import grips, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,
@@ -35,11 +35,13 @@ from aidl_lang.tools.ide.preview.elements import (
     Turn,
     Way,
     box_of,
+    conflicts,
     curves_of,
     elements,
     point_of,
+    problems,
+    sliders,
 )
-from aidl_lang.tools.ide.preview.sliders import conflicts, problems, sliders
 from aidl_lang.tools.ide.workspace import SETTINGS, Solved, View, hasty, run, solved
 
 # --- The remaining motions as arrows and arcs on the drawing.
@@ -264,14 +266,17 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     """Returns the SVG of a drawing with some of LAYERS over it."""
     assert outcome.model is not None
     assert outcome.drawing is not None
-    options = Options(frozenset(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
-    job = Job(outcome.model, outcome.drawing, options=options)
-    painted = picture(job)
+    painted = picture(Job(outcome.model, outcome.drawing, options=layered(show)))
     groups = tuple(_numbered(group, elements) for group in painted.groups)
     text = to_svg(replace(painted, groups=groups))
     assert text.endswith(_END)
     # Only numbers, so nothing needs escaping: not worth a tree of objects.
     return text.removesuffix(_END) + "".join(hit.svg for hit in hits(outcome.drawing, elements)) + _END
+
+
+def layered(show: Collection[str]) -> Options:
+    """Returns the options for a picture with some of LAYERS over it."""
+    return Options(frozenset(LAYERS).intersection(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
 
 
 def _numbered(group: Group, elements: Elements) -> Group:
@@ -358,13 +363,15 @@ def preview(
     """Returns the preview of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
 
     A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
-    longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
+    longer to find out than all the rest (see `handles`): here are those that are `known` from another
     picture of it, where they are now.
     """
     assert view.outcome is not None, "the view was not run"
     found = elements(view)
     drawn = solved(view.drawn)
-    has_picture = drawn is not None and _is_anything_drawn(drawn)
+    has_picture = drawn is not None and bool(
+        drawn.drawing.bodies or drawn.drawing.strokes or drawn.model.root.box
+    )
     svg, unpainted = _painted(drawn.outcome, found, show) if drawn is not None and has_picture else (None, ())
     # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
     is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
@@ -390,14 +397,9 @@ def _painted(
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
     try:
         with within(drawn.limit, "painting"):
-            return svg_of(drawn, found, set(show) & set(LAYERS)), ()
+            return svg_of(drawn, found, show), ()
     except TooLongError as reason:
         return None, (reason.diagnostic,)
-
-
-def with_handles(made: Preview, view: View) -> Preview:
-    """Returns the preview with all handles. Raises Cancelled as `run` does."""
-    return replace(made, handles=tuple(handles(view)))
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
@@ -407,10 +409,6 @@ def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
     for grip in grips(solved.built):
         if grip.id in wanted and is_somewhere(at := grip.at(solved.evaluate)):
             yield replace(wanted[grip.id], at=at)
-
-
-def _is_anything_drawn(drawn: Solved) -> bool:
-    return bool(drawn.drawing.bodies or drawn.drawing.strokes or drawn.model.root.box)
 
 
 def tried(

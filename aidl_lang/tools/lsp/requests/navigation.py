@@ -8,22 +8,8 @@ from itertools import count
 from lsprotocol import types
 
 from aidl_lang.checking.symbols import SymbolKind
-from aidl_lang.tools.ide.outline import (
-    MODIFIERS,
-    TYPES,
-    Colored,
-    Entry,
-    as_bytes,
-    colors,
-    folds,
-    outline,
-    search,
-    selections,
-    semantic_tokens,
-    spellings,
-)
+from aidl_lang.tools.ide import outline, references
 from aidl_lang.tools.ide.preview.elements import alike
-from aidl_lang.tools.ide.references import definitions, highlights, links, references, rename, renameable
 from aidl_lang.tools.ide.workspace import format_document, format_range
 from aidl_lang.tools.lsp.documents import Converter, Document
 from aidl_lang.tools.lsp.server import Asked, Server
@@ -45,64 +31,62 @@ _KIND = {
 
 
 def register_navigation(server: Server) -> None:
-    server.answers_to(types.TEXT_DOCUMENT_DEFINITION)(_definition)
-    server.answers_to(types.TEXT_DOCUMENT_REFERENCES, searches=True)(_references)
-    server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)(_highlight)
-    server.answers_to(types.TEXT_DOCUMENT_PREPARE_RENAME)(_prepare_rename)
-    server.answers_to(types.TEXT_DOCUMENT_RENAME, searches=True, edits=True)(_rename)
+    @server.answers_to(types.TEXT_DOCUMENT_DEFINITION)
+    def definition(asked: Asked, params: types.DefinitionParams) -> list[types.Location]:
+        spans = references.definitions(asked.view, asked.convert.offset(params.position))
+        return [place for span in spans if (place := asked.convert.location(span)) is not None]
+
+    @server.answers_to(types.TEXT_DOCUMENT_REFERENCES, searches=True)
+    def find_references(asked: Asked, params: types.ReferenceParams) -> list[types.Location]:
+        view = asked.project.view(asked.view.path)
+        if view is None:
+            return []
+        convert = asked.convert
+        found = references.references(asked.project, view, convert.offset(params.position))
+        return [
+            types.Location(convert.uri_of(each.path), convert.range(each.span))
+            for each in found
+            if params.context.include_declaration or not each.is_declaration
+        ]
+
+    @server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    def highlight(asked: Asked, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
+        found = references.highlights(asked.view, asked.convert.offset(params.position))
+        kinds = (types.DocumentHighlightKind.Read, types.DocumentHighlightKind.Write)
+        places = ((asked.convert.range(each.span), kinds[each.is_declaration]) for each in found)
+        return [types.DocumentHighlight(*each) for each in places]
+
+    @server.answers_to(types.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepare_rename(asked: Asked, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder:
+        span = references.renameable(asked.view, asked.convert.offset(params.position))
+        return types.PrepareRenamePlaceholder(asked.convert.range(span), span.text)
+
+    @server.answers_to(types.TEXT_DOCUMENT_RENAME, searches=True, edits=True)
+    def rename_everywhere(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | None:
+        view = asked.project.view(asked.view.path)
+        if view is None:
+            return None
+        offset = asked.convert.offset(params.position)
+        return asked.convert.changes(references.rename(asked.project, view, offset, params.new_name))
+
     server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)(_outline)
-    server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_LINK)(_links)
+
+    @server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    def find_links(asked: Asked, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
+        return [
+            types.DocumentLink(asked.convert.range(span), asked.convert.uri_of(path))
+            for span, path in references.links(asked.view)
+        ]
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def search_everywhere(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         return await server.searches.ask(partial(_search, server, params.query))
 
 
-def _definition(asked: Asked, params: types.DefinitionParams) -> list[types.Location]:
-    spans = definitions(asked.view, asked.convert.offset(params.position))
-    return [place for span in spans if (place := asked.convert.location(span)) is not None]
-
-
-def _references(asked: Asked, params: types.ReferenceParams) -> list[types.Location]:
-    view = asked.project.view(asked.view.path)
-    if view is None:
-        return []
-    convert = asked.convert
-    found = references(asked.project, view, convert.offset(params.position))
-    return [
-        types.Location(convert.uri_of(each.path), convert.range(each.span))
-        for each in found
-        if params.context.include_declaration or not each.is_declaration
-    ]
-
-
-def _highlight(asked: Asked, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-    return [
-        types.DocumentHighlight(
-            asked.convert.range(each.span),
-            types.DocumentHighlightKind.Write if each.is_declaration else types.DocumentHighlightKind.Read,
-        )
-        for each in highlights(asked.view, asked.convert.offset(params.position))
-    ]
-
-
-def _prepare_rename(asked: Asked, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder:
-    span = renameable(asked.view, asked.convert.offset(params.position))
-    return types.PrepareRenamePlaceholder(asked.convert.range(span), span.text)
-
-
-def _rename(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | None:
-    view = asked.project.view(asked.view.path)
-    if view is None:
-        return None
-    made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
-    return asked.convert.changes(made)
-
-
 def _outline(
     asked: Asked, params: types.DocumentSymbolParams
 ) -> list[types.DocumentSymbol] | list[types.SymbolInformation]:
-    entries = outline(asked.view)
+    entries = outline.outline(asked.view)
     if asked.can("text_document.document_symbol.hierarchical_document_symbol_support"):
         return [_symbol(entry, asked.convert) for entry in entries]
     flat = [(entry, "") for entry in entries]
@@ -120,11 +104,11 @@ def _outline(
     ]
 
 
-def _kind(entry: Entry) -> types.SymbolKind:
+def _kind(entry: outline.Entry) -> types.SymbolKind:
     return _KIND.get(entry.kind, types.SymbolKind.Variable)
 
 
-def _symbol(entry: Entry, convert: Converter) -> types.DocumentSymbol:
+def _symbol(entry: outline.Entry, convert: Converter) -> types.DocumentSymbol:
     return types.DocumentSymbol(
         name=entry.name or " ",
         kind=_kind(entry),
@@ -137,7 +121,7 @@ def _symbol(entry: Entry, convert: Converter) -> types.DocumentSymbol:
 
 def _search(server: Server, query: str) -> list[types.WorkspaceSymbol]:
     made = []
-    for found in search(server.project, query):
+    for found in outline.search(server.project, query):
         view = server.project.view(found.path)
         if view is None:
             continue  # gone just now
@@ -148,16 +132,9 @@ def _search(server: Server, query: str) -> list[types.WorkspaceSymbol]:
     return made
 
 
-def _links(asked: Asked, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
-    return [
-        types.DocumentLink(asked.convert.range(span), asked.convert.uri_of(path))
-        for span, path in links(asked.view)
-    ]
-
-
-_LEGEND = types.SemanticTokensLegend(TYPES, MODIFIERS)
-_TYPE = {name: index for index, name in enumerate(TYPES)}
-_MODIFIER = {name: 1 << index for index, name in enumerate(MODIFIERS)}
+_LEGEND = types.SemanticTokensLegend(outline.TYPES, outline.MODIFIERS)
+_TYPE = {name: index for index, name in enumerate(outline.TYPES)}
+_MODIFIER = {name: 1 << index for index, name in enumerate(outline.MODIFIERS)}
 _FOLD = {"comment": types.FoldingRangeKind.Comment, "imports": types.FoldingRangeKind.Imports}
 
 
@@ -165,14 +142,62 @@ def register_appearance(server: Server) -> None:
     tokens = _Tokens()
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)(tokens.full)
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, _LEGEND)(tokens.delta)
-    server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, _LEGEND)(_tokens_in_range)
     server.on_closed.append(tokens.forget)
-    server.answers_to(types.TEXT_DOCUMENT_FOLDING_RANGE)(_folding)
-    server.answers_to(types.TEXT_DOCUMENT_SELECTION_RANGE)(_selections)
-    server.answers_to(types.TEXT_DOCUMENT_FORMATTING, edits=True)(_format)
-    server.answers_to(types.TEXT_DOCUMENT_RANGE_FORMATTING, edits=True)(_format_range)
-    server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_COLOR)(_colors)
-    server.answers_to(types.TEXT_DOCUMENT_COLOR_PRESENTATION)(_spellings)
+
+    @server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, _LEGEND)
+    def tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
+        wanted = asked.convert.span(params.range)
+        found = [c for c in outline.semantic_tokens(asked.view) if c.span.overlaps(wanted)]
+        return types.SemanticTokens(_encoded(found, asked.convert))
+
+    @server.answers_to(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def folding(asked: Asked, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        source, convert = asked.view.source, asked.convert
+
+        def line(number: int) -> int:
+            return convert.position(source, source.line_starts[number - 1]).line
+
+        return [
+            types.FoldingRange(line(fold.start), line(fold.end), kind=_FOLD.get(fold.kind))
+            for fold in outline.folds(asked.view)
+        ]
+
+    @server.answers_to(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    def find_selections(asked: Asked, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
+        made = []
+        for position in params.positions:
+            place = types.SelectionRange(types.Range(position, position))
+            parent = None
+            for span in reversed(outline.selections(asked.view, asked.convert.offset(position))):
+                parent = types.SelectionRange(asked.convert.range(span), parent)
+            made.append(parent or place)
+        return made
+
+    @server.answers_to(types.TEXT_DOCUMENT_FORMATTING, edits=True)
+    def format(asked: Asked, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        return asked.convert.edits(format_document(asked.view))
+
+    @server.answers_to(types.TEXT_DOCUMENT_RANGE_FORMATTING, edits=True)
+    def format_lines(asked: Asked, params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
+        return asked.convert.edits(format_range(asked.view, asked.convert.span(params.range)))
+
+    @server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_COLOR)
+    def find_colors(asked: Asked, params: types.DocumentColorParams) -> list[types.ColorInformation]:
+        made = []
+        for color in outline.colors(asked.view):
+            red, green, blue = (part / 255 for part in color.rgb)
+            shown = types.Color(red, green, blue, alpha=1.0)
+            made.append(types.ColorInformation(asked.convert.range(color.span), shown))
+        return made
+
+    @server.answers_to(types.TEXT_DOCUMENT_COLOR_PRESENTATION)
+    def find_spellings(asked: Asked, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:
+        span = asked.convert.span(params.range)
+        rgb = outline.as_bytes((params.color.red, params.color.green, params.color.blue))
+        return [
+            types.ColorPresentation(text, types.TextEdit(params.range, text))
+            for text in outline.spellings(asked.view, span, rgb)
+        ]
 
 
 class _Tokens:
@@ -183,7 +208,7 @@ class _Tokens:
         self._ids = count(1)
 
     def full(self, asked: Asked, params: object) -> types.SemanticTokens:
-        data = _encoded(semantic_tokens(asked.view), asked.convert)
+        data = _encoded(outline.semantic_tokens(asked.view), asked.convert)
         made = types.SemanticTokens(data, result_id=str(next(self._ids)))
         self._answered[asked.uri] = made
         return made
@@ -206,13 +231,7 @@ class _Tokens:
         self._answered.pop(document.uri, None)
 
 
-def _tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
-    wanted = asked.convert.span(params.range)
-    found = [c for c in semantic_tokens(asked.view) if c.span.overlaps(wanted)]
-    return types.SemanticTokens(_encoded(found, asked.convert))
-
-
-def _encoded(found: list[Colored], convert: Converter) -> list[int]:
+def _encoded(found: list[outline.Colored], convert: Converter) -> list[int]:
     """Returns five numbers for each token, its place relative to the one before."""
     data: list[int] = []
     line = character = 0
@@ -226,52 +245,3 @@ def _encoded(found: list[Colored], convert: Converter) -> list[int]:
         data += [start.line - line, start.character - after, length, _TYPE[colored.type], modifiers]
         line, character = start.line, start.character
     return data
-
-
-def _folding(asked: Asked, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
-    source, convert = asked.view.source, asked.convert
-
-    def line(number: int) -> int:
-        return convert.position(source, source.line_starts[number - 1]).line
-
-    return [
-        types.FoldingRange(line(fold.start), line(fold.end), kind=_FOLD.get(fold.kind))
-        for fold in folds(asked.view)
-    ]
-
-
-def _selections(asked: Asked, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
-    made = []
-    for position in params.positions:
-        place = types.SelectionRange(types.Range(position, position))
-        parent = None
-        for span in reversed(selections(asked.view, asked.convert.offset(position))):
-            parent = types.SelectionRange(asked.convert.range(span), parent)
-        made.append(parent or place)
-    return made
-
-
-def _format(asked: Asked, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-    return asked.convert.edits(format_document(asked.view))
-
-
-def _format_range(asked: Asked, params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
-    return asked.convert.edits(format_range(asked.view, asked.convert.span(params.range)))
-
-
-def _colors(asked: Asked, params: types.DocumentColorParams) -> list[types.ColorInformation]:
-    return [
-        types.ColorInformation(
-            asked.convert.range(color.span), types.Color(*(p / 255 for p in color.rgb), 1.0)
-        )
-        for color in colors(asked.view)
-    ]
-
-
-def _spellings(asked: Asked, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:
-    span = asked.convert.span(params.range)
-    rgb = as_bytes((params.color.red, params.color.green, params.color.blue))
-    return [
-        types.ColorPresentation(text, types.TextEdit(params.range, text))
-        for text in spellings(asked.view, span, rgb)
-    ]

@@ -28,14 +28,24 @@ from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.export.job import Exported, ExportError, Options, file_names
 from aidl_lang.export.profiles import PROFILES
 from aidl_lang.export.themes import THEMES
-from aidl_lang.tools.ide.dragging import Handle, drag
-from aidl_lang.tools.ide.preview import preview, tried, with_handles
-from aidl_lang.tools.ide.preview.elements import LAYERS, Preview, Writer
-from aidl_lang.tools.ide.preview.sliders import set_knob, worked_out
+from aidl_lang.tools.ide.dragging import Handle, drag, handles
+from aidl_lang.tools.ide.preview import layered, preview, tried
+from aidl_lang.tools.ide.preview.elements import Preview, Writer, set_knob, worked_out
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View
-from aidl_lang.tools.lsp.documents import Document, VersionedView
-from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
+from aidl_lang.tools.lsp.documents import (
+    ApplyFix,
+    Document,
+    Drag,
+    Export,
+    OfDocument,
+    OfVersion,
+    SetKnob,
+    Show,
+    Try,
+    VersionedView,
+    read,
+)
 from aidl_lang.tools.lsp.running import FAILED
 from aidl_lang.tools.lsp.server import Asked, Server
 
@@ -198,15 +208,13 @@ class Pictures:
         asked = self.server.asked_now(document, known)
         shown = self._shown.get(document, _Shown())
         look = shown.viewers.get(viewer, _PLAIN)
-        made = await self._work(
-            ("picture", key), document, lambda: preview(known.view, look, known=shown.handles)
-        )
+        work = partial(preview, known.view, look, known=shown.handles)
+        made = await self._work(("picture", key), document, work)
         if made is None:
             return None
         if document in self._shown and document.ran is known:
-            shown.made = {each: of for each, of in shown.made.items() if of[0] is known} | {
-                look: (known, made)
-            }
+            kept = {each: of for each, of in shown.made.items() if of[0] is known}
+            shown.made = {**kept, look: (known, made)}
             self.server.in_background(self._complete(document, asked, made))
         return _written(asked, made, known.view)
 
@@ -232,18 +240,15 @@ class Pictures:
         if document.ran is not asked.known or document not in self._shown:
             return
         view = asked.known.view
-        full = await self._work(
-            ("handles", document), document, partial(with_handles, made, view), first=False
-        )
+        found = await self._work(("handles", document), document, lambda: tuple(handles(view)), first=False)
         shown = self._shown.get(document)
-        if full is None or shown is None or document.ran is not asked.known:
+        if found is None or shown is None or document.ran is not asked.known:
             return
-        shown.handles = full.handles
+        shown.handles = found
         for look, viewers in shown.looks().items():
             known, before = shown.made.get(look, (None, made))
-            if known is asked.known and before.handles != full.handles:
-                complete = replace(before, handles=full.handles)
-                self._tell(viewers, _written(asked, complete, view))
+            if known is asked.known and before.handles != found:
+                self._tell(viewers, _written(asked, replace(before, handles=found), view))
 
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
@@ -265,17 +270,15 @@ class Pictures:
         if known is None or outcome is None:
             return
         severities = [diagnostic.severity.value for diagnostic in outcome.diagnostics]
-        self.server.protocol.tell(
-            "aidl/status",
-            {
-                "uri": document.uri,
-                "version": known.version,
-                "status": outcome.status,
-                "degrees": outcome.model.degrees if outcome.model is not None else None,
-                "seconds": sum(outcome.timings.values()),
-                "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
-            },
-        )
+        status = {
+            "uri": document.uri,
+            "version": known.version,
+            "status": outcome.status,
+            "degrees": outcome.model.degrees if outcome.model is not None else None,
+            "seconds": sum(outcome.timings.values()),
+            "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
+        }
+        self.server.protocol.tell("aidl/status", status)
 
 
 def _written(asked: Asked, made: Preview, view: View) -> Json:
@@ -284,7 +287,6 @@ def _written(asked: Asked, made: Preview, view: View) -> Json:
 
 _LONGEST_WAIT = 30.0
 """Most seconds to wait for an outcome: longer than a run may take."""
-_DIMENSIONS = "dimensions"
 
 
 def register_preview(server: Server) -> None:
@@ -369,7 +371,7 @@ class _Requests:
         return await self._apply(asked, fix.edits, fix.title)
 
     async def export(self, given: Export) -> Json:
-        suffix, show = f".{given.format}", frozenset(given.show)
+        suffix = f".{given.format}"
         if suffix not in FORMATS:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
         document = self.server.document(given.uri)
@@ -377,9 +379,8 @@ class _Requests:
         outcome = document.ran.view.outcome if document.ran is not None else None
         if outcome is None or outcome.model is None or outcome.drawing is None:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
-        plain = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
         try:
-            options = changed(plain, given.options)
+            options = changed(layered(given.show), given.options)
             made = await self.server.searches.ask(lambda: outcome.exported(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
