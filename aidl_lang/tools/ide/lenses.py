@@ -72,9 +72,8 @@ def _told(guess: Guess) -> str:
 def _readings(view: View, model: SolvedModel) -> Iterator[Inlay]:
     for reading in model.readings:
         if reading.span.source is view.source:
-            about = (
-                f"`{reading.span.one_line}` has several meanings. By what is written it is {reading.text}."
-            )
+            said = f"`{reading.span.one_line}` has several meanings"
+            about = f"{said}. By what is written it is {reading.text}."
             yield Inlay(reading.span.end, reading.text, InlayKind.READING, about)
 
 

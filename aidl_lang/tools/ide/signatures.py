@@ -13,9 +13,8 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import Token
-from aidl_lang.tools.ide.site import Where, around, scope_at, site_at, spot_at
+from aidl_lang.tools.ide.site import Where, around, innermost_brackets, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference
 from aidl_lang.tools.reference.pages import facts, forms
@@ -311,7 +310,8 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     if spot.where is Where.COMMENT:
         return None
     offset = spot.offset  # within the text
-    opening = _open_call(standing_before(view.source, offset))
+    brackets = innermost_brackets(standing_before(view.source, offset))
+    opening = next((token for token in brackets if token.kind == "CALL"), None)
     if opening is None:
         return None
     found = _argument_at(view, opening, offset)
@@ -332,15 +332,6 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     listed = sorted(ordered, key=_place)
     overloads = tuple(_told(reading, argument) for reading in listed)
     return SignatureHelp(overloads, listed.index(best))
-
-
-def _open_call(automaton: Automaton) -> Token | None:
-    for token in reversed(automaton.open_brackets()):
-        if token.kind == "{":
-            return None
-        if token.kind == "CALL":
-            return token
-    return None
 
 
 def _argument_at(view: View, opening: Token, offset: int) -> tuple[ast.Call, int] | None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import Enum
 from functools import cached_property
+from itertools import takewhile
 
 from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.common.records import record
@@ -242,17 +243,12 @@ def _endings(site: EditSite) -> Iterator[str]:
         as_name, as_statement = [space, "," + space], ["()" + space, "(); "]
         plain = [*as_statement, *as_name] if site.begins_statement and is_last else [*as_name, *as_statement]
     yield from plain
-    closing = _closers(site.automaton.open_brackets())
+    closing = "".join(_CLOSERS[token.kind] for token in innermost_brackets(site.automaton))
     if closing:
         yield from (closing, closing + ";", "()" + closing, "()" + closing + ";")
     yield closing + " {}"
 
 
-def _closers(opened: Sequence[Token]) -> str:
-    """Returns the closing brackets for those opened in the innermost block."""
-    found = ""
-    for token in reversed(opened):
-        if token.kind == "{":
-            break
-        found += _CLOSERS[token.kind]
-    return found
+def innermost_brackets(automaton: Automaton) -> Iterator[Token]:
+    """Yields the brackets that are open in the innermost block, the last first."""
+    return takewhile(lambda token: token.kind != "{", reversed(automaton.open_brackets()))

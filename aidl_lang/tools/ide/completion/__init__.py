@@ -192,7 +192,9 @@ def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
     if drawn is None or drawn.model is None:
         return
     name = index.value.span.one_line.rpartition(".")[2]
-    listed = [each.name for s in drawn.model.root.walk() for each in (*s.structures, *s.geometry)]
+    structures = list(drawn.model.root.walk())
+    listed = [each.name for s in structures for each in s.structures]
+    listed += [each.name for s in structures for each in s.geometry]
     places = (rest for array, _, rest in (each.partition("[") for each in listed) if array == name)
     found = {int(number[0]) for place in places if (number := _NUMBER.match(place))}
     for at in sorted(found)[:_MOST_INDICES]:

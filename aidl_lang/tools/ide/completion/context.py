@@ -273,16 +273,13 @@ def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int]
         if isinstance(above, ast.Argument):
             continue
         if isinstance(above, ast.Call) and isinstance(node, ast.Argument):
-            before = int(above.receiver is not None and not _names_file(view, above.receiver))
+            symbol = view.resolution.uses.get(above.receiver) if above.receiver is not None else None
+            is_file = symbol is not None and symbol.kind is SymbolKind.NAMESPACE
+            before = int(above.receiver is not None and not is_file)
             return above, before + above.arguments.index(node)
         if not isinstance(above, ast.Unary | ast.Binary | ast.Conditional | ast.List | ast.Point):
             return None
     return None
-
-
-def _names_file(view: View, node: ast.Expression) -> bool:
-    symbol = view.resolution.uses.get(node)
-    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE
 
 
 _DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation

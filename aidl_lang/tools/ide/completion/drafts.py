@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import lru_cache, partial
@@ -83,19 +84,14 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
     ]
 
 
-def escaped(text: str) -> str:
-    for sign in ("\\", "$", "}"):
-        text = text.replace(sign, "\\" + sign)
-    return text
-
-
 def written_out(snippet: Snippet) -> str:
     """Writes a snippet for completion: indented as programs are, without `$0` at its end."""
     return snippet.body.replace("\t", "    ").removesuffix("$0")
 
 
 def stop(number: int, proposed: str) -> str:
-    return f"${{{number}:{escaped(proposed)}}}"
+    escaped = re.sub(r"[\\$}]", r"\\\g<0>", proposed)
+    return f"${{{number}:{escaped}}}"
 
 
 def choice(number: int, names: Sequence[str]) -> str:
@@ -232,9 +228,7 @@ def imported_names(site: EditSite, node: ast.Import) -> Iterator[Draft]:
     scope = view.resolution.scopes[target]
     taken = {name.text for name in node.names}
     for name in (*scope.callables, *scope.aliases, *scope.values):
-        if name in taken:
-            continue
-        signatures: Sequence[Signature] = scope.callables.get(name, ())
-        symbol = scope.values.get(name)
-        kind = str(symbol.kind) if symbol is not None else "function"
-        yield Draft(name, kind, 0.0, describe=partial(of_callable, name, tuple(signatures)))
+        if name not in taken:
+            kind = str(scope.values[name].kind) if name in scope.values else "function"
+            described = partial(of_callable, name, tuple(scope.callables.get(name, ())))
+            yield Draft(name, kind, 0.0, describe=described)
