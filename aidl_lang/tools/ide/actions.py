@@ -453,11 +453,12 @@ def _held(
 ) -> Iterator[str]:
     """Yields alignments that hold now, then the present coordinate."""
     moving = [thing.removeprefix(f"{structure.path}.") for thing in motion.things]
-    at = _middle(moved.box, axis)
+    at, whole = _middle(moved.box, axis), model.root.box
+    near = _ALIGNED * (math.hypot(whole.width, whole.height) if whole is not None else 1.0)
     place = f"{moved.name}.{axis}" if moved.is_point else f"{moved.name}.center.{axis}"
     for name, other in things.items():
         is_apart = not any(name == m or name.startswith(f"{m}.") or m.startswith(f"{name}.") for m in moving)
-        if is_apart and abs(_middle(other.box, axis) - at) <= _ALIGNED * _size(model):
+        if is_apart and abs(_middle(other.box, axis) - at) <= near:
             yield f"{place} == {name}.{axis}" if other.is_point else f"{place} == {name}.center.{axis}"
             break
     if (origin := _origin(model.root, structure.path)) is not None:
@@ -508,8 +509,3 @@ def _number_of(structure: SolvedStructure, name: str) -> float | None:
 
 def _middle(box: Box, axis: str) -> float:
     return (box.left + box.right) / 2 if axis == "x" else (box.bottom + box.top) / 2
-
-
-def _size(model: SolvedModel) -> float:
-    box = model.root.box
-    return math.hypot(box.width, box.height) if box is not None else 1.0

@@ -262,10 +262,8 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[Edit, ...] | Non
     order = {guess.span: index for index, guess in enumerate(guesses(view))}
     wanted, level = dict(targets), dict.fromkeys(targets, 0)
     for _ in range(_MOST_TRIES):
-        edits = tuple(
-            Edit(guess.span, number_for(guess, value, _PRECISIONS[level[guess]]))
-            for guess, value in wanted.items()
-        )
+        numbers = ((g, number_for(g, value, _PRECISIONS[level[g]])) for g, value in wanted.items())
+        edits = tuple(Edit(guess.span, number) for guess, number in numbers)
         again = edited(view, edits)
         assert again.outcome is not None
         is_slid = is_same(view.outcome, again.outcome, slid=True)

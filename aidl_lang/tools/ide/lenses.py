@@ -206,11 +206,10 @@ class Lens:
 
 def lenses(view: View) -> list[Lens]:
     """Returns one lens for each structure of the solved text; none while it is being solved."""
-    return list(_lenses(view, view.solved)) if view.solved is not None else []
-
-
-def _lenses(view: View, solved: Solved) -> Iterator[Lens]:
-    model, made = solved.model, dict[Span, list[SolvedStructure]]()
+    solved = view.solved
+    if solved is None:
+        return []
+    model, made, shown = solved.model, dict[Span, list[SolvedStructure]](), list[Lens]()
     for structure in model.root.walk():
         if structure.span is not None:
             made.setdefault(structure.span, []).append(structure)
@@ -221,7 +220,8 @@ def _lenses(view: View, solved: Solved) -> Iterator[Lens]:
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
                 title = f"{_status(solved)} · {title.replace(_HELD, as_whole)}"
-            yield Lens(node.name.span, title)
+            shown.append(Lens(node.name.span, title))
+    return shown
 
 
 def _status(solved: Solved) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import TypeAlias
 
@@ -209,7 +210,9 @@ def references(project: Project, view: View, offset: int) -> list[Occurrence]:
     if place is None:  # built in: known by its name alone, in this file
         found = [m for m in mentions(view) if m.symbol.kind == symbol.kind and m.symbol.name == symbol.name]
         return _ordered(Occurrence(view.path, m.span, False) for m in found if not m.symbol.declarations)
-    return _ordered([*declarations(view, symbol), *_named(project, view, symbol, place)])
+    others = (other for other in project.views_with(symbol.name) if other.path != view.path)
+    named = (occurrence for each in chain([view], others) for occurrence in occurrences(each, place))
+    return _ordered([*declarations(view, symbol), *named])
 
 
 def highlights(view: View, offset: int) -> list[Occurrence]:
@@ -236,14 +239,7 @@ def declarations(view: View, symbol: Symbol) -> Iterator[Occurrence]:
             yield Occurrence(file, declaration.span, True)
 
 
-def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterator[Occurrence]:
-    yield from occurrences(view, place)
-    for other in project.views_with(symbol.name):
-        if other.path != view.path:
-            yield from occurrences(other, place)
-
-
-def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]:
+def _ordered(found: Iterable[Occurrence]) -> list[Occurrence]:
     unique = {(o.path, o.span.start, o.span.end): o for o in found}
     return [unique[key] for key in sorted(unique)]
 
@@ -338,7 +334,6 @@ def _meanings(view: View) -> dict[int, Place | str]:
 
 def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
     path, offset = place
-    grown = sum(
-        len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset
-    )
+    before = [edit for edit in edits.get(path, ()) if edit.span.end <= offset]
+    grown = sum(len(edit.replacement) - (edit.span.end - edit.span.start) for edit in before)
     return path, offset + grown

@@ -161,11 +161,8 @@ def _items(signature: Signature) -> list[str]:
 def of_parameter(signature: Signature, name: str) -> str:
     """Returns the sentences of a definition's comment that name the parameter."""
     about = doc_of(signature)
-    said = [
-        sentence
-        for sentence in _SENTENCE_END.split(f"{about.line}\n\n{about.text}")
-        if re.search(rf"`{re.escape(name)}\b", sentence)
-    ]
+    sentences = _SENTENCE_END.split(f"{about.line}\n\n{about.text}")
+    said = [sentence for sentence in sentences if re.search(rf"`{re.escape(name)}\b", sentence)]
     clauses = [" ".join(_clause(sentence, name).split()) for sentence in said]
     return " ".join(clause for clause in clauses if clause.count(" ") >= _FEWEST_WORDS)
 
@@ -231,9 +228,8 @@ def _read(signature: Signature, words: Sequence[str | None], kinds: Sequence[Typ
     taken: list[str | None] = []
     cost = 0
     for word, kind in zip(words, kinds, strict=True):
-        name = (
-            next(positional, None) if word is None else meant(signature, word, {*named, *filter(None, taken)})
-        )
+        known = {*named, *filter(None, taken)}
+        name = next(positional, None) if word is None else meant(signature, word, known)
         taken.append(name)
         if name is None and word is not None and (signature.takes_any or fold(word) in PAIRS):
             continue

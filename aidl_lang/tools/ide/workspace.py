@@ -300,9 +300,8 @@ def run(
 
     Raises Cancelled where the run is given up (see `common.running`).
     """
-    outcome = pipeline.compile(
-        view.source, view.world, params, settings, memory=memory, checked=(view.program, view.found)
-    )
+    checked = (view.program, view.found)
+    outcome = pipeline.compile(view.source, view.world, params, settings, memory=memory, checked=checked)
     drawn = outcome if outcome.drawing is not None else last.drawn if last is not None else None
     return replace(view, outcome=outcome, drawn=drawn, params=params)
 

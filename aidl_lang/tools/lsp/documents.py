@@ -290,30 +290,24 @@ def converted(
 ) -> Iterator[tuple[str, types.Diagnostic]]:
     """Yields diagnostics with the URI that shows each; those of no file of the user's begin `own`."""
     for diagnostic in found:
-        span = diagnostic.span
+        span, code = diagnostic.span, diagnostic.code
         if span is None or convert.view.is_library(span.source) or (uri := convert.uri(span.source)) is None:
             uri, place = own, START
         else:
             place = convert.range(span)
-        yield uri, _converted(diagnostic, convert, place)
-
-
-def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -> types.Diagnostic:
-    return types.Diagnostic(
-        range=place,
-        message=worded(diagnostic),
-        severity=_SEVERITY[diagnostic.severity],
-        code=diagnostic.code,
-        code_description=types.CodeDescription(resource(f"docs/diagnostics/{diagnostic.code}.md").as_uri()),
-        source=SOURCE,
-        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
-        related_information=list(_related(diagnostic, convert)) or None,
-    )
-
-
-def worded(diagnostic: Diagnostic) -> str:
-    """Returns the message and the hints, line by line."""
-    return "\n".join([diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)])
+        yield (
+            uri,
+            types.Diagnostic(
+                range=place,
+                message="\n".join([diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]),
+                severity=_SEVERITY[diagnostic.severity],
+                code=code,
+                code_description=types.CodeDescription(resource(f"docs/diagnostics/{code}.md").as_uri()),
+                source=SOURCE,
+                tags=[types.DiagnosticTag.Unnecessary] if code in _UNNECESSARY else None,
+                related_information=list(_related(diagnostic, convert)) or None,
+            ),
+        )
 
 
 def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.DiagnosticRelatedInformation]:

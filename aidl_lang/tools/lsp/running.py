@@ -330,8 +330,8 @@ class Runner:
             drawn = document.ran.view.drawn if document.ran is not None else None
             view = replace(future.result(), drawn=drawn)
             document.newest = VersionedView(view, version, serial)
-            if is_library(document.path):
-                document.solved = serial  # it is no program
+            if document.path.is_relative_to(resources.resource("stdlib")):
+                document.solved = serial  # it is of the library, and no program
             elif self.delay:
                 self._loop.call_later(self.delay, self._solve_if_newest, document, document.newest)
             else:
@@ -407,11 +407,6 @@ def _ask_something() -> None:
     complete(view, view.source.text.index("circle"))
     hover(view, view.source.text.index("circle"))
     preview(view)
-
-
-def is_library(path: Path) -> bool:
-    """True for a file of the standard library."""
-    return path.is_relative_to(resources.resource("stdlib"))
 
 
 def _stands_on(view: View, path: Path) -> bool:

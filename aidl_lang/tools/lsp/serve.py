@@ -19,11 +19,11 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang.common.world import DATA, PROGRAM
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.lsp.documents import Settings, path_of
-from aidl_lang.tools.lsp.requests.navigation import register_appearance, register_navigation
-from aidl_lang.tools.lsp.requests.preview import register_preview
-from aidl_lang.tools.lsp.requests.writing import register_actions, register_hints, register_writing
+from aidl_lang.tools.lsp.navigation import register_appearance, register_navigation
+from aidl_lang.tools.lsp.preview import register_preview
 from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import Server
+from aidl_lang.tools.lsp.writing import register_actions, register_hints, register_writing
 
 # --- Notifications of the client: folders, settings, files that have changed.
 

@@ -119,26 +119,21 @@ def typed(text: str, changes: Any) -> str:
 
 
 def _edit(positions: Positions, change: Any) -> tuple[int, int, str]:
-    if not isinstance(change, Mapping) or not isinstance(words := change.get("text"), str):
-        raise CannotError(_INVALID)
-    start, stop = (_offset(positions, change.get(name)) for name in ("start", "end"))
-    if start > stop:
-        raise CannotError(_INVALID)
-    return start, stop, _HALVES.sub("\ufffd", words)
-
-
-def _offset(positions: Positions, place: Any) -> int:
-    if not isinstance(place, Mapping):
-        raise CannotError(_INVALID)
-    line, character = place.get("line"), place.get("character")
-    if type(line) is not int or type(character) is not int:
-        raise CannotError(_INVALID)
-    return positions.offset(line, character)
+    match change:
+        case {
+            "text": str(words),
+            "start": {"line": int(line), "character": int(character)},
+            "end": {"line": int(last), "character": int(behind)},
+        } if not any(isinstance(number, bool) for number in (line, character, last, behind)):
+            start, stop = positions.offset(line, character), positions.offset(last, behind)
+            if start <= stop:
+                return start, stop, _HALVES.sub("\ufffd", words)
+    raise CannotError(_INVALID)
 
 
 # --- The host of the pages that show a program: a client of the language server whose text is a file.
 #
-# A page speaks the server's requests (`lsp/requests/preview.py`), and is answered by it. Here pages have
+# A page speaks the server's requests (`lsp/preview.py`), and is answered by it. Here pages have
 # turns: of each one order is under way, and one attempt; of attempts the newest waits. What changes the
 # text, by order of the server or of a page, goes through the `Manuscript`, of which all pages are told.
 

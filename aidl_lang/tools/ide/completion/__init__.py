@@ -33,16 +33,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import KINDS, kind_of
 from aidl_lang.tools.ide.completion import drafts, names
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use, context_of
-from aidl_lang.tools.ide.completion.drafts import (
-    MOST,
-    Completion,
-    Draft,
-    Files,
-    ranked,
-    stop,
-    words_of,
-    written_out,
-)
+from aidl_lang.tools.ide.completion.drafts import MOST, Completion, Draft, Files
 from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
 from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, of_parameter, of_public
@@ -158,10 +149,8 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     if isinstance(fact.type, AnyType | RecordType):
         return
     words = vocabulary()
-    above = context.site.parent(2)
-    is_demand = context.use is Use.CONSTRAINT and isinstance(
-        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
-    )
+    holders = ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
+    is_demand = context.use is Use.CONSTRAINT and isinstance(context.site.parent(2), holders)
     demands = (*words.relations, *words.constraints, *sorted(EDITS & {*words.operations}))
     own = [name for name, _ in context.callables()]
     for name in (*own, *(demands if is_demand else ()), *words.functions):
@@ -241,14 +230,14 @@ def _argument(context: Context, signature: Signature, name: str, kind: Type, tie
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
     """Returns a snippet placeholder with a value that the parameter takes."""
-    if isinstance(kind, TextType) and (words := words_of(signature, name)):
+    if isinstance(kind, TextType) and (words := drafts.words_of(signature, name)):
         listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
         return f"${{1|{','.join(listed)}|}}"
     if default and len(default) < _LONGEST_DEFAULT:
-        return stop(1, default)
+        return drafts.stop(1, default)
     match kind:
         case NumberType(dimension, whole):
-            return stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
+            return drafts.stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
         case PointType():
             return "(${1:0}, ${2:0})"
         case TextType():
@@ -256,9 +245,9 @@ def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
         case TruthType():
             return "${1|true,false|}"
         case ListType():
-            return f"[{stop(1, name)}]"
+            return f"[{drafts.stop(1, name)}]"
         case _:
-            return stop(1, name)
+            return drafts.stop(1, name)
 
 
 # --- Completion of statements and of the words that continue one.
@@ -272,7 +261,6 @@ _OWN = {
 }
 """Statements without a snippet, or with another one, in the snippets of all editors (see `snippets`)."""
 _IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
-_AT_TOP = ("import",)
 _CLAUSES = {
     "weight": "weight ${1:2}",
     "step": "step ${1:5}",
@@ -317,7 +305,7 @@ def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
     is_top = site.automaton.open_blocks() == 0
     among = vocabulary().statements if site.takes("todo") else _IN_ITEMS
     for number, word in enumerate(among):
-        if site.takes(word) and (is_top or word not in _AT_TOP):
+        if site.takes(word) and (is_top or word != "import"):
             yield _statement(site, word, tier + number / 100)
 
 
@@ -326,7 +314,8 @@ def _statement(site: EditSite, word: str, tier: float) -> Draft:
     rest = site.following.partition("\n")[0].strip()
     if rest and not rest.startswith("}"):
         return _keyword(word, tier, word)
-    return _keyword(word, tier, _OWN.get(word) or (written_out(OF_WORD[word]) if word in OF_WORD else word))
+    text = drafts.written_out(OF_WORD[word]) if word in OF_WORD else word
+    return _keyword(word, tier, _OWN.get(word, text))
 
 
 def _keyword(word: str, tier: float, text: str = "") -> Draft:
@@ -402,7 +391,7 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
         case _:
             found = _drafts(site_at(view, spot), files)
     prefix = view.source.text[spot.start : spot.offset]
-    return ranked(found, view.span(spot.start, spot.end), prefix)
+    return drafts.ranked(found, view.span(spot.start, spot.end), prefix)
 
 
 def _in_string(view: View, spot: Spot, files: Files | None) -> Iterator[Draft]:

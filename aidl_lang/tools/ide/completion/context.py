@@ -74,28 +74,19 @@ class Context:
     call: tuple[ast.Call, int] | None
 
     @cached_property
-    def statement(self) -> ast.Node | None:
-        """The statement around the place."""
-        return next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
-
-    @cached_property
-    def home(self) -> ast.Node:
-        """The structure or other definition whose body contains the place, or the file."""
-        return self.scope.homes[-1]
-
-    @cached_property
     def in_items(self) -> bool:
         """True among constraints."""
         return any(isinstance(n, ast.Constrain | ast.ConstraintDefinition) for n in self.path)
 
     @cached_property
     def use(self) -> Use:
-        match self.statement:
+        statement = next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
+        match statement:
             case ast.Assert() | ast.Let() | ast.FunctionDefinition():
                 return Use.CHECK
             case ast.Param() | ast.Parameter() | ast.If() | ast.For() if not self.in_items:
                 return Use.CONSTANT
-            case _ if self.in_items or isinstance(self.statement, _DEMANDS):
+            case _ if self.in_items or isinstance(statement, _DEMANDS):
                 return Use.CONSTRAINT
             case _ if self.call is not None and self.call[0].callee.text in DERIVING | PATTERNS | COPYING:
                 return Use.DERIVING
@@ -164,7 +155,6 @@ class Context:
                 return _of_place(node, above, path)
 
     def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        """Returns the types comparable with the other sides."""
         facts = [self.view.program.inference.fact(o) for o in operands if o is not node]
         known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
         return _alike(known) if known is not None else Wanted()
@@ -224,16 +214,16 @@ class Context:
         return self.use is Use.DERIVING and start < nodes[0].span.start
 
     def _may_read(self, known: KnownName) -> bool:
-        reads = known.fact.reads
+        reads, home = known.fact.reads, self.scope.homes[-1]
         match self.use:
             case Use.CHECK:
                 return True
             case Use.CONSTANT:
                 return not reads
             case Use.CONSTRAINT:
-                return all(p.holder is self.home for p in reads)
+                return all(p.holder is home for p in reads)
             case Use.GEOMETRY:
-                own = all(p == ReadPlace(self.home) for p in reads)
+                own = all(p == ReadPlace(home) for p in reads)
                 return own and known.name != "self" and known.symbol is not self.scope.own_name
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)

@@ -26,18 +26,8 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents.workspace import RefusalError, edit_at
-from aidl_lang.tools.ide.dragging.mobility import (
-    AXES,
-    Grip,
-    Ways,
-    belongs,
-    grips,
-    is_somewhere,
-    movable,
-    pull,
-    values_at,
-    ways,
-)
+from aidl_lang.tools.ide.dragging import mobility
+from aidl_lang.tools.ide.dragging.mobility import AXES, Grip, Ways, is_somewhere
 from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import Solved, View, edited, hasty, run
@@ -141,13 +131,13 @@ def _places(view: View) -> dict[str, Vec]:
     solved = view.solved
     if solved is None or not solved.holds:
         return {}
-    return {grip.id: grip.at(solved.evaluate) for grip in grips(solved.built)}
+    return {grip.id: grip.at(solved.evaluate) for grip in mobility.grips(solved.built)}
 
 
 def _turned(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
     """Returns all points with other values of params; none if that does not solve."""
     found = pipeline.placed(view.program, {**(view.params or {}), **values})
-    return {} if found is None else {grip.id: grip.at(found[1]) for grip in grips(found[0])}
+    return {} if found is None else {grip.id: grip.at(found[1]) for grip in mobility.grips(found[0])}
 
 
 class _Tries:
@@ -329,11 +319,11 @@ class _Hold(Solved):
 
     @cached_property
     def movable(self) -> frozenset[Unknown]:
-        return movable(self.built, self.evaluate, self.written)
+        return mobility.movable(self.built, self.evaluate, self.written)
 
     @cached_property
     def grips(self) -> dict[str, Grip]:
-        found = [grip for grip in grips(self.built) if grip.may_move(self.written)]
+        found = [grip for grip in mobility.grips(self.built) if grip.may_move(self.written)]
         return {grip.id: grip for grip in sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS]}
 
     @cached_property
@@ -344,7 +334,7 @@ class _Hold(Solved):
     @cached_property
     def ways(self) -> Ways:
         found = [grip for grip, _ in self.places]
-        return ways(self.built, found, self.evaluate, self.written, self.movable)
+        return mobility.ways(self.built, found, self.evaluate, self.written, self.movable)
 
     def by_numbers(self) -> Iterator[Handle]:
         for grip, at in self.places:
@@ -456,11 +446,11 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
     way = hold.ways.get(grip.id)
     if way is None:
         raise CannotError("there is nothing to drag")
-    of_thing = (u for u in hold.written if u.kept and belongs(u, grip.thing))
+    of_thing = (u for u in hold.written if u.kept and mobility.belongs(u, grip.thing))
     sizes = frozenset(of_thing if way.by == "size" else ())
-    more = [pull(hold.built, grip, way.directions, to, _WEIGHT)]
+    more = [mobility.pull(hold.built, grip, way.directions, to, _WEIGHT)]
     if (pin := hold.grips.get(way.pin or "")) is not None:  # a point that stays meanwhile
-        more.append(pull(hold.built, pin, AXES, pin.at(hold.evaluate), None))
+        more.append(mobility.pull(hold.built, pin, AXES, pin.at(hold.evaluate), None))
     lowered = lower(replace(hold.built, constraints=[*hold.built.constraints, *more]))
 
     def off(found: tuple[Solution, Vec]) -> float:
@@ -490,7 +480,7 @@ def _solved(
     """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
     point's place. All is solved at once, since it all holds as it is. With sizes, positions only follow.
     """
-    problem, at = lowered.problem, values_at(lowered, hold.evaluate)
+    problem, at = lowered.problem, mobility.values_at(lowered, hold.evaluate)
     resized, said = _are(lowered, sizes), _are(lowered, hold.written) & ~problem.kept
     free = resized | (_are(lowered, loose) & ~problem.kept)
     flat = replace(

@@ -122,10 +122,7 @@ def of_number(view: View, start: int) -> Hover | None:
 
 # --- The values shown on hovering, as lists in Markdown, or the reason why there are none.
 
-_MAY_HOLD = (
-    *(ast.ExpressionStatement, ast.Equation, ast.Prefer),
-    *(ast.Comparison, ast.Call, ast.Membership),
-)
+_MAY_HOLD = ast.ExpressionStatement | ast.Equation | ast.Prefer | ast.Comparison | ast.Call | ast.Membership
 _NEAREST = "*The constraints do not hold together: this is where the solver came nearest.*"
 
 

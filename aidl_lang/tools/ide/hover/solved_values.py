@@ -135,8 +135,6 @@ class SolvedText(Solved):
                 for structure in root.walk():
                     if isinstance(structure.scope, Scope) and _is_made_by(structure, owner):
                         yield _below(root, structure.path), structure, structure.scope
-            case _:
-                return
 
     def _turns(self, env: Env, inside: Sequence[ast.Node]) -> Iterator[tuple[str, Env]]:
         """Yields the environments of a place in a body: one for each turn of the loops around it."""

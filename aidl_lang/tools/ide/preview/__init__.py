@@ -354,8 +354,6 @@ def _dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None
 
 # --- Makes the preview of a view: the picture and the data beside it.
 
-_NOWHERE = (0.0, 0.0, 0.0, 0.0)
-
 
 def preview(
     view: View, show: Collection[str] = (), *, tried: bool = False, known: Iterable[Handle] = ()
@@ -372,7 +370,14 @@ def preview(
     has_picture = drawn is not None and bool(
         drawn.drawing.bodies or drawn.drawing.strokes or drawn.model.root.box
     )
-    svg, unpainted = _painted(drawn.outcome, found, show) if drawn is not None and has_picture else (None, ())
+    svg: str | None = None
+    unpainted: tuple[Diagnostic, ...] = ()
+    if drawn is not None and has_picture:
+        try:
+            with within(drawn.outcome.limit, "painting"):
+                svg = svg_of(drawn.outcome, found, show)
+        except TooLongError as reason:
+            unpainted = (reason.diagnostic,)
     # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
     is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
     return Preview(
@@ -381,7 +386,7 @@ def preview(
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
         svg=svg,
-        box=drawn.drawing.box if drawn is not None else _NOWHERE,
+        box=drawn.drawing.box if drawn is not None else (0.0, 0.0, 0.0, 0.0),
         elements=found.values,
         knobs=tuple(sliders(view)),
         handles=tuple(_moved(view, known)),
@@ -390,16 +395,6 @@ def preview(
         motions=tuple(ways(view.solved, found)) if FREEDOM in show and view.solved is not None else (),
         degrees=view.solved.model.degrees if view.solved is not None else None,
     )
-
-
-def _painted(
-    drawn: Compiled, found: Elements, show: Collection[str]
-) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    try:
-        with within(drawn.limit, "painting"):
-            return svg_of(drawn, found, show), ()
-    except TooLongError as reason:
-        return None, (reason.diagnostic,)
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:

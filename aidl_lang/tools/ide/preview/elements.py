@@ -176,11 +176,9 @@ class Writer:
 
     def range(self, span: Span) -> Json:
         positions = self.positions(span.source)
-        start, end = (positions.position(offset) for offset in (span.start, span.end))
-        return {
-            "start": {"line": start[0], "character": start[1]},
-            "end": {"line": end[0], "character": end[1]},
-        }
+        ends = (positions.position(offset) for offset in (span.start, span.end))
+        start, end = ({"line": line, "character": character} for line, character in ends)
+        return {"start": start, "end": end}
 
     def positions(self, source: SourceFile) -> Positions:
         if source not in self._positions:
@@ -414,6 +412,8 @@ def sliders(view: View) -> Iterator[Slider]:
         known = view.drawn.knobs
     for knob in known:
         declared = view.declaration(knob)
+        # a count: a whole number without a unit, with a range from one whole number to another
+        is_count = declared is not None and is_whole(knob) and declared.value.span.text.isdecimal()
         yield Slider(
             knob.path,
             knob.path.rpartition(".")[2],
@@ -422,7 +422,7 @@ def sliders(view: View) -> Iterator[Slider]:
             knob.unit,
             knob.low,
             knob.high,
-            knob.step if declared is None or knob.step is not None else _step(knob, declared.value),
+            1.0 if is_count and knob.step is None else knob.step,
             knob.choices,
             knob.doc or "",
             declared.value.span if declared is not None else places.now(knob.span),
@@ -482,18 +482,15 @@ def _require_allowed(knob: Knob, value: Value) -> None:
 def _require_sense(view: View, edits: list[Edit]) -> None:
     """Raises RefusalError if the text could no longer be built, as with a length where a number was."""
     again = edited(view, edits, hasty())
-    wrong = next((found for found in again.diagnostics if found.is_error), None)
-    if wrong is not None and view.solved is not None and again.solved is None:
-        raise refusal("E0945", f"the program cannot be built with this: {wrong.message}")
+    if view.solved is None or again.solved is not None:
+        return
+    for wrong in again.diagnostics:
+        if wrong.is_error:
+            raise refusal("E0945", f"the program cannot be built with this: {wrong.message}")
 
 
 def _is_literal(node: ast.Expression) -> bool:
     return isinstance(node, _LITERALS) or (isinstance(node, ast.Unary) and _is_literal(node.operand))
-
-
-def _step(knob: Knob, value: ast.Expression) -> float | None:
-    """Returns 1 for a count: a whole number without a unit, with a range from one whole number to another."""
-    return 1.0 if is_whole(knob) and value.span.text.isdecimal() else None
 
 
 def _kind(knob: Knob) -> str:

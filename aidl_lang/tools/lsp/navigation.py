@@ -11,7 +11,7 @@ from aidl_lang.checking.symbols import SymbolKind
 from aidl_lang.tools.ide import outline, references
 from aidl_lang.tools.ide.preview.elements import alike
 from aidl_lang.tools.ide.workspace import format_document, format_range
-from aidl_lang.tools.lsp.documents import Converter, Document
+from aidl_lang.tools.lsp.documents import Converter
 from aidl_lang.tools.lsp.server import Asked, Server
 
 # --- Navigation: definitions, references, outlines, links; and renaming.
@@ -142,7 +142,7 @@ def register_appearance(server: Server) -> None:
     tokens = _Tokens()
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)(tokens.full)
     server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, _LEGEND)(tokens.delta)
-    server.on_closed.append(tokens.forget)
+    server.on_closed.append(lambda document: tokens.answered.pop(document.uri, None))
 
     @server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, _LEGEND)
     def tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
@@ -204,19 +204,19 @@ class _Tokens:
     """The last answer for each document, from which differences are told."""
 
     def __init__(self) -> None:
-        self._answered: dict[str, types.SemanticTokens] = {}
+        self.answered: dict[str, types.SemanticTokens] = {}
         self._ids = count(1)
 
     def full(self, asked: Asked, params: object) -> types.SemanticTokens:
         data = _encoded(outline.semantic_tokens(asked.view), asked.convert)
         made = types.SemanticTokens(data, result_id=str(next(self._ids)))
-        self._answered[asked.uri] = made
+        self.answered[asked.uri] = made
         return made
 
     def delta(
         self, asked: Asked, params: types.SemanticTokensDeltaParams
     ) -> types.SemanticTokens | types.SemanticTokensDelta:
-        before = self._answered.get(asked.uri)
+        before = self.answered.get(asked.uri)
         now = self.full(asked, params)
         if before is None or before.result_id != params.previous_result_id:
             return now
@@ -226,9 +226,6 @@ class _Tokens:
         edit = types.SemanticTokensEdit(start, len(old) - end - start, new[start : len(new) - end])
         changed = bool(edit.delete_count or edit.data)
         return types.SemanticTokensDelta([edit] if changed else [], result_id=now.result_id)
-
-    def forget(self, document: Document) -> None:
-        self._answered.pop(document.uri, None)
 
 
 def _encoded(found: list[outline.Colored], convert: Converter) -> list[int]:

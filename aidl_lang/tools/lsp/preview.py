@@ -355,9 +355,8 @@ class _Requests:
             raise JsonRpcException(_why(reason), FAILED) from None
 
     async def set_knob(self, given: SetKnob) -> Json:
-        return await self._edit(
-            given, lambda view: set_knob(view, given.path, given.value), f"Set {given.path}"
-        )
+        edits = partial(set_knob, path=given.path, value=given.value)
+        return await self._edit(given, edits, f"Set {given.path}")
 
     async def drag(self, given: Drag) -> Json:
         return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
