@@ -120,26 +120,24 @@ class Found:
 
 def can_be_tried(view: View) -> bool:
     """True for a program that works as written, and has a param with a range."""
-    outcome = view.outcome
-    return outcome is not None and outcome.ok and any(ends.has_range(knob) for knob in outcome.knobs)
+    return view.outcome is not None and view.outcome.ok and any(map(ends.has_range, view.knobs))
 
 
 def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Found:
     """Tries a program at the ends of its params, and walks between them, in half of the time each. Raises
     ValueError if it cannot be tried, and Cancelled if the request was given up.
     """
-    if view.outcome is None or not can_be_tried(view):
+    if not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    sweep = ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds / 2)
+    sweep = ends.sweep(job, view.knobs, view.diagnostics, progress, seconds / 2)
     return Found(sweep, between(view, settings, progress, seconds / 2))
 
 
 def between(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Ranges:
     """Walks the params of a program that `can_be_tried`. Raises Cancelled as `tried` does."""
-    assert view.outcome is not None
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    return ranges(job, view.outcome.knobs, progress, seconds)
+    return ranges(job, view.knobs, progress, seconds)
 
 
 def end_lenses(view: View, found: Found | None) -> list[Lens]:
@@ -150,8 +148,7 @@ def end_lenses(view: View, found: Found | None) -> list[Lens]:
 
 
 def _offer(view: View) -> Iterator[Lens]:
-    assert view.outcome is not None
-    knobs = [k for k in view.outcome.knobs if ends.has_range(k)]
+    knobs = [k for k in view.knobs if ends.has_range(k)]
     own = [k for k in knobs if _is_own(view, k)]
     if own and own[0].span is not None:
         count = len({k.path for k in knobs})

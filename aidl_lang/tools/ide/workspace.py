@@ -239,6 +239,11 @@ class View:
         return solved(self.outcome)
 
     @property
+    def knobs(self) -> tuple[Knob, ...]:
+        """The params as the outcome has them."""
+        return self.outcome.knobs if self.outcome is not None else ()
+
+    @property
     def set_outside(self) -> frozenset[str]:
         """The names, folded, of the params that were set from outside."""
         return frozenset(fold(name.strip()) for name in self.params or ())

@@ -375,12 +375,12 @@ class _Requests:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
         document = self.server.document(given.uri)
         await document.until_solved(document.serial, _LONGEST_WAIT)
-        outcome = document.ran.view.outcome if document.ran is not None else None
-        if outcome is None or outcome.model is None or outcome.drawing is None:
+        solved = document.ran.view.solved if document.ran is not None else None
+        if solved is None:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
         try:
             options = changed(layered(given.show), given.options)
-            made = await self.server.searches.ask(lambda: outcome.exported(suffix, options))
+            made = await self.server.searches.ask(lambda: solved.outcome.exported(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
         except ValueError as reason:

@@ -85,10 +85,9 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
     """Returns for each point the params that it follows, with its velocity per unit of each."""
     before, found = _places(view), dict[str, dict[str, Vec]]()
     until = time.monotonic() + _SECONDS
-    outcome, given = view.outcome, view.set_outside
-    known = outcome.knobs if outcome is not None else ()
-    numeric = (k for k in known if isinstance(k.value, float) and not k.choices and fold(k.path) not in given)
-    written = [knob for knob in numeric if _declaration(view, knob) is not None]
+    numeric = (knob for knob in view.knobs if isinstance(knob.value, float) and not knob.choices)
+    inside = (knob for knob in numeric if fold(knob.path) not in view.set_outside)
+    written = [knob for knob in inside if _declaration(view, knob) is not None]
     for knob in written[:MOST_KNOBS] if before else ():
         if time.monotonic() > until:
             break
@@ -111,7 +110,7 @@ def _declaration(view: View, knob: Knob) -> ast.Param | None:
 
 def _set(view: View, path: str, value: float) -> Iterator[Edit]:
     """Yields the edits that set a param. Raises RefusalError for a value that does not fit."""
-    for knob in view.outcome.knobs if view.outcome is not None else ():
+    for knob in view.knobs:
         declared = _declaration(view, knob)
         if knob.path == path and declared is not None:
             yield edit_at(knob, declared, value)
@@ -144,9 +143,8 @@ class _Tries:
     """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
 
     def __init__(self, view: View) -> None:
-        assert view.outcome is not None
         self.view = view
-        self.knobs = {knob.path: knob for knob in reversed(view.outcome.knobs)}
+        self.knobs = {knob.path: knob for knob in reversed(view.knobs)}
         self._shown: dict[Values, View] = {}
         self._places: dict[Values, Mapping[str, Vec]] = {}
 

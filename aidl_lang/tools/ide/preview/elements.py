@@ -406,8 +406,7 @@ _SLACK = 1e-9
 
 def sliders(view: View) -> Iterator[Slider]:
     """Yields the params in order of writing; of a broken text those of the picture, which are read only."""
-    outcome, places = view.outcome, Places(view)
-    known = outcome.knobs if outcome is not None else ()
+    known, places = view.knobs, Places(view)
     if not known and view.is_stale and view.drawn is not None:
         known = view.drawn.knobs
     for knob in known:
@@ -432,7 +431,7 @@ def sliders(view: View) -> Iterator[Slider]:
 
 def set_knob(view: View, path: str, value: Value) -> list[Edit]:
     """Returns the edits that make a value, or a text's worth, a param's default. Raises RefusalError."""
-    knob = _knob(view, path)
+    knob = workspace.find(view.knobs, path)
     declared = view.declaration(knob)
     if declared is None:
         raise refusal("E0945", f"`{knob.path}` is declared in the library, and cannot be changed there")
@@ -450,14 +449,10 @@ def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
     """Returns values of params with texts for numbers worked out. Raises RefusalError for an invalid one."""
     found = dict(values)
     for path, value in values.items():
-        if isinstance(value, str) and _is_typed(knob := _knob(view, path), value):
+        if isinstance(value, str) and _is_typed(knob := workspace.find(view.knobs, path), value):
             found[path] = _worked_out(knob, value)
             _require_allowed(knob, found[path])
     return found
-
-
-def _knob(view: View, path: str) -> Knob:
-    return workspace.find(view.outcome.knobs if view.outcome is not None else (), path)
 
 
 def _is_typed(knob: Knob, value: Value) -> bool:
